@@ -1,0 +1,37 @@
+# Every library the project links, found on the system; nothing is downloaded.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(NLopt 2.7 REQUIRED)
+find_package(Threads REQUIRED)
+
+# isoline_library(target names header version): an imported target for a library without a package.
+function(isoline_library target names header)
+  string(MAKE_C_IDENTIFIER "${target}" id)
+  find_path(${id}_INCLUDE ${header} PATH_SUFFIXES ${ARGN} REQUIRED)
+  add_library(${target} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${target} SYSTEM INTERFACE ${${id}_INCLUDE})
+  foreach(name IN LISTS names)
+    find_library(${id}_${name} ${name} REQUIRED)
+    target_link_libraries(${target} INTERFACE ${${id}_${name}})
+  endforeach()
+endfunction()
+
+# Named directly, not through the system's BLAS alternatives, which differ between machines.
+isoline_library(Isoline::lapacke "openblas;lapacke" lapacke.h)
+isoline_library(Isoline::fftw "fftw3" fftw3.h)
+isoline_library(Isoline::random123 "" Random123/philox.h)
+isoline_library(Isoline::valijson "" valijson/validator.hpp)
+
+# Ceres' own CMake target is the static library. Built for other vector instructions than ours, its
+# inline Eigen functions would be merged with ours at link time; the shared library keeps its own.
+isoline_library(Isoline::ceres "libceres.so;glog" ceres/ceres.h)
+find_package(Ceres 2.1 REQUIRED)
+
+find_file(ISOLINE_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js REQUIRED)
+
+# The versions a record names.
+file(STRINGS ${Isoline__fftw_INCLUDE}/fftw3.h _fftw REGEX "FFTW_VERSION" LIMIT_COUNT 1)
+set(ISOLINE_LIBRARIES "Eigen ${Eigen3_VERSION}" "Ceres ${Ceres_VERSION}" "NLopt ${NLopt_VERSION}"
+    "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}")

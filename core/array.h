@@ -1,0 +1,20 @@
+// The array types of the project. Shapes are written in comments as (rows, columns).
+#pragma once
+
+#include <Eigen/Core>
+
+namespace isoline {
+
+using Real = double;
+using Index = Eigen::Index;
+using Vector = Eigen::VectorXd;  // (n)
+using Matrix = Eigen::MatrixXd;  // (m, n), column major; a batch holds one sample a column
+
+using VectorRef = const Eigen::Ref<const Vector>&;
+using VectorOut = Eigen::Ref<Vector>;
+using BatchRef = const Eigen::Ref<const Matrix>&;
+using BatchOut = Eigen::Ref<Matrix>;
+
+using Success = Eigen::Array<bool, Eigen::Dynamic, 1>;  // (B), one verdict a sample
+
+}  // namespace isoline

@@ -1,0 +1,16 @@
+// What a run may spend, and the loss at which it is done.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace isoline {
+
+struct Budget {
+  std::int64_t iterations = 1000;
+  std::int64_t work = std::numeric_limits<std::int64_t>::max();  // declared prices, in forwards
+  double seconds = std::numeric_limits<double>::infinity();      // soft; hard is twice that
+  double target = 1e-10;  // τ of f ≤ f_L + τ (f₀ − f_L); 0 goes on to the end of the budget
+};
+
+}  // namespace isoline

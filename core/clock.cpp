@@ -1,0 +1,65 @@
+#include "core/clock.h"
+
+#include <ctime>
+
+#if defined(__x86_64__)
+#include <x86intrin.h>
+#endif
+
+namespace isoline {
+namespace {
+
+std::int64_t read_clock(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+double calibrate() {
+  constexpr std::int64_t kSpan = 2'000'000;  // 2 ms: the clock's nanosecond is then 5e-7 of it
+  const std::int64_t begin = monotonic_nanoseconds();
+  const std::uint64_t first = ticks();
+  while (monotonic_nanoseconds() - begin < kSpan) {
+  }
+  const std::uint64_t last = ticks();
+  return 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin) /
+         static_cast<double>(last - first);
+}
+
+}  // namespace
+
+std::int64_t monotonic_nanoseconds() { return read_clock(CLOCK_MONOTONIC); }
+
+double processor_seconds() { return 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID)); }
+
+std::uint64_t ticks() {
+#if defined(__x86_64__)
+  return __rdtsc();
+#else
+  return static_cast<std::uint64_t>(monotonic_nanoseconds());
+#endif
+}
+
+double seconds_per_tick() {
+  static const double measured = calibrate();
+  return measured;
+}
+
+void Stopwatch::resume() {
+  resumed_processor_ = isoline::processor_seconds();
+  resumed_ = ticks();
+  is_running_ = true;
+}
+
+void Stopwatch::pause() {
+  elapsed_ += ticks() - resumed_;
+  processor_ += isoline::processor_seconds() - resumed_processor_;
+  is_running_ = false;
+}
+
+double Stopwatch::seconds() const {
+  const std::uint64_t total = is_running_ ? elapsed_ + ticks() - resumed_ : elapsed_;
+  return static_cast<double>(total) * seconds_per_tick();
+}
+
+}  // namespace isoline

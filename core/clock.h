@@ -1,0 +1,28 @@
+// The stopwatch of a run: the processor's time-stamp counter where there is one, which a single
+// evaluation can afford to read, and the monotonic clock elsewhere.
+#pragma once
+
+#include <cstdint>
+
+namespace isoline {
+
+std::uint64_t ticks();
+double seconds_per_tick();  // measured once, against the monotonic clock
+double processor_seconds();  // of this process, user and system
+std::int64_t monotonic_nanoseconds();
+
+// Runs while the method works, stands while the harness measures.
+class Stopwatch {
+ public:
+  void resume();
+  void pause();
+  double seconds() const;  // wall time so far
+  double processor_seconds() const { return processor_; }  // up to the last pause
+
+ private:
+  bool is_running_ = false;
+  std::uint64_t resumed_ = 0, elapsed_ = 0;
+  double resumed_processor_ = 0, processor_ = 0;
+};
+
+}  // namespace isoline

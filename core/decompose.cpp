@@ -1,0 +1,64 @@
+#include "core/decompose.h"
+
+#include <lapacke.h>
+
+#include <algorithm>
+
+namespace isoline {
+namespace {
+
+lapack_int as_int(Index n) { return static_cast<lapack_int>(n); }
+
+}  // namespace
+
+bool thin_svd(const Matrix& A, Svd& out) {
+  const Index m = A.rows(), n = A.cols(), r = std::min(m, n);
+  if (r == 0 || !A.allFinite()) return false;
+  out.U.resize(m, r);
+  out.sigma.resize(r);
+  out.Vt.resize(r, n);
+  Matrix scratch = A;
+  if (LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'S', as_int(m), as_int(n), scratch.data(), as_int(m),
+                     out.sigma.data(), out.U.data(), as_int(m), out.Vt.data(), as_int(r)) == 0)
+    return true;
+  scratch = A;  // the divide-and-conquer form fails now and then where QR iteration does not
+  Vector superdiagonal(r);
+  return LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'S', 'S', as_int(m), as_int(n), scratch.data(), as_int(m),
+                        out.sigma.data(), out.U.data(), as_int(m), out.Vt.data(), as_int(r),
+                        superdiagonal.data()) == 0;
+}
+
+bool symmetric_eigen(const Matrix& A, SymmetricEigen& out) {
+  if (!A.allFinite()) return false;
+  out.V = A;
+  out.lambda.resize(A.rows());
+  return LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', as_int(A.rows()), out.V.data(),
+                        as_int(A.rows()), out.lambda.data()) == 0;
+}
+
+bool solve_square(const Matrix& A, const Vector& b, Vector& x) {
+  if (!A.allFinite() || !b.allFinite()) return false;
+  Matrix lu = A;
+  Eigen::Matrix<lapack_int, Eigen::Dynamic, 1> pivots(A.rows());
+  x = b;
+  return LAPACKE_dgesv(LAPACK_COL_MAJOR, as_int(A.rows()), 1, lu.data(), as_int(A.rows()),
+                       pivots.data(), x.data(), as_int(A.rows())) == 0;
+}
+
+bool least_squares(const Matrix& A, const Vector& b, Real relative_rank, Vector& x) {
+  if (!A.allFinite() || !b.allFinite()) return false;
+  const Index m = A.rows(), n = A.cols(), rows = std::max(m, n);
+  Matrix factored = A;
+  Vector right = Vector::Zero(rows);
+  right.head(m) = b;
+  Eigen::Matrix<lapack_int, Eigen::Dynamic, 1> pivots =
+      Eigen::Matrix<lapack_int, Eigen::Dynamic, 1>::Zero(n);
+  lapack_int rank = 0;
+  const bool solved =
+      LAPACKE_dgelsy(LAPACK_COL_MAJOR, as_int(m), as_int(n), 1, factored.data(), as_int(m),
+                     right.data(), as_int(rows), pivots.data(), relative_rank, &rank) == 0;
+  x = right.head(n);
+  return solved;
+}
+
+}  // namespace isoline

@@ -1,0 +1,57 @@
+#include "core/random.h"
+
+#include <Random123/philox.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace isoline {
+namespace {
+
+std::uint64_t hash(std::string_view text, std::uint64_t state = 0xcbf29ce484222325) {
+  for (const char letter : text)
+    state = (state ^ static_cast<unsigned char>(letter)) * 0x100000001b3;  // FNV-1a
+  return state;
+}
+
+}  // namespace
+
+RandomStream::RandomStream(std::uint64_t seed, std::string_view component,
+                           std::string_view purpose, std::uint64_t index)
+    : key_{seed, hash(purpose, hash("/", hash(component)))}, index_(index) {}
+
+std::uint64_t RandomStream::next() {
+  if (left_ == 0) {
+    const r123::Philox4x64::ctr_type counter{{index_, block_++, 0, 0}};
+    const auto drawn = r123::Philox4x64()(counter, {{key_[0], key_[1]}});
+    for (std::size_t i = 0; i < buffer_.size(); ++i) buffer_[i] = drawn[i];
+    left_ = static_cast<int>(buffer_.size());
+  }
+  return buffer_[static_cast<std::size_t>(--left_)];
+}
+
+Real RandomStream::uniform() {
+  constexpr Real kUnit = 0x1p-53;  // the top 53 bits fill a double's mantissa
+  return static_cast<Real>(next() >> 11) * kUnit;
+}
+
+Real RandomStream::uniform(Real low, Real high) { return low + (high - low) * uniform(); }
+
+Real RandomStream::normal() {
+  const Real radius = std::sqrt(-2 * std::log(1 - uniform()));
+  return radius * std::cos(2 * std::numbers::pi * uniform());
+}
+
+Vector RandomStream::normal_vector(Index n) {
+  Vector drawn(n);
+  for (Real& value : drawn) value = normal();
+  return drawn;
+}
+
+Vector RandomStream::uniform_vector(Index n, Real low, Real high) {
+  Vector drawn(n);
+  for (Real& value : drawn) value = uniform(low, high);
+  return drawn;
+}
+
+}  // namespace isoline

@@ -1,0 +1,34 @@
+// Counter-based random numbers (Philox4x64-10, Salmon et al. 2011), by named stream: what a draw
+// yields depends on its key alone, not on order, thread, shard or standard library.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "core/array.h"
+
+namespace isoline {
+
+class RandomStream {
+ public:
+  // `component` is a problem's name without options; `index` numbers the sample.
+  RandomStream(std::uint64_t seed, std::string_view component, std::string_view purpose,
+               std::uint64_t index = 0);
+
+  Real uniform();                        // U[0, 1)
+  Real uniform(Real low, Real high);     // U[low, high)
+  Real normal();                         // N(0, 1), by Box and Muller
+  Vector normal_vector(Index n);         // (n) independent N(0, 1)
+  Vector uniform_vector(Index n, Real low, Real high);
+
+ private:
+  std::uint64_t next();
+
+  std::array<std::uint64_t, 2> key_;
+  std::uint64_t index_, block_ = 0;
+  std::array<std::uint64_t, 4> buffer_{};
+  int left_ = 0;
+};
+
+}  // namespace isoline

@@ -1,0 +1,253 @@
+#include "core/record.h"
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+#include "core/json.h"
+
+namespace isoline {
+namespace {
+
+Json numbers(const std::vector<Real>& values) { return json_numbers(values.data(), values.size()); }
+
+std::vector<Real> reals(const Json& list) {
+  std::vector<Real> values;
+  values.reserve(list.size());
+  for (const Json& value : list) values.push_back(real_of(value));
+  return values;
+}
+
+Json rows(const std::vector<std::vector<Real>>& values) {
+  Json list = Json::array();
+  for (const auto& row : values) list.push_back(numbers(row));
+  return list;
+}
+
+std::vector<std::vector<Real>> real_rows(const Json& list) {
+  std::vector<std::vector<Real>> values;
+  for (const Json& row : list) values.push_back(reals(row));
+  return values;
+}
+
+Json to_json(const Component& component) {
+  return {{"name", component.name},
+          {"options", component.options},
+          {"spec", component.spec},
+          {"revision", component.revision}};
+}
+
+Component component_from(const Json& json) {
+  return {json.at("name"), json.at("options"), json.at("spec"), json.at("revision")};
+}
+
+Json to_json(const Budget& budget) {
+  Json json{{"iterations", budget.iterations}, {"target", json_number(budget.target)},
+            {"seconds", json_number(budget.seconds)}};
+  const bool is_bounded = budget.work < std::numeric_limits<std::int64_t>::max();
+  json["work"] = is_bounded ? Json(budget.work) : Json(nullptr);
+  return json;
+}
+
+Budget budget_from(const Json& json) {
+  Budget budget{.iterations = json.at("iterations"),
+                .seconds = real_of(json.at("seconds")),
+                .target = real_of(json.at("target"))};
+  if (!json.at("work").is_null()) budget.work = json.at("work");
+  return budget;
+}
+
+Json to_json(const Curve& curve) {
+  return {{"iteration", curve.iteration},
+          {"work", curve.work},
+          {"counts", curve.counts},
+          {"wall_seconds", numbers(curve.wall_seconds)},
+          {"processor_seconds", numbers(curve.processor_seconds)},
+          {"loss", numbers(curve.loss)},
+          {"x_error", numbers(curve.x_error)},
+          {"gradient_norm", numbers(curve.gradient_norm)},
+          {"step_norm", numbers(curve.step_norm)}};
+}
+
+Curve curve_from(const Json& json) {
+  Curve curve;
+  json.at("iteration").get_to(curve.iteration);
+  json.at("work").get_to(curve.work);
+  json.at("counts").get_to(curve.counts);
+  curve.wall_seconds = reals(json.at("wall_seconds"));
+  curve.processor_seconds = reals(json.at("processor_seconds"));
+  curve.loss = reals(json.at("loss"));
+  curve.x_error = reals(json.at("x_error"));
+  curve.gradient_norm = reals(json.at("gradient_norm"));
+  curve.step_norm = reals(json.at("step_norm"));
+  return curve;
+}
+
+Json to_json(const Hits& hits) {
+  return {{"target", numbers(hits.target)},
+          {"iteration", hits.iteration},
+          {"work", hits.work},
+          {"forwards", hits.forwards},
+          {"wall_seconds", numbers(hits.wall_seconds)}};
+}
+
+Hits hits_from(const Json& json) {
+  Hits hits;
+  hits.target = reals(json.at("target"));
+  json.at("iteration").get_to(hits.iteration);
+  json.at("work").get_to(hits.work);
+  json.at("forwards").get_to(hits.forwards);
+  hits.wall_seconds = reals(json.at("wall_seconds"));
+  return hits;
+}
+
+Json to_json(const Summary& summary) {
+  return {{"iterations", summary.iterations},
+          {"work", summary.work},
+          {"rejected_steps", summary.rejected_steps},
+          {"start_loss", json_number(summary.start_loss)},
+          {"loss", json_number(summary.loss)},
+          {"best_loss", json_number(summary.best_loss)},
+          {"start_x_error", json_number(summary.start_x_error)},
+          {"x_error", json_number(summary.x_error)},
+          {"gradient_norm", json_number(summary.gradient_norm)},
+          {"wall_seconds", json_number(summary.wall_seconds)},
+          {"processor_seconds", json_number(summary.processor_seconds)},
+          {"peak_memory_bytes", summary.peak_memory_bytes}};
+}
+
+Summary summary_from(const Json& json) {
+  return {.iterations = json.at("iterations"),
+          .work = json.at("work"),
+          .rejected_steps = json.at("rejected_steps"),
+          .start_loss = real_of(json.at("start_loss")),
+          .loss = real_of(json.at("loss")),
+          .best_loss = real_of(json.at("best_loss")),
+          .start_x_error = real_of(json.at("start_x_error")),
+          .x_error = real_of(json.at("x_error")),
+          .gradient_norm = real_of(json.at("gradient_norm")),
+          .wall_seconds = real_of(json.at("wall_seconds")),
+          .processor_seconds = real_of(json.at("processor_seconds")),
+          .peak_memory_bytes = json.at("peak_memory_bytes")};
+}
+
+Json to_json(const OracleCounts& counts) {
+  Json json = Json::object();
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    json[std::string(kOracleNames[kind])] = counts[kind];
+  return json;
+}
+
+OracleCounts counts_from(const Json& json) {
+  OracleCounts counts{};
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    counts[kind] = json.value(std::string(kOracleNames[kind]), std::int64_t{0});
+  return counts;
+}
+
+Json verified_json(const Record& record) {
+  Json json = Json::object();
+  for (const auto& [tau, is_met] : record.verified) json[tau] = is_met ? Json(*is_met) : Json();
+  return json;
+}
+
+Record parsed(const Json& json) {
+  Record record{.cell = json.at("cell"), .build = json.at("build")};
+  record.request = request_from_json(json.at("request"));
+  const auto status = status_of(json.at("status").get<std::string>());
+  require(status.has_value(), "unknown status " + json.at("status").dump());
+  record.status = *status;
+  record.message = json.at("message");
+  record.claimed = json.at("claimed");
+  if (!json.at("minimum").is_null()) record.minimum = real_of(json.at("minimum"));
+  for (const auto& [tau, is_met] : json.at("verified").items())
+    record.verified[tau] = is_met.is_null() ? std::nullopt : std::optional(is_met.get<bool>());
+  record.counts = counts_from(json.at("counts"));
+  record.prices = counts_from(json.at("prices"));
+  record.summary = summary_from(json.at("summary"));
+  record.curve = curve_from(json.at("curve"));
+  if (json.contains("hits")) record.hits = hits_from(json["hits"]);
+  if (json.contains("trajectory"))
+    record.trajectory = {real_rows(json["trajectory"].at("x")), real_rows(json["trajectory"].at("y"))};
+  json.at("privileges").get_to(record.privileges);
+  record.is_nondeterministic = json.at("nondeterministic");
+  record.repeat_wall_seconds = reals(json.at("repeat_wall_seconds"));
+  record.provenance = json.at("provenance");
+  return record;
+}
+
+}  // namespace
+
+Json to_json(const Request& request) {
+  return {{"problem", to_json(request.problem)},
+          {"optimizer", to_json(request.optimizer)},
+          {"seed", request.seed},
+          {"budget", to_json(request.budget)},
+          {"threads", request.threads},
+          {"rates", request.rates}};
+}
+
+Request request_from_json(const Json& json) {
+  return {.problem = component_from(json.at("problem")),
+          .optimizer = component_from(json.at("optimizer")),
+          .seed = json.at("seed"),
+          .budget = budget_from(json.at("budget")),
+          .threads = json.at("threads"),
+          .rates = json.at("rates")};
+}
+
+std::string cell_digest(const Request& request) {
+  const Json asked{{"problem", request.problem.name},
+                   {"problem_options", request.problem.options},
+                   {"optimizer", request.optimizer.name},
+                   {"optimizer_options", request.optimizer.options},
+                   {"seed", request.seed},
+                   {"budget", to_json(request.budget)},
+                   {"threads", request.threads}};
+  return digest(asked.dump());
+}
+
+Json to_json(const Record& record) {
+  Json json{{"schema", kRunSchema},
+            {"cell", record.cell},
+            {"build", record.build},
+            {"request", to_json(record.request)},
+            {"status", name_of(record.status)},
+            {"message", record.message},
+            {"claimed", record.claimed},
+            {"minimum", record.minimum ? json_number(*record.minimum) : Json()},
+            {"verified", verified_json(record)},
+            {"counts", to_json(record.counts)},
+            {"prices", to_json(record.prices)},
+            {"summary", to_json(record.summary)},
+            {"curve", to_json(record.curve)},
+            {"privileges", record.privileges},
+            {"nondeterministic", record.is_nondeterministic},
+            {"repeat_wall_seconds", numbers(record.repeat_wall_seconds)},
+            {"provenance", record.provenance}};
+  if (record.hits) json["hits"] = to_json(*record.hits);
+  if (record.trajectory)
+    json["trajectory"] = {{"x", rows(record.trajectory->x)}, {"y", rows(record.trajectory->y)}};
+  return json;
+}
+
+Record record_from_json(const Json& json) {
+  try {
+    require(json.at("schema") == kRunSchema, "the schema is not " + std::string(kRunSchema));
+    return parsed(json);
+  } catch (const Json::exception& error) {
+    throw UsageError(fmt::format("no {} record: {}", kRunSchema, error.what()));
+  }
+}
+
+Json without_timings(Json record) {
+  record.erase("repeat_wall_seconds");
+  record.at("provenance").erase("run");  // start time, concurrent jobs, exclusive
+  for (const char* name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"}) {
+    record.at("summary").erase(name);
+    record.at("curve").erase(name);
+  }
+  if (record.contains("hits")) record["hits"].erase("wall_seconds");
+  return record;
+}
+
+}  // namespace isoline

@@ -1,0 +1,31 @@
+// The language of the command line and of suites: SPEC := name[key=value,…]. A value may itself be
+// a SPEC; commas split only at depth 0; `|` sweeps: sine[xi=1|3|10] is three specs.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isoline {
+
+using Json = nlohmann::json;
+
+struct Spec {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> options;
+};
+
+// "a[x=1|2],b" -> a[x=1], a[x=2], b.
+std::vector<Spec> parse_specs(std::string_view text);
+Spec parse_spec(std::string_view text);  // UsageError unless it is exactly one
+
+Json options_of(const Spec& spec);  // {key: text}
+
+// "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; commas join.
+std::vector<std::uint64_t> parse_seeds(std::string_view text);
+
+// "10s", "2m", "1.5h", "250ms" or plain seconds.
+double parse_duration(std::string_view text);
+
+}  // namespace isoline

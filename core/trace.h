@@ -1,0 +1,58 @@
+// What a run leaves behind while it runs: plain data of fixed size, so that it can live in memory
+// shared between processes and be read after a crash. `points` and `hits` grow; what they already
+// hold never changes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+
+#include "core/oracle.h"
+#include "core/status.h"
+
+namespace isoline {
+
+struct TracePoint {
+  std::int64_t iteration = 0;
+  OracleCounts counts{};  // cumulative
+  std::int64_t work = 0;  // counts times declared prices
+  double wall_seconds = 0, processor_seconds = 0;
+  double loss = 0;
+  double x_error = 0;        // distance to the nearest solution; nan where none is known
+  double gradient_norm = 0;  // ‖∂L/∂θ‖; nan where the problem has none
+  double step_norm = 0;      // ‖θ − θ at the previous iteration‖
+};
+
+// When the j-th target was first reached: f ≤ f_L + 10^(−j/5) (f₀ − f_L).
+struct TraceHit {
+  std::int64_t iteration = -1, work = 0, forwards = 0;  // iteration −1: never
+  double wall_seconds = 0;
+};
+
+struct Trace {
+  static constexpr int kPoints = 512;  // iterations 0-100, then 32 a decade: enough for 1e14
+  static constexpr int kHits = 51;
+  static constexpr int kInputs = 3, kOutputs = 16;  // largest x and y whose path is kept
+  static constexpr int kText = 1024;
+
+  std::atomic<std::int64_t> first_oracle_nanoseconds{0};  // CLOCK_MONOTONIC; 0: not yet
+  std::atomic<bool> is_finished{false};
+  std::atomic<int> points{0};
+  TracePoint point[kPoints];
+  TraceHit hit[kHits];
+  double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
+
+  // The last state known, kept up to date at every iteration; the final verdict when finished.
+  TracePoint last;
+  double start_loss = std::numeric_limits<double>::quiet_NaN();
+  double best_loss = std::numeric_limits<double>::infinity();
+  double start_x_error = std::numeric_limits<double>::quiet_NaN();
+  std::int64_t rejected_steps = 0;
+  std::int64_t peak_memory_bytes = 0;
+  Status status = Status::running;
+  bool stopped_by_clock = false;  // the soft time limit ended it: not reproducible
+  char message[kText] = "";
+  char claimed[kText] = "";  // what the method says of its own success, in its words
+};
+
+}  // namespace isoline

@@ -1,0 +1,112 @@
+// The only way from an optimizer to a problem: it counts every oracle by kind, refuses those the
+// method did not ask for, times, budgets and traces. Optimizers never log and never judge.
+#pragma once
+
+#include <string_view>
+
+#include "core/budget.h"
+#include "core/clock.h"
+#include "core/trace.h"
+#include "problems/problem.h"
+
+namespace isoline {
+
+class Meter;
+
+// One forward pass and everything asked of it, which never repeats it. Owned by the method, reused.
+class Linearization {
+ public:
+  const Vector& theta() const { return point_.theta; }  // (n)
+  const Matrix& x() const { return point_.x; }          // (k, B)
+  const Matrix& y() const { return point_.y; }          // (m, B)
+  Real loss() const { return point_.loss; }
+
+  void cotangent(Matrix& g) const;  // g = ∂L/∂y, (m, B)
+  void residual(Vector& r) const;   // r = (y − y*)/√B, (m·B)
+  void gradient(Vector& out);       // Jᵀ g, (n)
+  void pullback(BatchRef w, VectorOut out);
+  void pushforward(VectorRef v, BatchOut out);
+  const Matrix& jacobian();  // (m·B, n), computed once a point
+  const Matrix& hessian();   // ∇²L, (n, n), computed once a point
+  void curvature(BatchRef w, BatchOut out);
+  Success local_inverse(BatchRef y, BatchOut x);
+  void network_pullback(BatchRef w, VectorOut out);
+
+ private:
+  friend class Meter;
+  Meter* meter_ = nullptr;
+  Point point_;
+  Matrix g_, J_, H_;
+  bool has_jacobian_ = false, has_hessian_ = false;
+};
+
+class Meter {
+ public:
+  // `granted`: what the method declared that it needs. `trace` outlives the meter.
+  Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace);
+
+  // --- for methods
+  void linearize(VectorRef theta, Linearization& at);
+  Real loss(VectorRef theta);
+  const Matrix& target() const { return problem_.target(); }  // y*, (m, B)
+  std::vector<Block> layout() const { return problem_.layout(); }
+  Index unknowns() const { return problem_.unknowns(); }
+  Index residuals() const { return problem_.residuals(); }
+  Index samples() const { return problem_.samples(); }
+  bool has_identity_network() const { return problem_.has_identity_network(); }
+  Inverse inverse_kind() const { return problem_.inverse_kind(); }
+  // ½‖P(x) − y‖² of the physics alone and its gradient in x: one forward and one pullback.
+  Real physics_misfit(BatchRef y, BatchRef x, BatchOut gradient);
+
+  // A library's solver reports each iteration here and stops unless told `running`.
+  Status iterate(VectorRef theta);
+  // Work or time are spent: inner loops and library callbacks ask, the loop of the harness knows.
+  bool is_spent() const;
+  Status status() const { return status_; }
+  void reject_step() { ++trace_.rejected_steps; }
+  void claim(std::string_view words);  // what a library says of its own success
+
+  // --- for the harness
+  Status begin(VectorRef theta);
+  void finish(VectorRef theta, Status verdict);
+  const Problem& problem() const { return problem_; }
+
+ private:
+  friend class Linearization;
+  void charge(Oracle oracle) {
+    const auto kind = static_cast<std::size_t>(oracle);
+    if (!granted_.contains(oracle)) refuse(oracle);
+    ++counts_[kind];
+    work_ += prices_[kind];
+  }
+  [[noreturn]] void refuse(Oracle oracle) const;
+  void see(Real loss) {
+    if (loss < best_loss_) best_loss_ = loss;
+    if (loss <= next_target_) reach(loss);
+  }
+  void reach(Real loss);        // records the targets that `loss` meets
+  void measure(VectorRef theta);  // fills trace_.last, off the clock
+  void keep_point();
+  Status judge(VectorRef theta);
+  bool has_stalled();
+
+  const Problem& problem_;
+  Budget budget_;
+  OracleSet granted_;
+  Trace& trace_;
+  OracleCounts counts_{};
+  std::array<std::int64_t, kOracles> prices_;
+  std::int64_t work_ = 0, iteration_ = 0, next_kept_ = 0;
+  Real best_loss_, next_target_;  // the loss that meets the next of the 51 targets
+  Real target_loss_;
+  int targets_met_ = 0;
+  Real stall_loss_;
+  std::int64_t stall_iteration_ = 0;
+  Stopwatch watch_;
+  Status status_ = Status::running;
+  Point point_;   // for Meter::loss
+  Point judged_;  // for the harness's own evaluations
+  Vector previous_;
+};
+
+}  // namespace isoline

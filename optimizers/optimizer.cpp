@@ -1,0 +1,50 @@
+#include "optimizers/optimizer.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/spec.h"
+
+namespace isoline {
+namespace {
+
+std::string_view reason_of(Oracle missing) {
+  switch (missing) {
+    case Oracle::hessian:
+    case Oracle::curvature:
+      return "the problem offers no second derivatives";
+    case Oracle::inverse:
+      return "the physics has no local inverse";
+    case Oracle::truth:
+      return "the problem knows no true x";
+    default:
+      return "the problem does not offer what the method needs";
+  }
+}
+
+}  // namespace
+
+std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
+                             const Problem& problem) {
+  const OracleSet offered = problem.offers();
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    const auto oracle = static_cast<Oracle>(kind);
+    if (entry.needs.contains(oracle) && !offered.contains(oracle))
+      return std::string(reason_of(oracle));
+  }
+  if (problem.unknowns() > entry.most_unknowns)
+    return fmt::format("{} unknowns, and {} is limited to {}", problem.unknowns(), entry.name,
+                       entry.most_unknowns);
+  return entry.objection ? entry.objection(options, problem) : "";
+}
+
+std::unique_ptr<Descent> make_descent(const OptimizerRegistry& registry, const std::string& text) {
+  const Spec spec = parse_spec(text);
+  const OptimizerEntry& entry = registry.at(spec.name);
+  require(static_cast<bool>(entry.make_descent),
+          fmt::format("{} steps by more than a gradient and cannot be used inside", spec.name));
+  return entry.make_descent(complete_options(entry.options, spec.name, options_of(spec)));
+}
+
+}  // namespace isoline

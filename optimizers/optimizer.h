@@ -1,0 +1,153 @@
+// An optimizer is a const description of a method, plus a State that its step() advances. The loop,
+// the clock, the stopping and the verdict belong to the harness.
+#pragma once
+
+#include <concepts>
+#include <functional>
+#include <memory>
+
+#include "core/options.h"
+#include "core/registry.h"
+#include "optimizers/meter.h"
+
+namespace isoline {
+
+// The methods written here: fields are options, State is all that changes.
+template <class M>
+concept Stepper = requires(const M method, Meter& f, Vector& theta, typename M::State state) {
+  { method.init(f, theta) } -> std::same_as<typename M::State>;
+  { method.step(f, theta, state) } -> std::same_as<Status>;  // running unless it must stop
+};
+
+// A method that turns a gradient into a step and asks for nothing else; others can use it inside.
+template <class M>
+concept GradientRule = requires(const M rule, VectorRef g, Vector& theta, typename M::State state) {
+  { rule.init(Index{}) } -> std::same_as<typename M::State>;
+  { rule.update(g, theta, state) } -> std::same_as<void>;
+};
+
+// What the loop of the harness holds.
+class Optimizer {
+ public:
+  virtual ~Optimizer() = default;
+  virtual void start(Meter& f, const Vector& theta) = 0;
+  virtual Status step(Meter& f, Vector& theta) = 0;  // one iteration, or the whole solve
+  virtual bool reports_iterations() const { return false; }  // to the meter, by itself
+};
+
+// A gradient rule with its state, for the methods that use one inside.
+class Descent {
+ public:
+  virtual ~Descent() = default;
+  virtual void start(Index n) = 0;
+  virtual void update(VectorRef g, Vector& theta) = 0;
+};
+
+enum class Family { first_order, curvature, inversion, ceres, nlopt, nlopt_derivative_free };
+inline constexpr std::array<std::string_view, 6> kFamilyNames = {
+    "first-order", "curvature", "inversion", "ceres", "nlopt", "nlopt-derivative-free"};
+inline std::string_view name_of(Family family) {
+  return kFamilyNames[static_cast<std::size_t>(family)];
+}
+
+struct OptimizerEntry;
+using OptimizerRegistry = Registry<OptimizerEntry>;
+
+struct OptimizerEntry {
+  std::string name, title;
+  Family family = Family::first_order;
+  std::string formula;    // LaTeX of the update
+  std::string source;     // author, year, equation
+  std::string note = {};  // deviations and what a reader should know
+  OracleSet needs = {};
+  std::vector<std::string> privileges = {};  // what it sees that others do not, in words
+  // The path in y does not change when x is rescaled, componentwise and linearly.
+  bool is_input_scale_invariant = false;
+  Index most_unknowns = std::numeric_limits<Index>::max();  // above it the cell is inapplicable
+  OptionTable options = {};
+  int revision = 1;  // raised when results change
+  // Any further reason why this pair makes no sense; empty if it does.
+  std::function<std::string(const Json& options, const Problem&)> objection = {};
+  std::function<std::unique_ptr<Optimizer>(const Json& options, const OptimizerRegistry&)> make = {};
+  std::function<std::unique_ptr<Descent>(const Json& options)> make_descent = {};  // gradient rules
+};
+
+// Why this optimizer cannot treat this problem, in words; empty if it can.
+std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
+                             const Problem& problem);
+
+// A gradient rule from "adam[rate=1e-3]".
+std::unique_ptr<Descent> make_descent(const OptimizerRegistry& registry, const std::string& spec);
+
+// --- adaptors from the concepts to what the harness holds
+
+template <Stepper M>
+class Stepping final : public Optimizer {
+ public:
+  explicit Stepping(M method) : method_(std::move(method)) {}
+  void start(Meter& f, const Vector& theta) override { state_ = method_.init(f, theta); }
+  Status step(Meter& f, Vector& theta) override { return method_.step(f, theta, state_); }
+
+ private:
+  const M method_;
+  typename M::State state_{};
+};
+
+template <GradientRule R>
+class ByGradient final : public Optimizer {
+ public:
+  explicit ByGradient(const R& rule) : rule_(rule) {}
+  void start(Meter& f, const Vector&) override { state_ = rule_.init(f.unknowns()); }
+  Status step(Meter& f, Vector& theta) override {
+    f.linearize(theta, at_);
+    at_.gradient(gradient_);
+    rule_.update(gradient_, theta, state_);
+    return Status::running;
+  }
+
+ private:
+  const R rule_;
+  typename R::State state_{};
+  Linearization at_;
+  Vector gradient_;  // (n)
+};
+
+template <GradientRule R>
+class Descending final : public Descent {
+ public:
+  explicit Descending(const R& rule) : rule_(rule) {}
+  void start(Index n) override { state_ = rule_.init(n); }
+  void update(VectorRef g, Vector& theta) override { rule_.update(g, theta, state_); }
+
+ private:
+  const R rule_;
+  typename R::State state_{};
+};
+
+// An entry for a method that is a Stepper: its struct is its options.
+template <Stepper M>
+OptimizerEntry stepper_entry(OptimizerEntry entry) {
+  entry.options = option_table<M>();
+  entry.make = [](const Json& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
+    return std::make_unique<Stepping<M>>(read_options<M>(options));
+  };
+  return entry;
+}
+
+// An entry for a method that is a gradient rule.
+template <GradientRule R>
+OptimizerEntry rule_entry(OptimizerEntry entry) {
+  entry.options = option_table<R>();
+  entry.needs = {Oracle::forward, Oracle::pullback};
+  entry.make = [](const Json& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
+    return std::make_unique<ByGradient<R>>(read_options<R>(options));
+  };
+  entry.make_descent = [](const Json& options) -> std::unique_ptr<Descent> {
+    return std::make_unique<Descending<R>>(read_options<R>(options));
+  };
+  return entry;
+}
+
+void register_optimizers(OptimizerRegistry& registry);  // generated: one call a file
+
+}  // namespace isoline

@@ -1,0 +1,52 @@
+#include "problems/dense_physics.h"
+
+namespace isoline {
+
+void DensePhysics::second(VectorRef, VectorRef, BatchOut) const {
+  throw NotApplicable("the physics offers no second derivatives");
+}
+
+bool DensePhysics::invert(VectorRef, VectorRef, VectorOut) const { return false; }
+
+void DensePhysics::forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const {
+  for (Index b = 0; b < x.cols(); ++b) value(x.col(b), y.col(b));
+}
+
+const Matrix& DensePhysics::saved_jacobian(Workspace& w) const {
+  w.saved.resize(1);
+  Matrix& J = w.saved[0];
+  if (w.saved_is_current) return J;
+  J.setZero(outputs_, inputs_ * w.x.cols());
+  for (Index b = 0; b < w.x.cols(); ++b)
+    derivative(w.x.col(b), J.middleCols(b * inputs_, inputs_));
+  w.saved_is_current = true;
+  return J;
+}
+
+void DensePhysics::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
+  const Matrix& J = saved_jacobian(w);
+  for (Index b = 0; b < v.cols(); ++b)
+    Jv.col(b).noalias() = J.middleCols(b * inputs_, inputs_) * v.col(b);
+}
+
+void DensePhysics::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
+  const Matrix& J = saved_jacobian(w);
+  for (Index b = 0; b < u.cols(); ++b)
+    JTu.col(b).noalias() = J.middleCols(b * inputs_, inputs_).transpose() * u.col(b);
+}
+
+void DensePhysics::jacobian(BatchOut J, Workspace& w) const { J = saved_jacobian(w); }
+
+void DensePhysics::curvature(BatchRef u, BatchOut out, Workspace& w) const {
+  out.setZero();
+  for (Index b = 0; b < u.cols(); ++b)
+    second(w.x.col(b), u.col(b), out.middleCols(b * inputs_, inputs_));
+}
+
+Success DensePhysics::local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const {
+  Success success(y.cols());
+  for (Index b = 0; b < y.cols(); ++b) success[b] = invert(y.col(b), x0.col(b), x.col(b));
+  return success;
+}
+
+}  // namespace isoline

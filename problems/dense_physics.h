@@ -1,0 +1,33 @@
+// Physics given one sample at a time by formulas for P, its dense Jacobian and, where small, its
+// second derivatives: all that a textbook problem has to write. Products follow from the Jacobian.
+#pragma once
+
+#include "problems/physics.h"
+
+namespace isoline {
+
+class DensePhysics : public Physics {
+ public:
+  DensePhysics(Index inputs, Index outputs) : inputs_(inputs), outputs_(outputs) {}
+  Index inputs() const final { return inputs_; }
+  Index outputs() const final { return outputs_; }
+
+  virtual void value(VectorRef x, VectorOut y) const = 0;           // (k) -> (m)
+  virtual void derivative(VectorRef x, BatchOut J) const = 0;       // J (m, k), given as zeros
+  virtual void second(VectorRef x, VectorRef u, BatchOut H) const;  // H (k, k), given as zeros
+  virtual bool invert(VectorRef y, VectorRef x0, VectorOut x) const;
+
+  void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const final;
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const final;
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const final;
+  void jacobian(BatchOut J, Workspace& w) const final;
+  void curvature(BatchRef u, BatchOut out, Workspace& w) const final;
+  Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const final;
+
+ private:
+  const Matrix& saved_jacobian(Workspace& w) const;  // (m, k·B) at w.x, computed once a forward
+
+  Index inputs_, outputs_;
+};
+
+}  // namespace isoline

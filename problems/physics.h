@@ -1,0 +1,44 @@
+// A differentiable process P : x (k, B) -> y (m, B), given a context c (p, B), empty for most. One
+// sample a column. Const: what a forward pass leaves behind lives in the caller's Workspace, and the
+// products are taken at the x of the last forward, which the caller has put into w.x.
+#pragma once
+
+#include "core/array.h"
+#include "core/errors.h"
+#include "core/workspace.h"
+
+namespace isoline {
+
+// How far a local inverse can be trusted.
+enum class Inverse {
+  none,
+  exact,     // P(P⁻¹(y; x₀)) = y
+  damped,    // exact where the data carry evidence, held back elsewhere
+  estimate,  // an informed guess
+};
+
+class Physics {
+ public:
+  virtual ~Physics() = default;
+
+  virtual Index inputs() const = 0;   // k
+  virtual Index outputs() const = 0;  // m
+
+  virtual void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const = 0;
+  virtual void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const = 0;   // (k, B) -> (m, B)
+  virtual void pullback(BatchRef u, BatchOut JTu, Workspace& w) const = 0;     // (m, B) -> (k, B)
+
+  // J of each sample, side by side: (m, k·B). By default from the cheaper product.
+  virtual void jacobian(BatchOut J, Workspace& w) const;
+
+  // Σᵢ uᵢ ∇²Pᵢ of each sample, side by side: (k, k·B), u (m, B).
+  virtual bool has_curvature() const { return false; }
+  virtual void curvature(BatchRef u, BatchOut out, Workspace& w) const;
+
+  // The x nearest x0 with P(x) = y, for every sample that has one.
+  virtual Inverse inverse_kind() const { return Inverse::none; }
+  virtual Index inverse_price() const { return 1; }  // in forwards
+  virtual Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const;
+};
+
+}  // namespace isoline

@@ -1,0 +1,50 @@
+// P(x) = (x1, x2²), y* = 0, L = ‖y − y*‖² without ½: Holl et al. (2022), Fig. 1 and the comparison
+// notebook of the Physics-based Deep Learning book.
+#include <cmath>
+
+#include "problems/dense_physics.h"
+#include "problems/problem.h"
+
+namespace isoline {
+namespace {
+
+class Square final : public DensePhysics {
+ public:
+  Square() : DensePhysics(2, 2) {}
+  void value(VectorRef x, VectorOut y) const override { y << x[0], x[1] * x[1]; }
+  void derivative(VectorRef x, BatchOut J) const override {
+    J(0, 0) = 1;
+    J(1, 1) = 2 * x[1];
+  }
+  bool has_curvature() const override { return true; }
+  void second(VectorRef, VectorRef u, BatchOut H) const override { H(1, 1) = 2 * u[1]; }
+  Inverse inverse_kind() const override { return Inverse::exact; }
+  bool invert(VectorRef y, VectorRef x0, VectorOut x) const override {  // the root on x0's side
+    x << y[0], std::copysign(std::sqrt(y[1]), x0[1]);
+    return y[1] >= 0;
+  }
+};
+
+ProblemParts make_square(const NoOptions&, const Draw& draw) {
+  return {.physics = std::make_unique<Square>(),
+          .start = draw.start(Eigen::Vector2d(3, 3)),
+          .target = Vector::Zero(2),
+          .loss = std::make_unique<HalfSquared>(2),
+          .minimum = 0,
+          .truth = Vector::Zero(2),
+          .x_error = [](BatchRef x) { return x.norm(); },
+          .window = {{-0.3, 3.2, -0.1, 3.5}}};
+}
+
+}  // namespace
+
+void register_square(ProblemRegistry& registry) {
+  registry.add(problem_entry({.name = "square",
+                              .title = "One squared coordinate",
+                              .formula = R"(P(x) = (x_1,\; x_2^2),\quad L = \|P(x)\|^2)",
+                              .source = "Holl, Koltun, Thuerey (2022), Fig. 1",
+                              .note = "The loss has no factor ½, as in the published notebook."},
+                             make_square));
+}
+
+}  // namespace isoline
