@@ -30,7 +30,9 @@ double calibrate() {
 
 std::int64_t monotonic_nanoseconds() { return read_clock(CLOCK_MONOTONIC); }
 
-double processor_seconds() { return 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID)); }
+double processor_seconds() {
+  return 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID));
+}
 
 std::uint64_t ticks() {
 #if defined(__x86_64__)

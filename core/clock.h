@@ -7,7 +7,7 @@
 namespace isoline {
 
 std::uint64_t ticks();
-double seconds_per_tick();  // measured once, against the monotonic clock
+double seconds_per_tick();   // measured once, against the monotonic clock
 double processor_seconds();  // of this process, user and system
 std::int64_t monotonic_nanoseconds();
 
@@ -16,7 +16,7 @@ class Stopwatch {
  public:
   void resume();
   void pause();
-  double seconds() const;  // wall time so far
+  double seconds() const;                                  // wall time so far
   double processor_seconds() const { return processor_; }  // up to the last pause
 
  private:

@@ -16,7 +16,8 @@ struct SymmetricEigen {
   Matrix V;       // (n, n), one eigenvector a column
   Vector lambda;  // (n), ascending
 };
-bool symmetric_eigen(const Matrix& A, SymmetricEigen& out);  // A = V diag(λ) Vᵀ; false: no convergence
+bool symmetric_eigen(const Matrix& A,
+                     SymmetricEigen& out);  // A = V diag(λ) Vᵀ; false: no convergence
 
 // x = A⁻¹ b by LU with partial pivoting, A (n, n); false when A is exactly singular.
 bool solve_square(const Matrix& A, const Vector& b, Vector& x);

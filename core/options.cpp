@@ -63,8 +63,7 @@ class FieldParser {
   }
   [[noreturn]] void reject(const std::string& law, const std::string& nearest = "") const {
     const std::string got = given_.is_string() ? given_.get<std::string>() : given_.dump();
-    std::string text =
-        fmt::format("{}: {} must be {}, got {}", component_, field_.name, law, got);
+    std::string text = fmt::format("{}: {} must be {}, got {}", component_, field_.name, law, got);
     if (!nearest.empty()) text += fmt::format("; did you mean {}?", nearest);
     throw UsageError(text);
   }
@@ -75,10 +74,14 @@ class FieldParser {
 };
 
 Json standard_of(const OptionField& field) {
-  return std::visit([](const auto& value) -> Json {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Real>) return json_number(value);
-    else return value;
-  }, field.standard);
+  return std::visit(
+      [](const auto& value) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Real>)
+          return json_number(value);
+        else
+          return value;
+      },
+      field.standard);
 }
 
 std::string text_of(const Json& value) {

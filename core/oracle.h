@@ -20,8 +20,8 @@ enum class Oracle {
   truth,        // the x* that made y*: a privilege
 };
 inline constexpr std::array<std::string_view, 9> kOracleNames = {
-    "forward", "pullback", "pushforward", "jacobian", "hessian",
-    "curvature", "inverse", "network", "truth"};
+    "forward",   "pullback", "pushforward", "jacobian", "hessian",
+    "curvature", "inverse",  "network",     "truth"};
 inline constexpr std::size_t kOracles = kOracleNames.size();
 
 using OracleCounts = std::array<std::int64_t, kOracles>;

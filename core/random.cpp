@@ -16,8 +16,8 @@ std::uint64_t hash(std::string_view text, std::uint64_t state = 0xcbf29ce4842223
 
 }  // namespace
 
-RandomStream::RandomStream(std::uint64_t seed, std::string_view component,
-                           std::string_view purpose, std::uint64_t index)
+RandomStream::RandomStream(std::uint64_t seed, std::string_view component, std::string_view purpose,
+                           std::uint64_t index)
     : key_{seed, hash(purpose, hash("/", hash(component)))}, index_(index) {}
 
 std::uint64_t RandomStream::next() {

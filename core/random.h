@@ -16,10 +16,10 @@ class RandomStream {
   RandomStream(std::uint64_t seed, std::string_view component, std::string_view purpose,
                std::uint64_t index = 0);
 
-  Real uniform();                        // U[0, 1)
-  Real uniform(Real low, Real high);     // U[low, high)
-  Real normal();                         // N(0, 1), by Box and Muller
-  Vector normal_vector(Index n);         // (n) independent N(0, 1)
+  Real uniform();                     // U[0, 1)
+  Real uniform(Real low, Real high);  // U[low, high)
+  Real normal();                      // N(0, 1), by Box and Muller
+  Vector normal_vector(Index n);      // (n) independent N(0, 1)
   Vector uniform_vector(Index n, Real low, Real high);
 
  private:

@@ -41,7 +41,8 @@ Component component_from(const Json& json) {
 }
 
 Json to_json(const Budget& budget) {
-  Json json{{"iterations", budget.iterations}, {"target", json_number(budget.target)},
+  Json json{{"iterations", budget.iterations},
+            {"target", json_number(budget.target)},
             {"seconds", json_number(budget.seconds)}};
   const bool is_bounded = budget.work < std::numeric_limits<std::int64_t>::max();
   json["work"] = is_bounded ? Json(budget.work) : Json(nullptr);
@@ -167,7 +168,8 @@ Record parsed(const Json& json) {
   record.curve = curve_from(json.at("curve"));
   if (json.contains("hits")) record.hits = hits_from(json["hits"]);
   if (json.contains("trajectory"))
-    record.trajectory = {real_rows(json["trajectory"].at("x")), real_rows(json["trajectory"].at("y"))};
+    record.trajectory = {real_rows(json["trajectory"].at("x")),
+                         real_rows(json["trajectory"].at("y"))};
   json.at("privileges").get_to(record.privileges);
   record.is_nondeterministic = json.at("nondeterministic");
   record.repeat_wall_seconds = reals(json.at("repeat_wall_seconds"));

@@ -68,19 +68,19 @@ struct Record {
   Request request;
   Status status = Status::running;
   std::string message;
-  std::string claimed;                       // what the method said of its own success
-  std::optional<Real> minimum;               // f_L, where declared
+  std::string claimed;                                  // what the method said of its own success
+  std::optional<Real> minimum;                          // f_L, where declared
   std::map<std::string, std::optional<bool>> verified;  // by τ: "1e-1", "1e-3", "1e-6"
   OracleCounts counts{};
   OracleCounts prices{};
   Summary summary;
   Curve curve;
-  std::optional<Hits> hits;                  // where f_L is declared
+  std::optional<Hits> hits;  // where f_L is declared
   std::optional<Trajectory> trajectory;
   std::vector<std::string> privileges;
-  bool is_nondeterministic = false;          // ended by a clock or a kill
-  std::vector<Real> repeat_wall_seconds;     // one a run of this very cell and build, sorted
-  Json provenance = Json::object();          // version, commit, compiler, processor, libraries, …
+  bool is_nondeterministic = false;       // ended by a clock or a kill
+  std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
+  Json provenance = Json::object();       // version, commit, compiler, processor, libraries, …
 
   std::string file_name() const { return cell + "-" + build + ".json"; }
 };
@@ -101,6 +101,7 @@ inline constexpr const char* kPlanSchema = "isoline.plan/1";
 inline constexpr const char* kComponentSchema = "isoline.component/1";
 
 // τ of `verified`, by its name in the record.
-inline const std::map<std::string, Real> kVerified = {{"1e-1", 1e-1}, {"1e-3", 1e-3}, {"1e-6", 1e-6}};
+inline const std::map<std::string, Real> kVerified = {
+    {"1e-1", 1e-1}, {"1e-3", 1e-3}, {"1e-6", 1e-6}};
 
 }  // namespace isoline

@@ -133,7 +133,8 @@ double parse_duration(std::string_view text) {
       break;
     }
   const double seconds = unit * parse_number<double>(amount, text, "a time such as 10s, 2m or 1h");
-  require(seconds > 0 && std::isfinite(seconds), fmt::format("a time must be positive, got '{}'", text));
+  require(seconds > 0 && std::isfinite(seconds),
+          fmt::format("a time must be positive, got '{}'", text));
   return seconds;
 }
 

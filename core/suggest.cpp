@@ -44,7 +44,8 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
 std::string unknown_name(std::string_view what, std::string_view wrong,
                          const std::vector<std::string>& known) {
   const std::string nearest = nearest_name(wrong, known);
-  if (!nearest.empty()) return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong, nearest);
+  if (!nearest.empty())
+    return fmt::format("unknown {} '{}'; did you mean '{}'?", what, wrong, nearest);
   return fmt::format("unknown {} '{}'; known: {}", what, wrong, fmt::join(known, ", "));
 }
 

@@ -9,9 +9,9 @@
 namespace isoline {
 
 struct Workspace {
-  Matrix x;                   // (k, B) input of the last forward
-  Matrix context;             // (p, B) context of the last forward, empty for most
-  std::vector<Matrix> saved;  // whatever else the component keeps; its own business
+  Matrix x;                       // (k, B) input of the last forward
+  Matrix context;                 // (p, B) context of the last forward, empty for most
+  std::vector<Matrix> saved;      // whatever else the component keeps; its own business
   bool saved_is_current = false;  // whether `saved` belongs to x; false after each forward
 };
 

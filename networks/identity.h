@@ -11,12 +11,12 @@ class Identity final : public Network {
   Index parameters() const override { return start_.size(); }
   Index outputs() const override { return start_.size(); }
   Vector start(RandomStream&) const override { return start_; }
-  std::vector<Block> layout() const override {
-    return {{0, start_.size(), 1, Block::Kind::input}};
-  }
+  std::vector<Block> layout() const override { return {{0, start_.size(), 1, Block::Kind::input}}; }
   bool is_identity() const override { return true; }
 
-  void forward(VectorRef theta, BatchRef, BatchOut x, Workspace&) const override { x.col(0) = theta; }
+  void forward(VectorRef theta, BatchRef, BatchOut x, Workspace&) const override {
+    x.col(0) = theta;
+  }
   void pushforward(VectorRef v, BatchOut Jv, Workspace&) const override { Jv.col(0) = v; }
   void pullback(BatchRef u, VectorOut JTu, Workspace&) const override { JTu = u.col(0); }
 

@@ -19,7 +19,7 @@ void fields(GradientDescent& o, auto& field) { field("rate", o.rate, above(0), "
 void register_gd(OptimizerRegistry& registry) {
   registry.add(rule_entry<GradientDescent>({.name = "gd",
                                             .title = "Gradient descent",
-                                            .formula = R"(\theta \leftarrow \theta - \eta \nabla L)",
+                                            .formula = "θ ← θ − η ∇L",
                                             .source = "Cauchy (1847)"}));
 }
 

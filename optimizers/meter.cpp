@@ -124,9 +124,9 @@ Real Meter::physics_misfit(BatchRef y, BatchRef x, BatchOut gradient) {
 }
 
 void Meter::refuse(Oracle oracle) const {
-  throw std::logic_error(fmt::format(
-      "the method asked for the oracle '{}', which it does not declare that it needs",
-      name_of(oracle)));
+  throw std::logic_error(
+      fmt::format("the method asked for the oracle '{}', which it does not declare that it needs",
+                  name_of(oracle)));
 }
 
 void Meter::claim(std::string_view words) { copy_text(words, trace_.claimed); }

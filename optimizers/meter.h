@@ -84,7 +84,7 @@ class Meter {
     if (loss < best_loss_) best_loss_ = loss;
     if (loss <= next_target_) reach(loss);
   }
-  void reach(Real loss);        // records the targets that `loss` meets
+  void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   void keep_point();
   Status judge(VectorRef theta);

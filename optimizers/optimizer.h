@@ -31,7 +31,7 @@ class Optimizer {
  public:
   virtual ~Optimizer() = default;
   virtual void start(Meter& f, const Vector& theta) = 0;
-  virtual Status step(Meter& f, Vector& theta) = 0;  // one iteration, or the whole solve
+  virtual Status step(Meter& f, Vector& theta) = 0;          // one iteration, or the whole solve
   virtual bool reports_iterations() const { return false; }  // to the meter, by itself
 };
 
@@ -56,7 +56,7 @@ using OptimizerRegistry = Registry<OptimizerEntry>;
 struct OptimizerEntry {
   std::string name, title;
   Family family = Family::first_order;
-  std::string formula;    // LaTeX of the update
+  std::string formula;    // of the update, plain text with the mathematical letters of Unicode
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know
   OracleSet needs = {};
@@ -68,7 +68,8 @@ struct OptimizerEntry {
   int revision = 1;  // raised when results change
   // Any further reason why this pair makes no sense; empty if it does.
   std::function<std::string(const Json& options, const Problem&)> objection = {};
-  std::function<std::unique_ptr<Optimizer>(const Json& options, const OptimizerRegistry&)> make = {};
+  std::function<std::unique_ptr<Optimizer>(const Json& options, const OptimizerRegistry&)> make =
+      {};
   std::function<std::unique_ptr<Descent>(const Json& options)> make_descent = {};  // gradient rules
 };
 

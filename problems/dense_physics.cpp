@@ -8,7 +8,7 @@ void DensePhysics::second(VectorRef, VectorRef, BatchOut) const {
 
 bool DensePhysics::invert(VectorRef, VectorRef, VectorOut) const { return false; }
 
-void DensePhysics::forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const {
+void DensePhysics::forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const {
   for (Index b = 0; b < x.cols(); ++b) value(x.col(b), y.col(b));
 }
 
@@ -17,8 +17,7 @@ const Matrix& DensePhysics::saved_jacobian(Workspace& w) const {
   Matrix& J = w.saved[0];
   if (w.saved_is_current) return J;
   J.setZero(outputs_, inputs_ * w.x.cols());
-  for (Index b = 0; b < w.x.cols(); ++b)
-    derivative(w.x.col(b), J.middleCols(b * inputs_, inputs_));
+  for (Index b = 0; b < w.x.cols(); ++b) derivative(w.x.col(b), J.middleCols(b * inputs_, inputs_));
   w.saved_is_current = true;
   return J;
 }

@@ -1,6 +1,6 @@
 // A differentiable process P : x (k, B) -> y (m, B), given a context c (p, B), empty for most. One
-// sample a column. Const: what a forward pass leaves behind lives in the caller's Workspace, and the
-// products are taken at the x of the last forward, which the caller has put into w.x.
+// sample a column. Const: what a forward pass leaves behind lives in the caller's Workspace, and
+// the products are taken at the x of the last forward, which the caller has put into w.x.
 #pragma once
 
 #include "core/array.h"
@@ -25,8 +25,8 @@ class Physics {
   virtual Index outputs() const = 0;  // m
 
   virtual void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const = 0;
-  virtual void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const = 0;   // (k, B) -> (m, B)
-  virtual void pullback(BatchRef u, BatchOut JTu, Workspace& w) const = 0;     // (m, B) -> (k, B)
+  virtual void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const = 0;  // (k, B) -> (m, B)
+  virtual void pullback(BatchRef u, BatchOut JTu, Workspace& w) const = 0;    // (m, B) -> (k, B)
 
   // J of each sample, side by side: (m, k·B). By default from the cheaper product.
   virtual void jacobian(BatchOut J, Workspace& w) const;

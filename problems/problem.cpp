@@ -15,7 +15,9 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   require(parts_.network->parameters() == unknowns(), "the start does not fit the network");
 }
 
-Real Problem::x_error(BatchRef x) const { return parts_.x_error ? parts_.x_error(x) : std::nan(""); }
+Real Problem::x_error(BatchRef x) const {
+  return parts_.x_error ? parts_.x_error(x) : std::nan("");
+}
 
 OracleSet Problem::offers() const {
   OracleSet offered{Oracle::forward, Oracle::pullback, Oracle::pushforward, Oracle::jacobian,

@@ -47,11 +47,11 @@ class Problem {
  public:
   explicit Problem(ProblemParts parts);
 
-  Index unknowns() const { return parts_.start.size(); }            // n
-  Index inputs() const { return parts_.physics->inputs(); }         // k
-  Index outputs() const { return parts_.physics->outputs(); }       // m
-  Index samples() const { return parts_.target.cols(); }            // B
-  Index residuals() const { return parts_.target.size(); }          // m·B, rows of J
+  Index unknowns() const { return parts_.start.size(); }       // n
+  Index inputs() const { return parts_.physics->inputs(); }    // k
+  Index outputs() const { return parts_.physics->outputs(); }  // m
+  Index samples() const { return parts_.target.cols(); }       // B
+  Index residuals() const { return parts_.target.size(); }     // m·B, rows of J
   const Vector& start() const { return parts_.start; }
   const Matrix& target() const { return parts_.target; }
   std::optional<Real> minimum() const { return parts_.minimum; }
@@ -69,14 +69,14 @@ class Problem {
   // The physics again at a given x, network left out: for inverting the physics alone.
   Real physics_misfit(BatchRef y, BatchRef x, Point& scratch, BatchOut gradient) const;
 
-  void cotangent(const Point& at, BatchOut g) const;              // g = ∂L/∂y, (m, B)
-  void residual(const Point& at, VectorOut r) const;              // r = (y − y*)/√B, (m·B)
-  void pullback(BatchRef w, VectorOut out, Point& at) const;      // Jᵀ w, (m, B) -> (n)
-  void pushforward(VectorRef v, BatchOut out, Point& at) const;   // J v, (n) -> (m, B)
+  void cotangent(const Point& at, BatchOut g) const;                  // g = ∂L/∂y, (m, B)
+  void residual(const Point& at, VectorOut r) const;                  // r = (y − y*)/√B, (m·B)
+  void pullback(BatchRef w, VectorOut out, Point& at) const;          // Jᵀ w, (m, B) -> (n)
+  void pushforward(VectorRef v, BatchOut out, Point& at) const;       // J v, (n) -> (m, B)
   void network_pullback(BatchRef w, VectorOut out, Point& at) const;  // (k, B) -> (n)
-  void jacobian(Matrix& J, Point& at) const;                      // (m·B, n)
-  void hessian(Matrix& H, Point& at) const;                       // ∇²L, (n, n), identity network
-  void curvature(BatchRef w, BatchOut out, Point& at) const;      // (k, k·B)
+  void jacobian(Matrix& J, Point& at) const;                          // (m·B, n)
+  void hessian(Matrix& H, Point& at) const;                   // ∇²L, (n, n), identity network
+  void curvature(BatchRef w, BatchOut out, Point& at) const;  // (k, k·B)
   Success local_inverse(BatchRef y, BatchOut x, Point& at) const;
 
  private:
@@ -101,9 +101,9 @@ class Draw {
 
 struct ProblemEntry {
   std::string name, title;
-  std::string formula;  // LaTeX
-  std::string source;   // author, year, equation
-  std::string note = {};    // deviations and what a reader should know
+  std::string formula;    // plain text with the mathematical letters of Unicode
+  std::string source;     // author, year, equation
+  std::string note = {};  // deviations and what a reader should know
   OptionTable options = {};
   int revision = 1;  // raised when results change
   std::function<Problem(const Json& complete_options, const Draw&)> make = {};

@@ -41,7 +41,7 @@ ProblemParts make_square(const NoOptions&, const Draw& draw) {
 void register_square(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "square",
                               .title = "One squared coordinate",
-                              .formula = R"(P(x) = (x_1,\; x_2^2),\quad L = \|P(x)\|^2)",
+                              .formula = "P(x) = (x₁, x₂²),  L = ‖P(x)‖²",
                               .source = "Holl, Koltun, Thuerey (2022), Fig. 1",
                               .note = "The loss has no factor ½, as in the published notebook."},
                              make_square));
