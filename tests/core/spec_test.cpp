@@ -1,0 +1,58 @@
+#include "core/spec.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+
+namespace isoline {
+namespace {
+
+TEST(Spec, NamesAndOptionsAreSplitAtDepthZero) {
+  const auto specs = parse_specs("sip[network-optimizer=adam[rate=1e-3,beta1=0.8],step=1],gd");
+  ASSERT_EQ(specs.size(), 2U);
+  EXPECT_EQ(specs[0].name, "sip");
+  EXPECT_EQ(options_of(specs[0]).at("network-optimizer"), "adam[rate=1e-3,beta1=0.8]");
+  EXPECT_EQ(options_of(specs[0]).at("step"), "1");
+  EXPECT_EQ(specs[1].name, "gd");
+}
+
+TEST(Spec, BarsSweep) {
+  const auto specs = parse_specs("sine[xi=1|3|10,phi=0|45]");
+  ASSERT_EQ(specs.size(), 6U);
+  EXPECT_EQ(options_of(specs[5]).at("xi"), "10");
+  EXPECT_EQ(options_of(specs[5]).at("phi"), "45");
+}
+
+TEST(Spec, NestedBarsBelongToTheInnerSpec) {
+  const auto specs = parse_specs("sip[network-optimizer=adam[rate=1|2]]");
+  ASSERT_EQ(specs.size(), 1U);
+  EXPECT_EQ(options_of(specs[0]).at("network-optimizer"), "adam[rate=1|2]");
+}
+
+TEST(Spec, WhatDoesNotParseIsAUsageError) {
+  for (const char* wrong : {"sine[", "sine]", "sine[xi]", "[xi=1]", "sine[xi=1]x", "a,,b", ""})
+    EXPECT_THROW(parse_specs(wrong), UsageError) << wrong;
+}
+
+TEST(Seeds, CountsRangesAndSingles) {
+  EXPECT_EQ(parse_seeds("3"), (std::vector<std::uint64_t>{0, 1, 2}));
+  EXPECT_EQ(parse_seeds("100..102"), (std::vector<std::uint64_t>{100, 101, 102}));
+  EXPECT_EQ(parse_seeds("=5"), (std::vector<std::uint64_t>{5}));
+  for (const char* wrong : {"0", "x", "5..2", "-1", "1.5", "0..99999999"})
+    EXPECT_THROW(parse_seeds(wrong), UsageError) << wrong;
+}
+
+TEST(Duration, UnitsAreRead) {
+  EXPECT_EQ(parse_duration("10s"), 10);
+  EXPECT_EQ(parse_duration("2m"), 120);
+  EXPECT_EQ(parse_duration("1.5h"), 5400);
+  EXPECT_EQ(parse_duration("250ms"), 0.25);
+  EXPECT_EQ(parse_duration("3"), 3);
+  for (const char* wrong : {"", "s", "-1s", "0", "1x", "inf"})
+    EXPECT_THROW(parse_duration(wrong), UsageError) << wrong;
+}
+
+}  // namespace
+}  // namespace isoline
