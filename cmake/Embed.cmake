@@ -24,3 +24,30 @@ std::string_view embedded_@name@() {
   set_source_files_properties(${stem}.S PROPERTIES OBJECT_DEPENDS ${file})
   target_sources(${target} PRIVATE ${stem}.S ${stem}.cpp)
 endfunction()
+
+# isoline_embed_folder(target function folder): every *.json of `folder`, by name, as
+# `const std::map<std::string, std::string_view>& <function>()`.
+function(isoline_embed_folder target function folder)
+  file(GLOB files CONFIGURE_DEPENDS ${folder}/*.json)
+  foreach(file IN LISTS files)
+    cmake_path(GET file STEM stem)
+    string(MAKE_C_IDENTIFIER "${function}_${stem}" name)
+    isoline_embed(${target} ${name} ${file})
+    string(APPEND declarations "std::string_view embedded_${name}();\n")
+    string(APPEND entries "      {\"${stem}\", embedded_${name}()},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp @ONLY CONTENT [[
+#include <map>
+#include <string>
+#include <string_view>
+namespace isoline {
+@declarations@const std::map<std::string, std::string_view>& @function@();
+const std::map<std::string, std::string_view>& @function@() {
+  static const std::map<std::string, std::string_view> all{
+@entries@  };
+  return all;
+}
+}  // namespace isoline
+]])
+  target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+endfunction()

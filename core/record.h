@@ -63,6 +63,10 @@ struct Summary {
   std::int64_t peak_memory_bytes = 0;
 };
 
+inline std::string record_file_name(const std::string& cell, const std::string& build) {
+  return cell + "-" + build + ".json";
+}
+
 struct Record {
   std::string cell, build;  // digests
   Request request;
@@ -82,7 +86,7 @@ struct Record {
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
   Json provenance = Json::object();       // version, commit, compiler, processor, libraries, …
 
-  std::string file_name() const { return cell + "-" + build + ".json"; }
+  std::string file_name() const { return record_file_name(cell, build); }
 };
 
 std::string cell_digest(const Request& request);

@@ -41,9 +41,12 @@ struct Trace {
   TracePoint point[kPoints];
   TraceHit hit[kHits];
   double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
+  int path_inputs = 0, path_outputs = 0;  // sizes of x and y in the path; 0: not kept
 
   // The last state known, kept up to date at every iteration; the final verdict when finished.
   TracePoint last;
+  OracleCounts prices{};
+  double minimum = std::numeric_limits<double>::quiet_NaN();  // f_L; nan where undeclared
   double start_loss = std::numeric_limits<double>::quiet_NaN();
   double best_loss = std::numeric_limits<double>::infinity();
   double start_x_error = std::numeric_limits<double>::quiet_NaN();

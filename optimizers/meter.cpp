@@ -100,7 +100,14 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
       best_loss_(kInfinity),
       next_target_(kNone),
       target_loss_(kNone),
-      stall_loss_(std::numeric_limits<Real>::max()) {}
+      stall_loss_(std::numeric_limits<Real>::max()) {
+  trace_.prices = prices_;
+  trace_.minimum = problem.minimum().value_or(std::nan(""));
+  const bool is_small = problem.inputs() <= Trace::kInputs &&
+                        problem.residuals() <= Trace::kOutputs && problem.samples() == 1;
+  trace_.path_inputs = is_small ? static_cast<int>(problem.inputs()) : 0;
+  trace_.path_outputs = is_small ? static_cast<int>(problem.residuals()) : 0;
+}
 
 void Meter::linearize(VectorRef theta, Linearization& at) {
   charge(Oracle::forward);
@@ -205,8 +212,7 @@ void Meter::keep_point() {
   const int index = trace_.points;
   if (index >= Trace::kPoints) return;
   trace_.point[index] = trace_.last;
-  if (problem_.inputs() <= Trace::kInputs && problem_.residuals() <= Trace::kOutputs &&
-      problem_.samples() == 1) {
+  if (trace_.path_inputs > 0) {
     std::copy_n(judged_.x.data(), judged_.x.size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }

@@ -70,8 +70,14 @@ Real Problem::physics_misfit(BatchRef y, BatchRef x, Point& scratch, BatchOut gr
   return 0.5 * scratch.y.squaredNorm();
 }
 
+Real Problem::loss_of(BatchRef y) const { return parts_.loss->value(y, parts_.target); }
+
 void Problem::cotangent(const Point& at, BatchOut g) const {
   parts_.loss->cotangent(at.y, parts_.target, g);
+}
+
+void Problem::loss_curvature(const Point& at, BatchRef dy, BatchOut dg) const {
+  parts_.loss->curvature(at.y, parts_.target, dy, dg);
 }
 
 void Problem::residual(const Point& at, VectorOut r) const {

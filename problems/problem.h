@@ -69,7 +69,9 @@ class Problem {
   // The physics again at a given x, network left out: for inverting the physics alone.
   Real physics_misfit(BatchRef y, BatchRef x, Point& scratch, BatchOut gradient) const;
 
-  void cotangent(const Point& at, BatchOut g) const;                  // g = ∂L/∂y, (m, B)
+  Real loss_of(BatchRef y) const;                                        // L at any y, (m, B)
+  void cotangent(const Point& at, BatchOut g) const;                     // g = ∂L/∂y, (m, B)
+  void loss_curvature(const Point& at, BatchRef dy, BatchOut dg) const;  // (∂²L/∂y²) dy
   void residual(const Point& at, VectorOut r) const;                  // r = (y − y*)/√B, (m·B)
   void pullback(BatchRef w, VectorOut out, Point& at) const;          // Jᵀ w, (m, B) -> (n)
   void pushforward(VectorRef v, BatchOut out, Point& at) const;       // J v, (n) -> (m, B)

@@ -1,0 +1,154 @@
+#include "benchmarks/execute.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <new>
+
+#include "core/provenance.h"
+
+namespace isoline {
+namespace {
+
+void conclude(Trace& trace, Status status, std::string_view message) {
+  trace.status = status;
+  const std::size_t size = std::min(message.size(), std::size_t{Trace::kText - 1});
+  std::memcpy(trace.message, message.data(), size);
+  trace.message[size] = '\0';
+}
+
+void run(const Catalog& catalog, const Request& request, Trace& trace) {
+  const Problem problem = make_problem(catalog, request.problem, request.seed);
+  const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
+  const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
+  if (!reason.empty()) throw NotApplicable(reason);
+  const auto method = entry.make(request.optimizer.options, catalog.optimizers);
+  Meter meter(problem, request.budget, entry.needs, trace);
+  drive(*method, meter, problem.start());
+}
+
+Curve curve_of(const Trace& trace) {
+  Curve curve;
+  const int points = trace.points;
+  for (int i = 0; i < points; ++i) {
+    const TracePoint& point = trace.point[i];
+    curve.iteration.push_back(point.iteration);
+    curve.work.push_back(point.work);
+    curve.wall_seconds.push_back(point.wall_seconds);
+    curve.processor_seconds.push_back(point.processor_seconds);
+    curve.loss.push_back(point.loss);
+    curve.x_error.push_back(point.x_error);
+    curve.gradient_norm.push_back(point.gradient_norm);
+    curve.step_norm.push_back(point.step_norm);
+  }
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    std::vector<std::int64_t> column;
+    for (int i = 0; i < points; ++i) column.push_back(trace.point[i].counts[kind]);
+    if (!column.empty() && column.back() > 0)
+      curve.counts[std::string(kOracleNames[kind])] = column;
+  }
+  return curve;
+}
+
+Hits hits_of(const Trace& trace) {
+  Hits hits;
+  for (int j = 0; j < Trace::kHits; ++j) {
+    const TraceHit& hit = trace.hit[j];
+    const bool is_met = hit.iteration >= 0;
+    hits.target.push_back(std::pow(10.0, -j / 5.0));
+    hits.iteration.push_back(hit.iteration);
+    hits.work.push_back(is_met ? hit.work : -1);
+    hits.forwards.push_back(is_met ? hit.forwards : -1);
+    hits.wall_seconds.push_back(is_met ? hit.wall_seconds : std::nan(""));
+  }
+  return hits;
+}
+
+Trajectory trajectory_of(const Trace& trace) {
+  Trajectory path;
+  const int points = trace.points;
+  for (int i = 0; i < points; ++i) {
+    path.x.emplace_back(trace.path_x[i], trace.path_x[i] + trace.path_inputs);
+    path.y.emplace_back(trace.path_y[i], trace.path_y[i] + trace.path_outputs);
+  }
+  return path;
+}
+
+Summary summary_of(const Trace& trace) {
+  const TracePoint& last = trace.last;
+  return {.iterations = last.iteration,
+          .work = last.work,
+          .rejected_steps = trace.rejected_steps,
+          .start_loss = trace.start_loss,
+          .loss = trace.points > 0 ? last.loss : std::nan(""),
+          .best_loss = trace.best_loss,
+          .start_x_error = trace.start_x_error,
+          .x_error = trace.points > 0 ? last.x_error : std::nan(""),
+          .gradient_norm = trace.points > 0 ? last.gradient_norm : std::nan(""),
+          .wall_seconds = last.wall_seconds,
+          .processor_seconds = last.processor_seconds,
+          .peak_memory_bytes = trace.peak_memory_bytes};
+}
+
+// f ≤ f_L + τ (f₀ − f_L) at the returned point; a run that broke off returned none.
+std::optional<bool> is_verified(const Trace& trace, Real tau) {
+  if (std::isnan(trace.minimum)) return std::nullopt;
+  if (is_failure(trace.status) || trace.points == 0) return false;
+  return trace.last.loss <= trace.minimum + tau * (trace.start_loss - trace.minimum);
+}
+
+}  // namespace
+
+void drive(Optimizer& method, Meter& meter, Vector theta) {
+  Status verdict = meter.begin(theta);
+  if (verdict == Status::running) method.start(meter, theta);
+  while (verdict == Status::running) {
+    verdict = method.step(meter, theta);
+    if (method.reports_iterations()) break;
+    const Status judged = meter.iterate(theta);
+    if (judged != Status::running) verdict = judged;
+  }
+  meter.finish(theta, verdict);
+}
+
+void execute(const Catalog& catalog, const Request& request, Trace& trace) {
+  try {
+    run(catalog, request, trace);
+  } catch (const NotApplicable& reason) {
+    conclude(trace, Status::inapplicable, reason.what());
+  } catch (const std::bad_alloc&) {
+    conclude(trace, Status::memory, "out of its memory limit");
+  } catch (const std::exception& error) {
+    conclude(trace, Status::failed, error.what());
+  } catch (...) {
+    conclude(trace, Status::failed, "threw something that is no std::exception");
+  }
+}
+
+Record record_of(const Catalog& catalog, const Request& request, const Trace& trace) {
+  Record record;
+  record.request = request;
+  record.cell = cell_digest(request);
+  record.build = build_digest(request.problem.revision, request.optimizer.revision);
+  record.status = trace.status;
+  record.message = trace.message;
+  record.claimed = trace.claimed;
+  if (!std::isnan(trace.minimum)) record.minimum = trace.minimum;
+  for (const auto& [name, tau] : kVerified) record.verified[name] = is_verified(trace, tau);
+  record.counts = trace.last.counts;
+  record.prices = trace.prices;
+  record.summary = summary_of(trace);
+  record.curve = curve_of(trace);
+  if (record.minimum) record.hits = hits_of(trace);
+  if (trace.path_inputs > 0) record.trajectory = trajectory_of(trace);
+  record.privileges = catalog.optimizers.at(request.optimizer.name).privileges;
+  record.is_nondeterministic = trace.stopped_by_clock || trace.status == Status::timeout ||
+                               trace.status == Status::interrupted ||
+                               trace.status == Status::memory;
+  if (trace.is_finished) record.repeat_wall_seconds = {trace.last.wall_seconds};
+  record.provenance = provenance();
+  return record;
+}
+
+}  // namespace isoline

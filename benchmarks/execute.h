@@ -1,0 +1,20 @@
+// One run, in this process: the loop that every method runs in.
+#pragma once
+
+#include "benchmarks/catalog.h"
+#include "core/record.h"
+#include "core/trace.h"
+
+namespace isoline {
+
+// Starts, steps and judges the method until it is done; the meter writes the trace.
+void drive(Optimizer& method, Meter& meter, Vector theta);
+
+// Makes the components of the request and drives them. The verdict is in the trace, whatever
+// happens: an exception ends as `failed`, `memory` or `inapplicable`.
+void execute(const Catalog& catalog, const Request& request, Trace& trace);
+
+// The record of a run from what it left behind.
+Record record_of(const Catalog& catalog, const Request& request, const Trace& trace);
+
+}  // namespace isoline

@@ -1,0 +1,92 @@
+#include "benchmarks/sheets.h"
+
+#include <algorithm>
+
+namespace isoline {
+namespace {
+
+constexpr Index kGrid = 81;   // points a side of a landscape
+constexpr Index kSmall = 16;  // largest target and truth that a sheet shows
+constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate"};
+
+std::vector<std::string> names_of(OracleSet oracles) {
+  std::vector<std::string> names;
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (oracles.contains(static_cast<Oracle>(kind))) names.emplace_back(kOracleNames[kind]);
+  return names;
+}
+
+Real grid_point(Real low, Real high, Index i) {
+  return low + (high - low) * static_cast<Real>(i) / static_cast<Real>(kGrid - 1);
+}
+
+std::vector<Real> small(const Matrix& values) {
+  if (values.size() > kSmall) return {};
+  return {values.data(), values.data() + values.size()};
+}
+
+// L over the problem's window in x, and over the box in y that the window maps into.
+void draw_landscapes(const Problem& problem, Sheet& sheet) {
+  Landscape in_x{.window = *problem.window(), .loss = Matrix(kGrid, kGrid)};
+  const auto& [x1_low, x1_high, x2_low, x2_high] = in_x.window;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
+  Eigen::Vector2d high = -low;
+  Point point;
+  for (Index j = 0; j < kGrid; ++j)
+    for (Index i = 0; i < kGrid; ++i) {
+      const Eigen::Vector2d x(grid_point(x1_low, x1_high, i), grid_point(x2_low, x2_high, j));
+      problem.forward(x, point);
+      in_x.loss(i, j) = point.loss;
+      if (problem.outputs() != 2) continue;
+      low = low.cwiseMin(point.y.col(0));
+      high = high.cwiseMax(point.y.col(0));
+    }
+  sheet.landscape_x = in_x;
+  if (problem.outputs() != 2) return;
+  Landscape in_y{.window = {low[0], high[0], low[1], high[1]}, .loss = Matrix(kGrid, kGrid)};
+  for (Index j = 0; j < kGrid; ++j)
+    for (Index i = 0; i < kGrid; ++i)
+      in_y.loss(i, j) = problem.loss_of(
+          Eigen::Vector2d(grid_point(low[0], high[0], i), grid_point(low[1], high[1], j)));
+  sheet.landscape_y = in_y;
+}
+
+}  // namespace
+
+Sheet problem_sheet(const Catalog& catalog, const Component& component) {
+  const ProblemEntry& entry = catalog.problems.at(component.name);
+  const Problem problem = make_problem(catalog, component, 0);
+  Sheet sheet{.kind = "problem",
+              .name = entry.name,
+              .spec = component.spec,
+              .title = entry.title,
+              .formula = entry.formula,
+              .source = entry.source,
+              .note = entry.note,
+              .options_text = describe_options(entry.options).dump(),
+              .oracles = names_of(problem.offers()),
+              .inverse = kInverseNames[static_cast<int>(problem.inverse_kind())],
+              .unknowns = problem.unknowns(),
+              .residuals = problem.residuals(),
+              .target = small(problem.target())};
+  if (problem.truth()) sheet.truth = small(*problem.truth());
+  if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
+  return sheet;
+}
+
+Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
+  const OptimizerEntry& entry = catalog.optimizers.at(component.name);
+  return {.kind = "optimizer",
+          .name = entry.name,
+          .spec = component.spec,
+          .title = entry.title,
+          .formula = entry.formula,
+          .source = entry.source,
+          .note = entry.note,
+          .options_text = describe_options(entry.options).dump(),
+          .oracles = names_of(entry.needs),
+          .privileges = entry.privileges,
+          .family = std::string(name_of(entry.family))};
+}
+
+}  // namespace isoline

@@ -1,0 +1,72 @@
+#include "benchmarks/store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+#include "core/json.h"
+#include "core/provenance.h"
+
+namespace isoline {
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path run_path(const fs::path& folder, const std::string& file_name) {
+  return folder / "runs" / file_name;
+}
+
+}  // namespace
+
+Store::Store(fs::path folder) : folder_(std::move(folder)) {
+  for (const char* part : {"runs", "components"}) {
+    std::error_code error;
+    fs::create_directories(folder_ / part, error);
+    require(!error,
+            fmt::format("cannot create {}: {}", (folder_ / part).string(), error.message()));
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(folder_))
+    if (entry.path().extension() == ".tmp") fs::remove(entry.path());  // left by a kill
+}
+
+void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells) {
+  Plan plan;
+  const fs::path path = folder_ / "plan.json";
+  if (fs::exists(path)) plan = plan_from_json(read_json(path));
+  if (std::ranges::find(plan.suites, suite) == plan.suites.end()) plan.suites.push_back(suite);
+  std::set<std::string> known;
+  for (const PlannedCell& cell : plan.cells) known.insert(cell.cell);
+  for (const PlannedCell& cell : cells)
+    if (known.insert(cell.cell).second) plan.cells.push_back(cell);
+  write_text(path, to_json(plan).dump() + "\n");
+}
+
+std::optional<Record> Store::find_in(const fs::path& folder, const Request& request) {
+  const std::string build = build_digest(request.problem.revision, request.optimizer.revision);
+  const fs::path path = run_path(folder, record_file_name(cell_digest(request), build));
+  if (!fs::exists(path)) return std::nullopt;
+  try {
+    Record record = record_from_json(read_json(path));
+    if (record.status == Status::interrupted) return std::nullopt;
+    return record;
+  } catch (const UsageError&) {
+    return std::nullopt;  // damaged: the cell is run again and the file replaced
+  }
+}
+
+void Store::write(Record record, const std::optional<Record>& earlier) {
+  if (earlier) {
+    auto& times = record.repeat_wall_seconds;
+    times.insert(times.end(), earlier->repeat_wall_seconds.begin(),
+                 earlier->repeat_wall_seconds.end());
+    std::ranges::sort(times);
+  }
+  write_text(run_path(folder_, record.file_name()), to_json(record).dump() + "\n");
+}
+
+void Store::write(const Sheet& sheet) {
+  write_text(folder_ / "components" / sheet.file_name(), to_json(sheet).dump() + "\n");
+}
+
+}  // namespace isoline

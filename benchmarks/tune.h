@@ -1,0 +1,40 @@
+// Chooses one option of each pair of problem and optimizer over a grid, with an equal budget for
+// all and on seeds of their own, and keeps the whole grid beside the winner.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/runner.h"
+
+namespace isoline {
+
+struct TuningGrid {
+  std::string option = "rate";
+  std::vector<Real> values;  // in `unit`
+  // "one", or "cauchy": ‖∇L‖²/‖J∇L‖² at the problem's start, the natural unit of a step along ∇L.
+  std::string unit = "one";
+};
+
+// "rate=1e-4..1e-1x4": four values from 1e-4 to 1e-1, evenly on a logarithmic axis.
+TuningGrid parse_grid(const std::string& text, const std::string& unit);
+
+// Every problem with every optimizer at every value and seed.
+struct TuningPlan {
+  std::vector<Component> problems;
+  std::vector<std::string> optimizers;  // names
+  TuningGrid grid;
+  std::vector<std::uint64_t> seeds;
+  Budget budget;
+};
+
+struct TuningResult {
+  Json rows;  // of a table isoline.rates/1
+  Outcome outcome;
+};
+
+// The score of a value: the median work to τ = 1e-6, then the median final loss; less is better.
+TuningResult tune(const Catalog& catalog, const TuningPlan& plan, Store& store,
+                  const RunOptions& options);
+
+}  // namespace isoline

@@ -1,0 +1,27 @@
+#include "core/schema.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+namespace isoline {
+
+std::vector<std::string> schema_violations(const Json& document, const Json& schema) {
+  using Adapter = valijson::adapters::NlohmannJsonAdapter;
+  valijson::Schema parsed;
+  valijson::SchemaParser().populateSchema(Adapter(schema), parsed);
+  valijson::ValidationResults results;
+  valijson::Validator().validate(parsed, Adapter(document), &results);
+  std::vector<std::string> violations;
+  for (valijson::ValidationResults::Error error; results.popError(error);)
+    violations.push_back(fmt::format("{}: {}", fmt::join(error.context, ""), error.description));
+  return violations;
+}
+
+}  // namespace isoline

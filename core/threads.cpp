@@ -1,0 +1,39 @@
+#include "core/threads.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+extern "C" void openblas_set_num_threads(int threads);
+
+namespace isoline {
+namespace {
+
+constexpr std::pair<const char*, const char*> kEnvironment[] = {
+    {"OPENBLAS_NUM_THREADS", "1"},
+    {"OMP_NUM_THREADS", "1"},
+#ifdef ISOLINE_PORTABLE  // the same kernels on every machine
+    {"OPENBLAS_CORETYPE", "Haswell"},
+    {"ONEDNN_MAX_CPU_ISA", "AVX2"},
+#endif
+};
+
+}  // namespace
+
+void start_single_threaded(char** arguments) {
+  bool is_set = true;
+  for (const auto& [variable, wanted] : kEnvironment) {
+    const char* value = std::getenv(variable);
+    is_set = is_set && value != nullptr && std::strcmp(value, wanted) == 0;
+    setenv(variable, wanted, 1);
+  }
+  if (!is_set) execv("/proc/self/exe", arguments);  // on failure we go on, with idle threads
+}
+
+void set_library_threads(int threads) {
+  if (threads > 1) openblas_set_num_threads(threads);
+}
+
+}  // namespace isoline

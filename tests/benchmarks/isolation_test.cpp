@@ -1,0 +1,133 @@
+// A cell that misbehaves costs that cell alone, and its record says what happened.
+#include <gtest/gtest.h>
+
+#include "benchmarks/runner.h"
+#include "core/clock.h"
+#include "tests/benchmarks/hostile.h"
+#include "tests/benchmarks/temporary_folder.h"
+
+namespace isoline {
+namespace {
+
+class Isolation : public testing::Test {
+ protected:
+  Record record_after(const std::string& misdeed) {
+    const Request request = request_for(catalog, "square", {}, "hostile", {{"misdeed", misdeed}});
+    run_all(catalog, {request}, store, options);
+    return record_of(request);
+  }
+  Record record_of(const Request& request) {
+    const auto record = store.find(request);
+    EXPECT_TRUE(record.has_value());
+    return record.value_or(Record{});
+  }
+
+  Catalog catalog = hostile_catalog();
+  TemporaryFolder folder;
+  Store store{folder.path()};
+  RunOptions options{.limits = {.startup_seconds = 0.5,
+                                .hard_seconds = 0.5,
+                                .memory_bytes = std::int64_t{512} << 20}};
+};
+
+TEST_F(Isolation, AnExceptionIsAFailureWithItsText) {
+  const Record record = record_after("throw");
+  EXPECT_EQ(record.status, Status::failed);
+  EXPECT_EQ(record.message, "thrown on purpose");
+}
+
+TEST_F(Isolation, AnythingThrownIsAFailure) {
+  EXPECT_EQ(record_after("throw-int").status, Status::failed);
+}
+
+TEST_F(Isolation, ASegmentationFaultIsACrashAndItsTraceIsKept) {
+  const Record record = record_after("segfault");
+  EXPECT_EQ(record.status, Status::crashed);
+  EXPECT_EQ(record.curve.iteration, (std::vector<std::int64_t>{0, 1, 2}));
+  EXPECT_LT(record.curve.loss[2], record.curve.loss[0]);
+  EXPECT_EQ(record.verified.at("1e-1"), std::optional(false));
+}
+
+TEST_F(Isolation, AnAbortIsACrash) {
+  const Record record = record_after("abort");
+  EXPECT_EQ(record.status, Status::crashed);
+  EXPECT_EQ(record.curve.iteration.size(), 3U);
+}
+
+TEST_F(Isolation, LeavingWithoutAVerdictIsACrash) {
+  EXPECT_EQ(record_after("exit").status, Status::crashed);
+}
+
+TEST_F(Isolation, NotANumberDiverges) {
+  const Record record = record_after("nan");
+  EXPECT_EQ(record.status, Status::diverged);
+  EXPECT_TRUE(std::isnan(record.summary.loss));
+}
+
+TEST_F(Isolation, AskingForAnOracleNotDeclaredIsAFailure) {
+  const Record record = record_after("overask");
+  EXPECT_EQ(record.status, Status::failed);
+  EXPECT_NE(record.message.find("jacobian"), std::string::npos);
+}
+
+TEST_F(Isolation, AnEndlessLoopIsKilledAndItsTraceIsKept) {
+  const Record record = record_after("spin");
+  EXPECT_EQ(record.status, Status::timeout);
+  EXPECT_EQ(record.curve.iteration.size(), 3U);
+  EXPECT_TRUE(record.is_nondeterministic);
+}
+
+TEST_F(Isolation, ARunawayAllocationIsOutOfMemory) {
+  options.limits.hard_seconds = 30;  // touching half a gigabyte may take a while on a busy machine
+  EXPECT_EQ(record_after("hoard").status, Status::memory);
+}
+
+TEST_F(Isolation, AProblemThatHangsBeforeItsFirstOracleIsKilled) {
+  const Request request = request_for(catalog, "broken", {}, "gd", {});
+  run_all(catalog, {request}, store, options);
+  const Record record = record_of(request);
+  EXPECT_EQ(record.status, Status::timeout);
+  EXPECT_NE(record.message.find("no oracle call"), std::string::npos);
+}
+
+TEST_F(Isolation, AProblemThatCrashesCostsItsCellAlone) {
+  const Request broken = request_for(catalog, "broken", {{"misdeed", "segfault"}}, "gd", {});
+  const Request sound = request_for(catalog, "square", {}, "gd", {});
+  const Outcome outcome = run_all(catalog, {broken, sound}, store, options);
+  EXPECT_EQ(outcome.failures.size(), 1U);
+  EXPECT_EQ(record_of(broken).status, Status::crashed);
+  EXPECT_EQ(record_of(sound).status, Status::budget);
+}
+
+TEST_F(Isolation, OtherCellsAreUntouchedByTheirNeighbours) {
+  const Request sound = request_for(catalog, "square", {}, "gd", {});
+  run_all(catalog, {sound}, store, options);
+  const Json alone = without_timings(to_json(record_of(sound)));
+  std::vector<Request> all;
+  for (const char* misdeed : {"segfault", "throw", "nan", "abort"})
+    all.push_back(request_for(catalog, "square", {}, "hostile", {{"misdeed", misdeed}}));
+  all.push_back(sound);
+  options.jobs = 2;
+  options.force = true;
+  const Outcome outcome = run_all(catalog, all, store, options);
+  EXPECT_EQ(outcome.run, 5);
+  EXPECT_EQ(without_timings(to_json(record_of(sound))), alone);
+}
+
+TEST_F(Isolation, TextOfAProcessThatCrashesIsNothing) {
+  EXPECT_EQ(isolated_text([] { return std::string("whole"); }, 10), "whole");
+  EXPECT_FALSE(isolated_text(
+      []() -> std::string {
+        std::raise(SIGKILL);
+        return "x";
+      },
+      10));
+  EXPECT_FALSE(isolated_text(
+      []() -> std::string {
+        for (;;) pause();
+      },
+      0.2));
+}
+
+}  // namespace
+}  // namespace isoline
