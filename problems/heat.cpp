@@ -6,6 +6,7 @@
 //   α = 2(p − ½) where p ≤ ½ or p ≥ 0.68, else 0;   x = x₀ + F⁻¹(e^(αℓ) D)
 //
 // so a mode that stands out of the noise σ is deconvolved and one that does not is diffused again.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
