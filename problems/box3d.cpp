@@ -17,24 +17,29 @@ void fields(Options& o, auto& field) { field("m", o.m, between(3, 1000), "number
 
 class Box3d final : public DensePhysics {
  public:
-  explicit Box3d(Index m) : DensePhysics(3, m), t_(Vector::LinSpaced(m, 1, Real(m)) / 10) {}
+  explicit Box3d(Index m)
+      : DensePhysics(3, m),
+        t_(Vector::LinSpaced(m, 1, static_cast<Real>(m)) / 10),
+        weight_(decay(1) - decay(10)) {}
   void value(VectorRef x, VectorOut y) const override {
-    y = (-x[0] * t_).exp() - (-x[1] * t_).exp() - x[2] * weight();
+    y = decay(x[0]) - decay(x[1]) - x[2] * weight_;
   }
   void derivative(VectorRef x, BatchOut J) const override {
-    J.col(0) = -t_ * (-x[0] * t_).exp();
-    J.col(1) = t_ * (-x[1] * t_).exp();
-    J.col(2) = -weight();
+    J.col(0) = -t_ * decay(x[0]);
+    J.col(1) = t_ * decay(x[1]);
+    J.col(2) = -weight_;
   }
   bool has_curvature() const override { return true; }
   void second(VectorRef x, VectorRef u, BatchOut H) const override {
-    H(0, 0) = (u.array() * t_.square() * (-x[0] * t_).exp()).sum();
-    H(1, 1) = -(u.array() * t_.square() * (-x[1] * t_).exp()).sum();
+    H(0, 0) = (u.array() * t_.square() * decay(x[0])).sum();
+    H(1, 1) = -(u.array() * t_.square() * decay(x[1])).sum();
   }
 
  private:
-  Eigen::ArrayXd weight() const { return (-t_).exp() - (-10 * t_).exp(); }
-  Eigen::ArrayXd t_;  // (m)
+  Eigen::ArrayXd decay(Real rate) const {  // e^(−rate·t), (m)
+    return t_.unaryExpr([rate](Real t) { return std::exp(-rate * t); });
+  }
+  Eigen::ArrayXd t_, weight_;  // (m)
 };
 
 ProblemParts make_box3d(const Options& o, const Draw& draw) {

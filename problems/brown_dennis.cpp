@@ -16,13 +16,18 @@ void fields(Options& o, auto& field) { field("m", o.m, between(4, 1000), "number
 
 class BrownDennis final : public DensePhysics {
  public:
-  explicit BrownDennis(Index m) : DensePhysics(4, m), t_(Vector::LinSpaced(m, 1, Real(m)) / 5) {}
+  explicit BrownDennis(Index m)
+      : DensePhysics(4, m), t_(Vector::LinSpaced(m, 1, static_cast<Real>(m)) / 5) {
+    exp_t_ = t_.unaryExpr([](Real t) { return std::exp(t); });
+    sin_t_ = t_.sin();
+    cos_t_ = t_.cos();
+  }
   void value(VectorRef x, VectorOut y) const override { y = a(x).square() + b(x).square(); }
   void derivative(VectorRef x, BatchOut J) const override {
     J.col(0) = 2 * a(x);
     J.col(1) = 2 * a(x) * t_;
     J.col(2) = 2 * b(x);
-    J.col(3) = 2 * b(x) * t_.sin();
+    J.col(3) = 2 * b(x) * sin_t_;
   }
   bool has_curvature() const override { return true; }
   void second(VectorRef, VectorRef u, BatchOut H) const override {
@@ -30,14 +35,14 @@ class BrownDennis final : public DensePhysics {
     H(0, 0) = H(2, 2) = w.sum();
     H(0, 1) = H(1, 0) = (w * t_).sum();
     H(1, 1) = (w * t_.square()).sum();
-    H(2, 3) = H(3, 2) = (w * t_.sin()).sum();
-    H(3, 3) = (w * t_.sin().square()).sum();
+    H(2, 3) = H(3, 2) = (w * sin_t_).sum();
+    H(3, 3) = (w * sin_t_.square()).sum();
   }
 
  private:
-  Eigen::ArrayXd a(VectorRef x) const { return x[0] + x[1] * t_ - t_.exp(); }
-  Eigen::ArrayXd b(VectorRef x) const { return x[2] + x[3] * t_.sin() - t_.cos(); }
-  Eigen::ArrayXd t_;  // (m)
+  Eigen::ArrayXd a(VectorRef x) const { return x[0] + x[1] * t_ - exp_t_; }
+  Eigen::ArrayXd b(VectorRef x) const { return x[2] + x[3] * sin_t_ - cos_t_; }
+  Eigen::ArrayXd t_, exp_t_, sin_t_, cos_t_;  // (m)
 };
 
 ProblemParts make_brown_dennis(const Options& o, const Draw& draw) {

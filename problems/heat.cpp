@@ -24,16 +24,16 @@ void fields(Options& o, auto& field) { field("N", o.N, between(2, 1024), "cells 
 
 class Heat final : public Physics {
  public:
-  explicit Heat(Index N) : N_(N), fourier_(N, N), ell_(N / 2 + 1, N) {
+  explicit Heat(Index N) : N_(N), fourier_(N, N), ell_(N / 2 + 1, N), gain_(ell_) {
     constexpr Real kDiffusion = 8;  // νt
     for (Index j = 0; j < N; ++j) {
       for (Index i = 0; i <= N / 2; ++i) {
         const Real ki = static_cast<Real>(i), kj = static_cast<Real>(std::min(j, N - j));
         const Real k2 = (ki * ki + kj * kj) / static_cast<Real>(N * N);
         ell_(i, j) = kDiffusion * 4 * std::numbers::pi * std::numbers::pi * k2;
+        gain_(i, j) = std::exp(-ell_(i, j)) / fourier_.round_trip();
       }
     }
-    gain_ = (-ell_.array()).exp() / fourier_.round_trip();
   }
   Index inputs() const override { return N_ * N_; }
   Index outputs() const override { return N_ * N_; }

@@ -12,7 +12,8 @@ void fields(Options& o, auto& field) { field("n", o.n, between(1, 1e6), "number 
 
 class VariablyDimensioned final : public Physics {
  public:
-  explicit VariablyDimensioned(Index n) : n_(n), j_(Vector::LinSpaced(n, 1, Real(n))) {}
+  explicit VariablyDimensioned(Index n)
+      : n_(n), j_(Vector::LinSpaced(n, 1, static_cast<Real>(n))) {}
   Index inputs() const override { return n_; }
   Index outputs() const override { return n_ + 2; }
 
@@ -47,7 +48,8 @@ class VariablyDimensioned final : public Physics {
 };
 
 ProblemParts make_variably_dimensioned(const Options& o, const Draw& draw) {
-  const Vector start = 1 - Vector::LinSpaced(o.n, 1, Real(o.n)).array() / Real(o.n);
+  const Vector start =
+      1 - Vector::LinSpaced(o.n, 1, static_cast<Real>(o.n)).array() / static_cast<Real>(o.n);
   return classical(std::make_unique<VariablyDimensioned>(o.n), start, draw, 0, Vector::Ones(o.n));
 }
 

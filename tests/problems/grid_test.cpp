@@ -72,8 +72,8 @@ TEST(Poisson, TargetsHaveThePublishedStatistics) {
     deviation += std::sqrt(problem.target().squaredNorm() / 4096);
     magnitude += problem.truth()->cwiseAbs().mean();
   }
-  EXPECT_NEAR(deviation / kSeeds, 13.8, 1.0);    // spreads by 2.5 between fields: 3 errors of 0.31
-  EXPECT_NEAR(magnitude / kSeeds, 0.804, 0.01);  // spreads by 0.02
+  EXPECT_NEAR(deviation / kSeeds, 13.8, 0.8);     // fields spread by 1.5: four errors of 0.19
+  EXPECT_NEAR(magnitude / kSeeds, 0.804, 0.005);  // the published three digits, and as much again
 }
 
 TEST(SmoothNoise, HasMeanZeroDeviationOneAndNoCoarseModes) {
@@ -154,8 +154,8 @@ TEST(Heat, DampedInverseHasBoundedGain) {
   }
 }
 
-// Published, from the mean of x* and without the floor of 1e-8: Σ|x − x*| falls 586, 119, 84.7 and
-// then grows to 9058. With the floor it must not grow.
+// Published, from the mean of x*: Σ|x − x*| falls from 586 to 119 at the first use and, without the
+// floor of 1e-8, grows to 9058 by the third. With the floor it must not grow again.
 TEST(Heat, RepeatedDampedInversesFollowThePublishedErrorsAndDoNotDiverge) {
   constexpr int kSeeds = 64, kSteps = 20;
   Vector sums = Vector::Zero(kSteps + 1);
@@ -169,9 +169,9 @@ TEST(Heat, RepeatedDampedInversesFollowThePublishedErrorsAndDoNotDiverge) {
     }
   }
   EXPECT_NEAR(sums[0], 586, 90);  // four standard errors of the published 128 samples
-  EXPECT_NEAR(sums[1], 119, 25);
-  EXPECT_NEAR(sums[2], 84.7, 20);
-  EXPECT_LE(sums[kSteps], sums[2]);
+  EXPECT_NEAR(sums[1], 119, 25);  // spreads likewise
+  for (int step = 1; step < kSteps; ++step)
+    EXPECT_LE(sums[step + 1], 1.001 * sums[step]) << step;  // level but for noise in weak modes
 }
 
 }  // namespace
