@@ -1,0 +1,81 @@
+// Fast transforms of real grids, by FFTW.
+#include "core/fourier.h"
+
+#include <fftw3.h>
+
+#include "core/errors.h"
+
+namespace isoline {
+namespace {
+
+// Plans are estimated, not timed: a timed choice would change the bits from run to run.
+constexpr unsigned kFlags = FFTW_ESTIMATE | FFTW_PRESERVE_INPUT;
+
+fftw_complex* data(Eigen::MatrixXcd& spectrum) {
+  return reinterpret_cast<fftw_complex*>(spectrum.data());  // the layout FFTW documents
+}
+
+// A plan may run on any array aligned like the one it was made for.
+bool is_aligned_like(const Real* array, const Vector& planned) {
+  return fftw_alignment_of(const_cast<Real*>(array)) ==
+         fftw_alignment_of(const_cast<Real*>(planned.data()));
+}
+
+// The caller's grid where the plan may read it, our copy of it elsewhere. FFTW takes no pointer to
+// const; the plans preserve their input.
+Real* readable(VectorRef grid, Vector& copy) {
+  require(grid.size() == copy.size(), "the grid does not fit the transform");
+  if (is_aligned_like(grid.data(), copy)) return const_cast<Real*>(grid.data());
+  copy = grid;
+  return copy.data();
+}
+
+// Lets `execute` write into the caller's grid where the plan may, through our own elsewhere.
+void write(VectorOut grid, Vector& own, auto execute) {
+  require(grid.size() == own.size(), "the grid does not fit the transform");
+  if (is_aligned_like(grid.data(), own)) return execute(grid.data());
+  execute(own.data());
+  grid = own;
+}
+
+}  // namespace
+
+void DestroyPlan::operator()(fftw_plan_s* plan) const { fftw_destroy_plan(plan); }
+
+// FFTW counts dimensions from the slowest: columns first, rows last.
+RealFourier2d::RealFourier2d(Index rows, Index columns)
+    : spectrum_(rows / 2 + 1, columns), grid_(rows * columns) {
+  const int slow = static_cast<int>(columns), fast = static_cast<int>(rows);
+  forward_.reset(fftw_plan_dft_r2c_2d(slow, fast, grid_.data(), data(spectrum_), kFlags));
+  inverse_.reset(fftw_plan_dft_c2r_2d(slow, fast, data(spectrum_), grid_.data(), FFTW_ESTIMATE));
+}
+
+void RealFourier2d::forward(VectorRef grid) {
+  fftw_execute_dft_r2c(forward_.get(), readable(grid, grid_), data(spectrum_));
+}
+
+void RealFourier2d::inverse(VectorOut grid) {
+  write(grid, grid_,
+        [this](Real* out) { fftw_execute_dft_c2r(inverse_.get(), data(spectrum_), out); });
+}
+
+SineTransform2d::SineTransform2d(Index rows, Index columns)
+    : spectrum_(rows, columns), grid_(rows * columns) {
+  const auto plan = [&](Real* in, Real* out) {
+    return fftw_plan_r2r_2d(static_cast<int>(columns), static_cast<int>(rows), in, out,
+                            FFTW_RODFT00, FFTW_RODFT00, kFlags);
+  };
+  forward_.reset(plan(grid_.data(), spectrum_.data()));
+  inverse_.reset(plan(spectrum_.data(), grid_.data()));
+}
+
+void SineTransform2d::forward(VectorRef grid) {
+  fftw_execute_r2r(forward_.get(), readable(grid, grid_), spectrum_.data());
+}
+
+void SineTransform2d::inverse(VectorOut grid) {
+  write(grid, grid_,
+        [this](Real* out) { fftw_execute_r2r(inverse_.get(), spectrum_.data(), out); });
+}
+
+}  // namespace isoline

@@ -1,0 +1,76 @@
+// Brown and Dennis' function: fᵢ = (x1 + tᵢ x2 − e^tᵢ)² + (x3 + x4 sin tᵢ − cos tᵢ)², tᵢ = i/5,
+// i = 1…m. Moré, Garbow, Hillstrom (1981), problem 16. The residuals do not vanish:
+// Σ fᵢ² = 85822.2… at m = 20, the one m whose minimum is given.
+#include <cmath>
+
+#include "problems/classical.h"
+#include "problems/dense_physics.h"
+
+namespace isoline {
+namespace {
+
+struct Options {
+  Index m = 20;
+};
+void fields(Options& o, auto& field) { field("m", o.m, between(4, 1000), "number of residuals"); }
+
+class BrownDennis final : public DensePhysics {
+ public:
+  explicit BrownDennis(Index m)
+      : DensePhysics(4, m), t_(Vector::LinSpaced(m, 1, static_cast<Real>(m)) / 5) {
+    exp_t_ = t_.unaryExpr([](Real t) { return std::exp(t); });
+    sin_t_ = t_.sin();
+    cos_t_ = t_.cos();
+  }
+  void value(VectorRef x, VectorOut y) const override { y = a(x).square() + b(x).square(); }
+  void derivative(VectorRef x, BatchOut J) const override {
+    J.col(0) = 2 * a(x);
+    J.col(1) = 2 * a(x) * t_;
+    J.col(2) = 2 * b(x);
+    J.col(3) = 2 * b(x) * sin_t_;
+  }
+  bool has_curvature() const override { return true; }
+  void second(VectorRef, VectorRef u, BatchOut H) const override {
+    const Eigen::ArrayXd w = 2 * u.array();
+    H(0, 0) = H(2, 2) = w.sum();
+    H(0, 1) = H(1, 0) = (w * t_).sum();
+    H(1, 1) = (w * t_.square()).sum();
+    H(2, 3) = H(3, 2) = (w * sin_t_).sum();
+    H(3, 3) = (w * sin_t_.square()).sum();
+  }
+
+ private:
+  Eigen::ArrayXd a(VectorRef x) const { return x[0] + x[1] * t_ - exp_t_; }
+  Eigen::ArrayXd b(VectorRef x) const { return x[2] + x[3] * sin_t_ - cos_t_; }
+  Eigen::ArrayXd t_, exp_t_, sin_t_, cos_t_;  // (m)
+};
+
+ProblemParts make_brown_dennis(const Options& o, const Draw& draw) {
+  // By Newton's method in quadruple precision from the standard start, to ‖∇‖ = 1e-29.
+  constexpr Real kMinimum = 42911.1008131781723303;  // ½ of the published 85822.2
+  const Eigen::Vector4d minimizer(-11.5944399047621653826, 13.2036300512072038213,
+                                  -0.403439488176859519644, 0.236778774455736299147);
+  ProblemParts parts = classical(std::make_unique<BrownDennis>(o.m), Eigen::Vector4d(25, 5, -5, -1),
+                                 draw, kMinimum, minimizer);
+  if (o.m != 20) {
+    parts.minimum.reset();
+    parts.truth.reset();
+    parts.x_error = nullptr;
+  }
+  return parts;
+}
+
+}  // namespace
+
+void register_brown_dennis(ProblemRegistry& registry) {
+  registry.add(problem_entry(
+      {.name = "brown-dennis",
+       .title = "Brown and Dennis' function",
+       .formula = "fᵢ = (x₁ + tᵢx₂ − exp tᵢ)² + (x₃ + x₄ sin tᵢ − cos tᵢ)²,  tᵢ = i/5,  L = ½Σfᵢ²",
+       .source = "Moré, Garbow, Hillstrom (1981), problem 16; Brown and Dennis (1971)",
+       .note = "The residuals do not vanish. The minimum is given for m = 20 alone; the truth is "
+               "the minimizer."},
+      make_brown_dennis));
+}
+
+}  // namespace isoline

@@ -1,0 +1,225 @@
+// What every problem must satisfy, measured.
+#include "problems/conformance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isoline {
+namespace {
+
+constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+constexpr const char* kRounding = "rounding in double, with room for cancellation";
+constexpr const char* kDifferences =
+    "central differences at h = 6e-6 = ε^⅓ leave h² of a third derivative and ε/h of rounding";
+
+// One problem, one point, and what is measured there.
+class Examination {
+ public:
+  Examination(const Problem& problem, RandomStream& stream)
+      : problem_(problem), stream_(stream), theta_(near_start()) {
+    problem_.forward(theta_, at_);
+  }
+
+  std::vector<Finding> findings;
+
+  void repeatability() {
+    Point again;
+    problem_.forward(theta_, again);
+    const bool same = again.y == at_.y && again.loss == at_.loss;
+    add("forward gives the same bits twice", same ? 0 : 1, 0, "nothing random is left in it");
+  }
+
+  void adjoint() {
+    const Vector v = direction();
+    const Matrix u = cotangent();
+    const Matrix Jv = push(v);
+    const Real scale = u.norm() * Jv.norm() + v.norm() * pull(u, at_).norm();
+    const Real gap = std::abs(u.cwiseProduct(Jv).sum() - v.dot(pull(u, at_)));
+    add("⟨u, J v⟩ = ⟨Jᵀu, v⟩", relative(gap, scale), 1e-12, kRounding);
+  }
+
+  // ‖y(θ + h v) − y(θ) − h J v‖ falls by 4 when h is halved: the median over the halvings whose
+  // remainder stands well above rounding; none does where the problem is linear.
+  void taylor() {
+    constexpr int kHalvings = 16;
+    const Vector v = direction();
+    const Matrix Jv = push(v);
+    const Real floor = 1e4 * kEpsilon * (at_.y.norm() + Jv.norm());
+    std::vector<Real> slopes;
+    Real h = 1e-2, previous = remainder(v, Jv, h);
+    for (int i = 0; i < kHalvings; ++i) {
+      h /= 2;
+      const Real now = remainder(v, Jv, h);
+      if (now > floor) slopes.push_back(std::log2(previous / now));
+      previous = now;
+    }
+    std::nth_element(slopes.begin(), slopes.begin() + slopes.size() / 2, slopes.end());
+    const Real slope = slopes.empty() ? 2 : slopes[slopes.size() / 2];
+    add("the remainder after J v is of second order", std::abs(slope - 2), 0.1,
+        "a third-order term bends the slope by O(h); a wrong J v gives slope 1");
+  }
+
+  void gradient() {
+    const Vector v = direction();
+    const Vector g = loss_gradient(at_);
+    const Real difference = (loss(theta_ + h_ * v) - loss(theta_ - h_ * v)) / (2 * h_);
+    const Real scale = g.norm() * v.norm() + std::abs(at_.loss);
+    add("⟨∇L, v⟩ is the change of L along v", relative(std::abs(difference - g.dot(v)), scale),
+        1e-6, kDifferences);
+  }
+
+  void jacobian() {
+    if (!is_dense_feasible(problem_.residuals() * problem_.unknowns())) return;
+    const Vector v = direction();
+    const Matrix u = cotangent();
+    Matrix J;
+    problem_.jacobian(J, at_);
+    const Vector Jv = push(v).reshaped(), JTu = pull(u, at_);
+    add("J v by the matrix is J v by the product", relative((J * v - Jv).norm(), Jv.norm()), 1e-12,
+        kRounding);
+    add("Jᵀu by the matrix is Jᵀu by the product",
+        relative((J.transpose() * u.reshaped() - JTu).norm(), JTu.norm()), 1e-12, kRounding);
+  }
+
+  void curvature() {
+    const Index k = problem_.inputs();
+    if (!offers(Oracle::curvature) || !is_dense_feasible(k * k * problem_.samples())) return;
+    const Vector v = direction();
+    const Matrix w = cotangent();
+    Matrix H(k, k * problem_.samples());
+    problem_.curvature(w, H, at_);
+    Real asymmetry = 0;
+    for (Index b = 0; b < problem_.samples(); ++b)
+      asymmetry += (H.middleCols(b * k, k) - H.middleCols(b * k, k).transpose()).norm();
+    add("Σ wᵢ ∇²Pᵢ is symmetric", relative(asymmetry, H.norm()), 1e-14, kRounding);
+    const Vector JTw = pull(w, at_);
+    const Vector difference =
+        (pull_at(theta_ + h_ * v, w) - pull_at(theta_ - h_ * v, w)) / (2 * h_);
+    const Vector Hv = H * v;
+    add("Σ wᵢ ∇²Pᵢ v is the change of Jᵀw along v",
+        relative((difference - Hv).norm(), Hv.norm() + JTw.norm()), 1e-6, kDifferences);
+  }
+
+  void hessian() {
+    const Index n = problem_.unknowns();
+    if (!offers(Oracle::hessian) || !is_dense_feasible(n * n)) return;
+    const Vector v = direction();
+    Matrix H;
+    problem_.hessian(H, at_);
+    Point plus, minus;
+    problem_.forward(theta_ + h_ * v, plus);
+    problem_.forward(theta_ - h_ * v, minus);
+    const Vector difference = (loss_gradient(plus) - loss_gradient(minus)) / (2 * h_);
+    const Vector Hv = H * v;
+    add("∇²L v is the change of ∇L along v",
+        relative((difference - Hv).norm(), Hv.norm() + loss_gradient(at_).norm()), 1e-6,
+        kDifferences);
+  }
+
+  // For y that some x reaches. The physics alone is asked, whatever the network.
+  void inverse() {
+    if (problem_.inverse_kind() != Inverse::exact) return;
+    Point reached, back;
+    problem_.forward(near_start(), reached);
+    Matrix x(problem_.inputs(), problem_.samples()), unused = x;
+    const bool success = problem_.local_inverse(reached.y, x, at_).all();
+    add("the inverse succeeds where y is reachable", success ? 0 : 1, 0, "it is declared exact");
+    const Real misfit = problem_.physics_misfit(reached.y, x, back, unused);
+    add("P(P⁻¹(y)) = y", relative(std::sqrt(2 * misfit), reached.y.norm()), 1e-10,
+        "rounding, amplified by the condition of P⁻¹");
+  }
+
+  void solution() {
+    Point start;
+    problem_.forward(problem_.start(), start);
+    if (problem_.minimum()) {
+      const Real minimum = *problem_.minimum();
+      add("the loss is above the declared minimum around the start",
+          std::max(minimum - at_.loss, minimum - start.loss), 0, "it is the least attainable");
+      if (problem_.truth() && problem_.has_identity_network())
+        add("the truth attains the declared minimum",
+            relative(std::abs(loss(problem_.truth()->reshaped()) - minimum), start.loss), 1e-13,
+            "squares of residuals that are zero but for rounding");
+    }
+    if (problem_.truth() && !std::isnan(problem_.x_error(*problem_.truth())))
+      add("the error in x of the truth is zero",
+          problem_.x_error(*problem_.truth()) / std::max(1.0, problem_.truth()->norm()), 1e-14,
+          kRounding);
+  }
+
+ private:
+  static bool is_dense_feasible(Index entries) { return entries <= 4'000'000; }
+  static Real relative(Real gap, Real scale) { return gap == 0 ? 0 : gap / scale; }
+  bool offers(Oracle oracle) const { return problem_.offers().contains(oracle); }
+  void add(std::string property, Real figure, Real limit, std::string reason) {
+    findings.push_back({std::move(property), figure, limit, std::move(reason)});
+  }
+
+  Vector direction() { return stream_.normal_vector(problem_.unknowns()).normalized(); }
+  Matrix cotangent() {
+    return stream_.normal_vector(problem_.residuals())
+        .reshaped(problem_.outputs(), problem_.samples());
+  }
+  Vector near_start() {
+    const Vector noise = stream_.normal_vector(problem_.unknowns());
+    return problem_.start().array() + 0.1 * problem_.start().array().abs().max(1) * noise.array();
+  }
+
+  Matrix push(VectorRef v) {
+    Matrix Jv(problem_.outputs(), problem_.samples());
+    problem_.pushforward(v, Jv, at_);
+    return Jv;
+  }
+  Vector pull(BatchRef w, Point& at) const {
+    Vector JTw(problem_.unknowns());
+    problem_.pullback(w, JTw, at);
+    return JTw;
+  }
+  Vector pull_at(VectorRef theta, BatchRef w) const {
+    Point at;
+    problem_.forward(theta, at);
+    return pull(w, at);
+  }
+  Vector loss_gradient(Point& at) const {
+    Matrix g(problem_.outputs(), problem_.samples());
+    problem_.cotangent(at, g);
+    return pull(g, at);
+  }
+  Real loss(VectorRef theta) const {
+    Point at;
+    problem_.forward(theta, at);
+    return at.loss;
+  }
+  Real remainder(VectorRef v, BatchRef Jv, Real h) const {
+    Point at;
+    problem_.forward(theta_ + h * v, at);
+    return (at.y - at_.y - h * Jv).norm();
+  }
+
+  const Problem& problem_;
+  RandomStream& stream_;
+  const Vector theta_;
+  Point at_;                            // the linearization at theta_
+  const Real h_ = std::cbrt(kEpsilon);  // balances truncation and rounding
+};
+
+}  // namespace
+
+std::vector<Finding> examine(const Problem& problem, RandomStream& stream) {
+  Examination examination(problem, stream);
+  examination.repeatability();
+  examination.adjoint();
+  examination.taylor();
+  examination.gradient();
+  if (problem.has_identity_network()) {
+    examination.jacobian();
+    examination.curvature();
+    examination.hessian();
+  }
+  examination.inverse();
+  examination.solution();
+  return examination.findings;
+}
+
+}  // namespace isoline

@@ -1,0 +1,24 @@
+// What every problem must satisfy, measured: its products against each other and against
+// differences, its inverse against its forward, its declared solution against its loss.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/random.h"
+#include "problems/problem.h"
+
+namespace isoline {
+
+struct Finding {
+  std::string property;                           // a sentence that should be true
+  Real figure, limit;                             // what was measured, and the most it may be
+  std::string reason;                             // why that limit
+  bool holds() const { return figure <= limit; }  // false for nan
+};
+
+// Measured at a random point around the start, θ = start + 0.1 max(1, |start|) N(0, 1). What a
+// problem does not offer is not examined; dense matrices only up to some millions of entries.
+std::vector<Finding> examine(const Problem& problem, RandomStream& stream);
+
+}  // namespace isoline

@@ -1,0 +1,78 @@
+// P(x) = eˣ, component by component: targets that span orders of magnitude. Holl, Koltun, Thuerey
+// (2022), Fig. 2, which learns the inverse over x* = −12u, u ~ U[0, 1); here one x* of that law is
+// sought from x = 0. Seed 0 takes its quantiles x*ᵢ = −12 (i + ½)/n, so y* = e⁻⁶ for n = 1.
+#include <cmath>
+
+#include "problems/physics.h"
+#include "problems/problem.h"
+
+namespace isoline {
+namespace {
+
+struct Options {
+  Index n = 1;
+};
+void fields(Options& o, auto& field) { field("n", o.n, between(1, 1e6), "number of components"); }
+
+// The scalar function: a vectorized one would give an entry other bits by its place in the array.
+constexpr auto kExp = [](Real x) { return std::exp(x); };
+
+class Exponential final : public Physics {
+ public:
+  explicit Exponential(Index n) : n_(n) {}
+  Index inputs() const override { return n_; }
+  Index outputs() const override { return n_; }
+
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
+    y = x.unaryExpr(kExp);
+    w.saved.resize(1);
+    w.saved[0] = y;  // P is its own derivative
+  }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
+    Jv = w.saved[0].cwiseProduct(v);
+  }
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override { pushforward(u, JTu, w); }
+  bool has_curvature() const override { return true; }
+  void curvature(BatchRef u, BatchOut out, Workspace& w) const override {
+    out.setZero();
+    for (Index b = 0; b < u.cols(); ++b)
+      out.middleCols(b * n_, n_).diagonal() = w.saved[0].col(b).cwiseProduct(u.col(b));
+  }
+
+  Inverse inverse_kind() const override { return Inverse::exact; }
+  Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
+    x = y.binaryExpr(x0, [](Real yi, Real guess) { return yi > 0 ? std::log(yi) : guess; });
+    return (y.array() > 0).colwise().all().transpose();
+  }
+
+ private:
+  Index n_;
+};
+
+ProblemParts make_exponential(const Options& o, const Draw& draw) {
+  constexpr Real kSpan = -12;  // y* falls to e⁻¹²
+  const Real n = static_cast<Real>(o.n);
+  const Matrix truth = draw.is_published()
+                           ? Vector(Vector::LinSpaced(o.n, kSpan / (2 * n), kSpan * (n - 0.5) / n))
+                           : Vector(kSpan * draw.stream("target").uniform_vector(o.n, 0, 1));
+  return {.physics = std::make_unique<Exponential>(o.n),
+          .start = draw.start(Vector::Zero(o.n)),
+          .target = truth.unaryExpr(kExp),
+          .minimum = 0,
+          .truth = truth,
+          .x_error = [truth](BatchRef x) { return (x - truth).norm(); }};
+}
+
+}  // namespace
+
+void register_exponential(ProblemRegistry& registry) {
+  registry.add(problem_entry(
+      {.name = "exponential",
+       .title = "Exponential",
+       .formula = "Pᵢ(x) = exp(xᵢ),  L = ½‖P(x) − y*‖²",
+       .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
+       .note = "Published as a learning problem; seed 0 takes the quantiles of its distribution."},
+      make_exponential));
+}
+
+}  // namespace isoline

@@ -1,0 +1,118 @@
+// A sine along one axis, a steep line along the other, both rotated: with z = R_φ x,
+//
+//   form=code    P(x) = (sin(γ z1/ξ), γ ξ z2)       form=paper   P(x) = (sin(γ z1)/ξ, γ ξ z2)
+//
+// Holl, Koltun, Thuerey (2022), Fig. 5. The paper prints the second form, its scripts compute the
+// first, and the figure agrees with the scripts. Both are published as learning problems over
+// y* ~ U([−1, 1]²); y* = (0.3, −0.5) is that of the figure's landscape. In the paper's form y1* is
+// divided by ξ, or no x would reach it.
+#include <cmath>
+#include <numbers>
+
+#include "problems/dense_physics.h"
+#include "problems/problem.h"
+
+namespace isoline {
+namespace {
+
+struct Options {
+  Real gamma = 10, xi = 10, phi = 45;
+  std::string form = "code";
+};
+void fields(Options& o, auto& field) {
+  field("gamma", o.gamma, between(0.1, 100), "scale γ of both coordinates");
+  field("xi", o.xi, between(1, 1000), "conditioning ξ");
+  field("phi", o.phi, between(-180, 180), "rotation φ in degrees");
+  field("form", o.form, {"code", "paper"}, "whether ξ divides inside the sine or outside");
+}
+
+class Sine final : public DensePhysics {
+ public:
+  explicit Sine(const Options& o) : DensePhysics(2, 2) {
+    const bool inside = o.form == "code";
+    amplitude_ = inside ? 1 : 1 / o.xi;
+    frequency_ = inside ? o.gamma / o.xi : o.gamma;
+    slope_ = o.gamma * o.xi;
+    const Real phi = o.phi * std::numbers::pi / 180;
+    cos_ = std::cos(phi);
+    sin_ = std::sin(phi);
+  }
+  Real amplitude() const { return amplitude_; }
+
+  void value(VectorRef x, VectorOut y) const override {
+    y << amplitude_ * std::sin(frequency_ * z1(x)), slope_ * z2(x);
+  }
+  void derivative(VectorRef x, BatchOut J) const override {
+    const Real rise = amplitude_ * frequency_ * std::cos(frequency_ * z1(x));
+    J << rise * cos_, -rise * sin_, slope_ * sin_, slope_ * cos_;
+  }
+  bool has_curvature() const override { return true; }
+  void second(VectorRef x, VectorRef u, BatchOut H) const override {
+    const Real s1 = frequency_ * z1(x);
+    const Real bend = -u[0] * amplitude_ * frequency_ * frequency_ * std::sin(s1);
+    H << bend * cos_ * cos_, -bend * cos_ * sin_, -bend * cos_ * sin_, bend * sin_ * sin_;
+  }
+
+  // The solution nearest x0: of the sine's two families, the closer member of the closer one.
+  Inverse inverse_kind() const override { return Inverse::exact; }
+  bool invert(VectorRef y, VectorRef x0, VectorOut x) const override {
+    const Real u = y[0] / amplitude_;
+    x = x0;
+    if (!(std::abs(u) <= 1)) return false;
+    const Real s1 = frequency_ * z1(x0);
+    const Real rising = nearest(std::asin(u), s1);
+    const Real falling = nearest(std::numbers::pi - std::asin(u), s1);
+    const Real s = std::abs(rising - s1) <= std::abs(falling - s1) ? rising : falling;
+    const Real solved1 = s / frequency_, solved2 = y[1] / slope_;
+    x << cos_ * solved1 + sin_ * solved2, -sin_ * solved1 + cos_ * solved2;
+    return true;
+  }
+
+ private:
+  Real z1(VectorRef x) const { return cos_ * x[0] - sin_ * x[1]; }
+  Real z2(VectorRef x) const { return sin_ * x[0] + cos_ * x[1]; }
+  static Real nearest(Real s, Real s1) {  // s + 2πn closest to s1
+    constexpr Real kPeriod = 2 * std::numbers::pi;
+    return s + kPeriod * std::round((s1 - s) / kPeriod);
+  }
+
+  Real amplitude_, frequency_, slope_, cos_, sin_;
+};
+
+ProblemParts make_sine(const Options& o, const Draw& draw) {
+  const auto physics = std::make_shared<const Sine>(o);
+  Vector target = draw.is_published() ? Vector(Eigen::Vector2d(0.3, -0.5))
+                                      : draw.stream("target").uniform_vector(2, -1, 1);
+  target[0] *= physics->amplitude();
+  Vector truth(2);
+  physics->invert(target, Vector::Zero(2), truth);
+  const Eigen::Vector2d corner = Eigen::Vector2d(12, 6) / o.gamma;
+  return {.physics = std::make_unique<Sine>(o),
+          .start = draw.start(corner / 2),  // away from every solution, at any ξ and φ
+          .target = target,
+          .minimum = 0,
+          .truth = truth,
+          .x_error =
+              [physics, target](BatchRef x) {
+                Vector solution(2);
+                physics->invert(target, x.col(0), solution);
+                return (x.col(0) - solution).norm();
+              },
+          .window = {{-corner[0], corner[0], -corner[1], corner[1]}}};
+}
+
+}  // namespace
+
+void register_sine(ProblemRegistry& registry) {
+  registry.add(problem_entry(
+      {.name = "sine",
+       .title = "Rotated sine",
+       .formula = "P(x) = (sin(γz₁/ξ), γξz₂),  z = R_φ x,  L = ½‖P(x) − y*‖²",
+       .source = "Holl, Koltun, Thuerey (2022), Fig. 5",
+       .note = "form=code is what the published scripts compute; form=paper, (sin(γz₁)/ξ, γξz₂), "
+               "is what the paper prints, its y₁* divided by ξ. Published as a learning problem; "
+               "the start (6, 3)/γ, half-way to the corner of its landscape, is ours."},
+      make_sine));
+}
+
+}  // namespace isoline

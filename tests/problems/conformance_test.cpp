@@ -1,0 +1,121 @@
+// What every registered problem must satisfy, at its default options and some others. Grids are
+// reduced to N = 8: the properties do not depend on the size.
+#include "problems/conformance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "make.h"
+
+namespace isoline {
+namespace {
+
+std::vector<std::string> specs() {
+  std::vector<std::string> all = {"sine[form=paper]",
+                                  "sine[xi=32]",
+                                  "sine[xi=1,phi=15]",
+                                  "scaling[alpha=1e-3]",
+                                  "scaling[alpha=1e3]",
+                                  "exponential[n=7]",
+                                  "poisson[N=9]",
+                                  "heat[N=9]",
+                                  "box3d[m=3]",
+                                  "brown-dennis[m=4]",
+                                  "broyden-tridiagonal[n=3]",
+                                  "variably-dimensioned[n=1]"};
+  for (const auto& [name, entry] : all_problems()) {
+    const bool is_grid = std::ranges::any_of(
+        entry.options, [](const OptionField& field) { return field.name == "N"; });
+    all.push_back(is_grid ? name + "[N=8]" : name);
+  }
+  return all;
+}
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::ranges::replace_if(
+      name, [](char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+class EveryProblem : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryProblem, SatisfiesWhatProblemsMust) {
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    const Problem problem = make(GetParam(), seed);
+    RandomStream stream(seed, GetParam(), "conformance");
+    for (const Finding& finding : examine(problem, stream))
+      EXPECT_LE(finding.figure, finding.limit)
+          << finding.property << " (" << finding.reason << "), seed " << seed;
+  }
+}
+
+TEST_P(EveryProblem, IsDrawnFromItsSeedAlone) {
+  for (const std::uint64_t seed : {0, 1}) {
+    const Problem first = make(GetParam(), seed), second = make(GetParam(), seed);
+    EXPECT_EQ(first.start(), second.start());
+    EXPECT_EQ(first.target(), second.target());
+  }
+}
+
+TEST_P(EveryProblem, DiffersBetweenSeeds) {
+  for (const std::uint64_t seed : {0, 1}) {
+    const Problem first = make(GetParam(), seed), second = make(GetParam(), seed + 1);
+    EXPECT_TRUE(first.start() != second.start() || first.target() != second.target());
+  }
+}
+
+TEST_P(EveryProblem, DoesNotStartAtASolution) {
+  const Problem problem = make(GetParam());
+  if (!problem.minimum()) return;
+  EXPECT_GT(loss_at_start(problem), *problem.minimum());
+}
+
+TEST_P(EveryProblem, HasAWindowOnlyWithTwoUnknowns) {
+  const Problem problem = make(GetParam());
+  if (!problem.window()) return;
+  const auto [low1, high1, low2, high2] = *problem.window();
+  EXPECT_EQ(problem.inputs(), 2);
+  EXPECT_LT(low1, high1);
+  EXPECT_LT(low2, high2);
+  EXPECT_TRUE(low1 <= problem.start()[0] && problem.start()[0] <= high1);
+  EXPECT_TRUE(low2 <= problem.start()[1] && problem.start()[1] <= high2);
+}
+
+TEST_P(EveryProblem, SaysWhatItIs) {
+  const ProblemEntry& entry = all_problems().at(parse_spec(GetParam()).name);
+  for (const std::string& text : {entry.title, entry.formula, entry.source})
+    EXPECT_FALSE(text.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryProblem, ::testing::ValuesIn(specs()), test_name);
+
+// A wrong derivative must be found, or the examination proves nothing.
+class WrongSign final : public Physics {
+ public:
+  Index inputs() const override { return 2; }
+  Index outputs() const override { return 2; }
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override {
+    y = x.array().square();
+  }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
+    Jv = -2 * w.x.cwiseProduct(v);
+  }
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
+    JTu = 2 * w.x.cwiseProduct(u);
+  }
+};
+
+TEST(Conformance, FindsAWrongPushforward) {
+  const Problem problem({.physics = std::make_unique<WrongSign>(),
+                         .start = Vector::Ones(2),
+                         .target = Vector::Zero(2)});
+  RandomStream stream(0, "wrong", "conformance");
+  int failures = 0;
+  for (const Finding& finding : examine(problem, stream)) failures += !finding.holds();
+  EXPECT_GE(failures, 2);  // the adjoint identity and Taylor's slope
+}
+
+}  // namespace
+}  // namespace isoline

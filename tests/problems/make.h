@@ -1,0 +1,33 @@
+// A problem from its spec, as the command line makes it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/spec.h"
+#include "problems/problem.h"
+
+namespace isoline {
+
+inline const ProblemRegistry& all_problems() {
+  static const ProblemRegistry registry = [] {
+    ProblemRegistry filled("problem");
+    register_problems(filled);
+    return filled;
+  }();
+  return registry;
+}
+
+inline Problem make(const std::string& text, std::uint64_t seed = 0) {
+  const Spec spec = parse_spec(text);
+  const ProblemEntry& entry = all_problems().at(spec.name);
+  return entry.make(complete_options(entry.options, entry.name, options_of(spec)),
+                    Draw(seed, entry.name));
+}
+
+inline Real loss_at_start(const Problem& problem) {
+  Point at;
+  problem.forward(problem.start(), at);
+  return at.loss;
+}
+
+}  // namespace isoline
