@@ -1,0 +1,60 @@
+#include "core/decompose.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/random.h"
+
+namespace isoline {
+namespace {
+
+constexpr Real kRound = 1e-13;  // some hundred roundings of numbers about 1
+
+Matrix random_matrix(Index rows, Index columns) {
+  RandomStream stream(1, "test", "matrix");
+  return stream.normal_vector(rows * columns).reshaped(rows, columns);
+}
+
+TEST(Decompose, SvdRebuildsTheMatrix) {
+  for (const auto& [m, n] : {std::pair<Index, Index>{5, 3}, {3, 5}, {4, 4}, {1, 1}}) {
+    const Matrix A = random_matrix(m, n);
+    Svd svd;
+    ASSERT_TRUE(thin_svd(A, svd));
+    EXPECT_LT((svd.U * svd.sigma.asDiagonal() * svd.Vt - A).norm(), kRound);
+    EXPECT_TRUE(std::is_sorted(svd.sigma.begin(), svd.sigma.end(), std::greater<>()));
+  }
+}
+
+TEST(Decompose, SvdOfNotANumberIsRefused) {
+  Svd svd;
+  EXPECT_FALSE(thin_svd(Matrix::Constant(2, 2, std::nan("")), svd));
+}
+
+TEST(Decompose, EigenvectorsRebuildTheMatrix) {
+  const Matrix A = random_matrix(4, 4) + random_matrix(4, 4).transpose();
+  SymmetricEigen eigen;
+  ASSERT_TRUE(symmetric_eigen(A, eigen));
+  EXPECT_LT((eigen.V * eigen.lambda.asDiagonal() * eigen.V.transpose() - A).norm(), 10 * kRound);
+}
+
+TEST(Decompose, SquareSystemsAreSolvedAndSingularOnesRefused) {
+  const Matrix A = random_matrix(4, 4);
+  const Vector b = Vector::LinSpaced(4, 1, 4);
+  Vector x;
+  ASSERT_TRUE(solve_square(A, b, x));
+  EXPECT_LT((A * x - b).norm(), 10 * kRound);
+  EXPECT_FALSE(solve_square(Matrix::Zero(2, 2), Vector::Ones(2), x));
+}
+
+// Of all minimizers of ‖x1 + x2 − 2‖ the shortest is (1, 1).
+TEST(Decompose, LeastSquaresTakesTheShortestMinimizer) {
+  Vector x;
+  ASSERT_TRUE(least_squares(Matrix::Ones(3, 2), Vector::Constant(3, 2), 1e-12, x));
+  EXPECT_LT((x - Vector::Ones(2)).norm(), kRound);
+}
+
+}  // namespace
+}  // namespace isoline

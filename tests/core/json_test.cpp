@@ -1,0 +1,79 @@
+#include "core/json.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+
+namespace isoline {
+namespace {
+
+TEST(Numbers, SurviveTheRoundTripToTheLastBit) {
+  for (const Real value : {0.1, -0.0, 1e-308, 5e-324, 1.7976931348623157e308, 1.0 / 3}) {
+    const Real back = real_of(Json::parse(json_number(value).dump()));
+    EXPECT_EQ(std::signbit(back), std::signbit(value));
+    EXPECT_EQ(back, value);
+  }
+}
+
+TEST(Numbers, InfinityAndNotANumberSurvive) {
+  EXPECT_EQ(real_of(Json::parse(json_number(INFINITY).dump())), INFINITY);
+  EXPECT_EQ(real_of(Json::parse(json_number(-INFINITY).dump())), -INFINITY);
+  EXPECT_TRUE(std::isnan(real_of(Json::parse(json_number(NAN).dump()))));
+}
+
+TEST(Numbers, WhatIsNoNumberIsAUsageError) {
+  EXPECT_THROW(real_of(Json("one")), UsageError);
+  EXPECT_THROW(real_of(Json()), UsageError);
+}
+
+TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {
+  std::string pattern = testing::TempDir() + "isoline-XXXXXX";
+  const std::filesystem::path folder = mkdtemp(pattern.data());
+  const auto path = folder / "record.json";
+  write_text(path, "old");
+  std::filesystem::create_directory(folder / "taken");
+  EXPECT_THROW(write_text(folder / "taken", "new"), std::runtime_error);  // rename must fail
+  EXPECT_THROW(write_text(folder / "absent" / "record.json", "new"), std::runtime_error);
+  EXPECT_EQ(read_text(path), "old");
+  std::filesystem::remove_all(folder);
+}
+
+// A limit on the size of files stands in for a full disk: write() fails half-way in both.
+TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
+  std::string pattern = testing::TempDir() + "isoline-XXXXXX";
+  const std::filesystem::path folder = mkdtemp(pattern.data());
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{10, before.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(write_text(folder / "record.json", std::string(100, 'x')), std::runtime_error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Files, WhatIsNoJsonNamesItsOrigin) {
+  try {
+    parse_json("{\"a\": ", "suite.json");
+    FAIL() << "half a document was accepted";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("suite.json"), std::string::npos);
+  }
+}
+
+// Published test vectors of FNV-1a, 64 bits (Fowler, Noll, Vo).
+TEST(Digest, IsFnv1a) {
+  EXPECT_EQ(digest(""), "cbf29ce484222325");
+  EXPECT_EQ(digest("a"), "af63dc4c8601ec8c");
+  EXPECT_EQ(digest("foobar"), "85944171f73967e8");
+}
+
+}  // namespace
+}  // namespace isoline

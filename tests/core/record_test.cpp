@@ -1,0 +1,87 @@
+#include "core/record.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/errors.h"
+
+namespace isoline {
+namespace {
+
+Record sample() {
+  Record record{.cell = "0123456789abcdef", .build = "fedcba9876543210"};
+  record.request = {.problem = {"square", Json::object(), "square", 1},
+                    .optimizer = {"gd", {{"rate", 0.1}}, "gd[rate=0.1]", 2},
+                    .seed = 7};
+  record.status = Status::diverged;
+  record.message = "went \"away\"";
+  record.minimum = 0;
+  record.verified = {{"1e-1", true}, {"1e-3", false}, {"1e-6", std::nullopt}};
+  record.counts[0] = 3;
+  record.summary = {.iterations = 1, .loss = INFINITY, .x_error = NAN, .wall_seconds = 0.5};
+  record.curve = {.iteration = {0, 1},
+                  .work = {0, 2},
+                  .counts = {{"forward", {0, 1}}},
+                  .wall_seconds = {0, 0.5},
+                  .processor_seconds = {0, 0.25},
+                  .loss = {1, INFINITY},
+                  .x_error = {NAN, NAN},
+                  .gradient_norm = {1, 2},
+                  .step_norm = {0, 1}};
+  record.hits = Hits{{1, 0.1}, {0, -1}, {0, -1}, {0, -1}, {0, NAN}};
+  record.trajectory = Trajectory{{{1, 2}, {3, 4}}, {{1}, {-INFINITY}}};
+  record.repeat_wall_seconds = {0.5};
+  record.provenance = {{"version", "0"}, {"run", {{"concurrent_jobs", 2}}}};
+  return record;
+}
+
+TEST(Record, SurvivesTheRoundTrip) {
+  const Json written = Json::parse(to_json(sample()).dump());
+  EXPECT_EQ(to_json(record_from_json(written)), written);
+}
+
+TEST(Record, WhatIsNoRecordIsAUsageError) {
+  Json json = to_json(sample());
+  for (const char* missing : {"schema", "cell", "request", "status", "curve", "summary"}) {
+    Json broken = json;
+    broken.erase(missing);
+    EXPECT_THROW(record_from_json(broken), UsageError) << missing;
+  }
+  json["status"] = "splendid";
+  EXPECT_THROW(record_from_json(json), UsageError);
+}
+
+TEST(Record, TimesAreLeftOutOfComparisons) {
+  Record other = sample();
+  other.summary.wall_seconds = 9;
+  other.summary.peak_memory_bytes = 1 << 20;
+  other.curve.wall_seconds = {0, 9};
+  other.hits->wall_seconds = {1, NAN};
+  other.repeat_wall_seconds = {9, 10};
+  other.provenance["run"]["concurrent_jobs"] = 1;
+  EXPECT_EQ(without_timings(to_json(other)), without_timings(to_json(sample())));
+  other.curve.loss[0] = std::nextafter(1, 2);
+  EXPECT_NE(without_timings(to_json(other)), without_timings(to_json(sample())));
+}
+
+TEST(Cell, DependsOnAllThatIsAskedAndNothingElse) {
+  const Request asked = sample().request;
+  Request other = asked;
+  other.rates = "direct.json";
+  other.optimizer.revision = 9;
+  EXPECT_EQ(cell_digest(other), cell_digest(asked));
+  for (const auto& change : std::vector<std::function<void(Request&)>>{
+           [](Request& r) { r.seed = 8; }, [](Request& r) { r.threads = 2; },
+           [](Request& r) { r.budget.work = 5; }, [](Request& r) { r.budget.target = 0; },
+           [](Request& r) { r.problem.options["n"] = 1; },
+           [](Request& r) { r.optimizer.options["rate"] = 0.2; }}) {
+    Request changed = asked;
+    change(changed);
+    EXPECT_NE(cell_digest(changed), cell_digest(asked));
+  }
+}
+
+}  // namespace
+}  // namespace isoline

@@ -1,0 +1,26 @@
+#include "core/schema.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace isoline {
+namespace {
+
+TEST(Schema, WhatConformsHasNoViolations) {
+  const Json schema{{"type", "object"}, {"required", {"a"}}};
+  EXPECT_TRUE(schema_violations({{"a", 1}}, schema).empty());
+}
+
+TEST(Schema, ViolationsNameTheirPlace) {
+  const Json schema{{"type", "object"},
+                    {"properties", {{"list", {{"items", {{"type", "integer"}}}}}}}};
+  const auto violations = schema_violations({{"list", {1, "two"}}}, schema);
+  ASSERT_FALSE(violations.empty());
+  bool is_named = false;
+  for (const std::string& each : violations) is_named |= each.find("[1]") != std::string::npos;
+  EXPECT_TRUE(is_named) << violations[0];
+}
+
+}  // namespace
+}  // namespace isoline
