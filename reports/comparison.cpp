@@ -169,6 +169,18 @@ void summarize_runs(Comparison& c) {
 
 }  // namespace
 
+std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem) {
+  std::vector<std::size_t> order;
+  for (std::size_t s = 0; s < comparison.optimizers.size(); ++s)
+    if (comparison.cell(problem, s).is_measured()) order.push_back(s);
+  std::ranges::stable_sort(order, {}, [&](std::size_t s) {
+    const Cell& cell = comparison.cell(problem, s);
+    return std::array{cell.work[2].median, cell.work[1].median, cell.work[0].median,
+                      cell.loss.median};
+  });
+  return order;
+}
+
 Comparison compare_optimizers(const Study& study) {
   Comparison c;
   c.study = &study;

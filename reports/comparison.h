@@ -83,13 +83,8 @@ struct Comparison {
 
 Comparison compare_optimizers(const Study& study);
 
-// "target 3, budget 2"
-std::string status_text(const std::map<Status, std::size_t>& statuses);
-
-// "118 of 120 cells, missing: sine / gd / seed 3, …"; empty where nothing is missing.
-std::string missing_text(const Comparison& comparison);
-
-// The command that asks for the same cell again.
-std::string rerun_command(const Request& request);
+// The optimizers that ran on a problem, best first: by median work from the tightest tolerance to
+// the loosest, then by final loss.
+std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem);
 
 }  // namespace isoline

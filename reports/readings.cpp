@@ -31,16 +31,6 @@ std::string unsolved_text(std::size_t unsolved, std::size_t applicable) {
                      unsolved == 1 ? "does" : "do");
 }
 
-// The cells of a problem that ran, by median work to the tightest tolerance.
-std::vector<std::size_t> by_work(const Comparison& c, std::size_t problem) {
-  std::vector<std::size_t> order;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    if (c.cell(problem, s).is_measured()) order.push_back(s);
-  std::ranges::stable_sort(
-      order, {}, [&](std::size_t s) { return c.cell(problem, s).work[kTightest].median; });
-  return order;
-}
-
 std::string least_loss_reading(const Comparison& c, std::size_t problem,
                                const std::vector<std::size_t>& order) {
   const std::size_t best = *std::ranges::min_element(
@@ -69,7 +59,7 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
 }
 
 std::string curve_reading(const Comparison& c, std::size_t problem) {
-  const std::vector<std::size_t> order = by_work(c, problem);
+  const std::vector<std::size_t> order = ranking(c, problem);
   if (order.empty()) return "Nothing has run on this problem.";
   const auto work = [&](std::size_t s) { return c.cell(problem, s).work[kTightest].median; };
   const auto solved = static_cast<std::size_t>(

@@ -67,8 +67,6 @@ std::string without_idle_zeros(std::string text) {
   return text;
 }
 
-std::string reached(Real value) { return value == kNever ? "✗" : figure(value); }
-
 }  // namespace
 
 std::string figure(Real value) {
@@ -84,11 +82,17 @@ std::string exact_figure(Real value) {
   return without_idle_zeros(fmt::format("{}", value));
 }
 
+std::string reached_figure(Real value) { return value == kNever ? "✗" : figure(value); }
+
+std::string range_figure(const Spread& spread) {
+  if (spread.n <= 1 || spread.low == spread.high) return "";
+  return fmt::format("{}–{}", reached_figure(spread.low), reached_figure(spread.high));
+}
+
 std::string figure(const Spread& spread) {
   if (spread.n == 0) return "";
-  if (spread.n == 1 || spread.low == spread.high) return reached(spread.median);
-  return fmt::format("{} ({}–{})", reached(spread.median), reached(spread.low),
-                     reached(spread.high));
+  const std::string range = range_figure(spread);
+  return reached_figure(spread.median) + (range.empty() ? "" : fmt::format(" ({})", range));
 }
 
 std::string percent(Real share) { return fmt::format("{:.0f} %", 100 * share); }

@@ -12,7 +12,9 @@ namespace isoline {
 // four significant digits; "inf", "nan".
 std::string figure(Real value);
 std::string exact_figure(Real value);      // the shortest text that reads back as the same number
+std::string reached_figure(Real value);    // ✗ where infinite
 std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for what was never reached
+std::string range_figure(const Spread& spread);  // "90–300"; empty where all agree
 std::string percent(Real share);
 
 // Text from records, made safe for the place it goes to.

@@ -1,9 +1,7 @@
-// The phrases of a comparison that every format uses.
+#include "reports/wording.h"
+
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "reports/comparison.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -26,6 +24,54 @@ std::string missing_text(const Comparison& comparison) {
                         missing[i].optimizer, missing[i].seed);
   if (missing.size() > kNamed) text += fmt::format("; and {} more", missing.size() - kNamed);
   return text;
+}
+
+std::string headline(const Comparison& c) {
+  const auto counted = [](std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  return fmt::format("{} on {}, {}, {}", counted(c.optimizers.size(), "optimizer"),
+                     counted(c.problems.size(), "problem"), counted(c.seeds.size(), "seed"),
+                     counted(c.runs.size(), "run"));
+}
+
+std::vector<std::string> remarks(const Comparison& c) {
+  std::vector<std::string> all;
+  const Study& study = *c.study;
+  if (study.superseded > 0)
+    all.push_back(
+        fmt::format("{} older results of the same cells were left aside.", study.superseded));
+  if (!study.unreadable.empty())
+    all.push_back(fmt::format("{} files could not be read; they are listed under failures.",
+                              study.unreadable.size()));
+  if (c.is_any_timed_together)
+    all.push_back("Times marked ≈ were taken while other runs shared the machine: not comparable.");
+  for (const ProblemAxis& problem : c.problems)
+    if (!problem.is_minimum_declared)
+      all.push_back(fmt::format(
+          "{} declares no least loss: its tolerances refer to the best loss any run reached.",
+          problem.spec));
+  return all;
+}
+
+std::string count_text(const Cell& cell, std::size_t tolerance) {
+  const Spread& work = cell.work[tolerance];
+  std::string text = fmt::format("{}/{}", work.n - work.unsolved, work.n);
+  if (cell.failed > 0) text += fmt::format(", {} failed", cell.failed);
+  const std::size_t missing = cell.planned - cell.runs.size();
+  if (missing > 0) text += fmt::format(", {} missing", missing);
+  return text;
+}
+
+std::string matrix_text(const Cell& cell, std::size_t tolerance) {
+  if (cell.planned == 0) return "";
+  if (cell.runs.empty()) return "missing";
+  if (!cell.is_measured()) return "n/a";
+  return reached_figure(cell.work[tolerance].median);
+}
+
+bool is_complete(const Cell& cell, std::size_t tolerance) {
+  return cell.work[tolerance].unsolved == 0 && cell.failed == 0 && cell.planned == cell.runs.size();
 }
 
 std::string rerun_command(const Request& request) {
