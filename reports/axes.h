@@ -1,0 +1,26 @@
+// The rows and columns of a study: which problems and optimizers it holds, and under which names.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "reports/comparison.h"
+
+namespace isoline {
+
+// Names of optimizers. A file of rates gives one method other options on every problem; the method
+// then keeps one row under its name, unless some problem has two of that name.
+class OptimizerLabels {
+ public:
+  explicit OptimizerLabels(const Study& study);
+  std::string operator()(const std::string& spec) const;
+
+ private:
+  std::set<std::string> by_name_;  // names that stand for all their specs
+};
+
+std::vector<ProblemAxis> problem_axis(const Study& study);
+std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& label);
+
+}  // namespace isoline

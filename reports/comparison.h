@@ -1,0 +1,90 @@
+// Every figure of a report, computed once from a study; the formats only lay it out.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "reports/statistics.h"
+#include "reports/study.h"
+
+namespace isoline {
+
+// The tolerances of the tables: f ≤ f_L + τ (f₀ − f_L). Hits list τ = 10^(−j/5) at index j.
+struct Tolerance {
+  std::string_view name;
+  Real tau;
+  std::size_t hit;
+};
+inline constexpr std::array<Tolerance, 3> kTolerances = {
+    {{"1e-1", 1e-1, 5}, {"1e-3", 1e-3, 15}, {"1e-6", 1e-6, 30}}};
+inline constexpr std::size_t kTightest = kTolerances.size() - 1;
+
+// One run: its record and what it took to each tolerance, infinite where never reached.
+struct Run {
+  const Record* record = nullptr;
+  std::size_t problem = 0, optimizer = 0;  // indices
+  std::array<Real, kTolerances.size()> work, seconds;
+  bool is_timed_alone = true;  // no other run beside it: its times mean something
+};
+
+// One problem and one optimizer, over seeds.
+struct Cell {
+  std::vector<std::size_t> runs;  // indices, by seed
+  std::size_t planned = 0;        // cells of the plan; runs.size() of them or more are answered
+  std::size_t failed = 0;         // runs that went wrong: see is_failure()
+  std::map<Status, std::size_t> statuses;
+  std::array<Spread, kTolerances.size()> work, seconds;
+  std::array<bool, kTolerances.size()> is_best{};  // least median work of the problem; ties all
+  Spread loss, x_error;                            // at the end; x_error.n = 0: no truth is known
+  std::string inapplicable;                        // why the pair makes no sense, or empty
+  std::vector<std::string> privileges;
+  bool is_timed_alone = true;
+
+  bool is_measured() const { return !runs.empty() && inapplicable.empty(); }
+};
+
+struct ProblemAxis {
+  std::string spec;
+  const Sheet* sheet = nullptr;     // none where the folder has none
+  bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
+};
+
+struct OptimizerAxis {
+  std::string label;  // its spec; its name alone where a file of rates chose the options
+  const Sheet* sheet = nullptr;
+  std::vector<std::string> privileges;                   // on any problem
+  std::size_t applicable = 0;                            // problems it can treat
+  std::array<std::size_t, kTolerances.size()> solved{};  // problems whose median is finite
+
+  std::string family() const { return sheet == nullptr ? "" : sheet->family; }
+};
+
+struct Comparison {
+  const Study* study = nullptr;           // must outlive the comparison
+  std::vector<ProblemAxis> problems;      // by spec
+  std::vector<OptimizerAxis> optimizers;  // by area of the profile at the tightest tolerance
+  std::vector<Run> runs;
+  std::vector<std::vector<Cell>> cells;  // [problem][optimizer]
+  std::array<Profile, kTolerances.size()> profiles;
+  std::size_t planned = 0, answered = 0;
+  std::vector<PlannedCell> missing;
+  std::map<Status, std::size_t> statuses;
+  std::vector<std::size_t> failures;  // runs
+  std::vector<std::uint64_t> seeds;
+  bool is_any_timed_together = false;
+
+  const Cell& cell(std::size_t problem, std::size_t optimizer) const {
+    return cells[problem][optimizer];
+  }
+};
+
+Comparison compare_optimizers(const Study& study);
+
+// The optimizers that ran on a problem, best first: by median work from the tightest tolerance to
+// the loosest, then by final loss.
+std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem);
+
+}  // namespace isoline

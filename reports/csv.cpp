@@ -1,0 +1,67 @@
+// The report as tidy CSV: one row a run, and one for each planned cell that has not run.
+#include <fmt/format.h>
+
+#include "reports/report.h"
+#include "reports/text.h"
+#include "reports/wording.h"
+
+namespace isoline {
+namespace {
+
+void add(std::string& row, std::string_view field) {
+  if (!row.empty() && row.back() != '\n') row += ',';
+  row += field;
+}
+
+std::string header() {
+  std::string row =
+      "problem,optimizer,seed,status,iterations,work,start_loss,loss,best_loss,x_error";
+  for (const Tolerance& tolerance : kTolerances) row += fmt::format(",work_to_{}", tolerance.name);
+  for (const Tolerance& tolerance : kTolerances)
+    row += fmt::format(",seconds_to_{}", tolerance.name);
+  return row +
+         ",wall_seconds,timed_alone,peak_memory_bytes,privileges,message,claimed,cell,build,"
+         "command\n";
+}
+
+std::string row_of(const Run& run) {
+  const Record& record = *run.record;
+  const Request& request = record.request;
+  const Summary& summary = record.summary;
+  std::string row = csv_field(request.problem.spec);
+  add(row, csv_field(request.optimizer.spec));
+  add(row, std::to_string(request.seed));
+  add(row, name_of(record.status));
+  add(row, std::to_string(summary.iterations));
+  add(row, std::to_string(summary.work));
+  for (const Real value : {summary.start_loss, summary.loss, summary.best_loss, summary.x_error})
+    add(row, exact_figure(value));
+  for (const Real work : run.work) add(row, exact_figure(work));
+  for (const Real seconds : run.seconds) add(row, exact_figure(seconds));
+  add(row, exact_figure(summary.wall_seconds));
+  add(row, run.is_timed_alone ? "true" : "false");
+  add(row, std::to_string(summary.peak_memory_bytes));
+  add(row, csv_field(fmt::format("{}", fmt::join(record.privileges, "; "))));
+  for (const std::string& text :
+       {record.message, record.claimed, record.cell, record.build, rerun_command(request)})
+    add(row, csv_field(text));
+  return row + '\n';
+}
+
+// As many fields as any other row; all figures empty.
+std::string row_of(const PlannedCell& cell) {
+  const std::string before_cell(19, ',');
+  return fmt::format("{},{},{},missing{}{},,\n", csv_field(cell.problem), csv_field(cell.optimizer),
+                     cell.seed, before_cell, csv_field(cell.cell));
+}
+
+}  // namespace
+
+std::string csv_report(const Comparison& comparison) {
+  std::string text = header();
+  for (const Run& run : comparison.runs) text += row_of(run);
+  for (const PlannedCell& cell : comparison.missing) text += row_of(cell);
+  return text;
+}
+
+}  // namespace isoline

@@ -1,0 +1,140 @@
+// The page: template, style, scripts and Chart.js from reports/page, filled with tables and data.
+// One file that asks nothing of the network.
+#include <fmt/format.h>
+
+#include <map>
+#include <string_view>
+
+#include "reports/curves.h"
+#include "reports/page.h"
+#include "reports/readings.h"
+#include "reports/report.h"
+#include "reports/text.h"
+#include "reports/wording.h"
+
+namespace isoline {
+
+std::string_view embedded_page_html();
+std::string_view embedded_page_css();
+std::string_view embedded_page_js();
+std::string_view embedded_tables_js();
+std::string_view embedded_charts_js();
+std::string_view embedded_chart_js();
+
+namespace {
+
+// Replaces each {{name}} once; what is put in is not searched again.
+std::string filled(std::string_view page,
+                   const std::map<std::string, std::string, std::less<>>& parts) {
+  std::string out;
+  while (true) {
+    const std::size_t open = page.find("{{"), close = page.find("}}", open);
+    if (open == std::string_view::npos || close == std::string_view::npos) break;
+    out += page.substr(0, open);
+    out += parts.at(std::string(page.substr(open + 2, close - open - 2)));
+    page.remove_prefix(close + 2);
+  }
+  return out.append(page);
+}
+
+std::string alerts_html(const Comparison& c) {
+  std::string html;
+  if (!c.missing.empty())
+    html += fmt::format("<p class=alert role=alert><b>Incomplete.</b> {}</p>\n",
+                        html_text(missing_text(c)));
+  const std::size_t unread = c.study->unreadable.size();
+  if (!c.failures.empty() || unread > 0)
+    html += fmt::format(
+        "<p class=alert><b>{} failed</b>{} — <a href=\"#failures\">see below</a></p>\n",
+        c.failures.size(), unread > 0 ? fmt::format(", {} unreadable files", unread) : "");
+  return html;
+}
+
+std::string tiles_html(const Comparison& c) {
+  std::string html =
+      fmt::format("<li><b>{}<small>/{}</small></b>cells</li>", c.answered, c.planned);
+  for (const auto& [status, count] : c.statuses)
+    html += fmt::format("<li class=\"{}\"><b>{}</b>{}</li>", is_failure(status) ? "bad" : "", count,
+                        name_of(status));
+  return html;
+}
+
+std::string remarks_html(const Comparison& c) {
+  std::string html;
+  for (const std::string& remark : remarks(c))
+    html += fmt::format("<li>{}</li>", html_text(remark));
+  return html.empty() ? "" : "<ul class=remarks>" + html + "</ul>";
+}
+
+std::string matrices_html(const Comparison& c) {
+  std::string html;
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    html += fmt::format("<div class=\"scroll pane\" data-tau={}>{}</div>\n", t, matrix_html(c, t));
+  return html;
+}
+
+std::string profile_readings_html(const Comparison& c) {
+  std::string html;
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    html += fmt::format("<p class=\"reading pane\" data-tau={}>{}</p>\n", t,
+                        html_text(profile_reading(c, t)));
+  return html;
+}
+
+std::string plane_html(const char* space, const char* title) {
+  return fmt::format(
+      "<figure><figcaption>{}</figcaption><div class=plane data-space={}></div></figure>", title,
+      space);
+}
+
+std::string problem_html(const Comparison& c, std::size_t p) {
+  const ProblemAxis& problem = c.problems[p];
+  const Sheet* sheet = problem.sheet;
+  std::string html =
+      fmt::format("<article class=problem id=problem-{0} data-problem={0}><h3>{1}</h3>", p,
+                  html_text(problem.spec));
+  if (sheet != nullptr)
+    html +=
+        fmt::format("<p class=about>{} <span class=formula>{}</span> <cite>{}</cite></p>",
+                    html_text(sheet->title), html_text(sheet->formula), html_text(sheet->source));
+  html += fmt::format("<p class=reading>{}</p><div class=curves></div>",
+                      html_text(curve_reading(c, p)));
+  const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
+  if (has_planes && !paths(c, p).empty()) {
+    html += fmt::format("<p class=reading>{}</p><div class=planes>", html_text(path_reading(c, p)));
+    if (sheet->landscape_x) html += plane_html("x", "Paths in x, over the loss");
+    if (sheet->landscape_y) html += plane_html("y", "The same paths in y");
+    html += "</div>";
+  }
+  return html + "</article>\n";
+}
+
+std::string problems_html(const Comparison& c) {
+  std::string html;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) html += problem_html(c, p);
+  return html;
+}
+
+}  // namespace
+
+std::string html_report(const Comparison& c) {
+  return filled(embedded_page_html(), {{"style", std::string(embedded_page_css())},
+                                       {"headline", html_text(headline(c))},
+                                       {"alerts", alerts_html(c)},
+                                       {"tiles", tiles_html(c)},
+                                       {"remarks", remarks_html(c)},
+                                       {"matrices", matrices_html(c)},
+                                       {"profile-readings", profile_readings_html(c)},
+                                       {"details", details_html(c)},
+                                       {"problems", problems_html(c)},
+                                       {"families", families_html(c)},
+                                       {"failures", failures_html(c)},
+                                       {"provenance", provenance_html(c)},
+                                       {"data", page_data(c)},
+                                       {"chart-js", std::string(embedded_chart_js())},
+                                       {"charts-js", std::string(embedded_charts_js())},
+                                       {"tables-js", std::string(embedded_tables_js())},
+                                       {"page-js", std::string(embedded_page_js())}});
+}
+
+}  // namespace isoline

@@ -1,0 +1,108 @@
+// All aggregates as JSON, schema isoline.report/1: what is the same for the same build apart from
+// times, so that two reports can be compared.
+#include "core/json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "reports/readings.h"
+#include "reports/report.h"
+#include "reports/wording.h"
+
+namespace isoline {
+namespace {
+
+Json to_json(const Spread& spread) {
+  return {{"median", json_number(spread.median)},
+          {"low", json_number(spread.low)},
+          {"high", json_number(spread.high)},
+          {"n", spread.n},
+          {"unsolved", spread.unsolved}};
+}
+
+Json to_json(const std::map<Status, std::size_t>& statuses) {
+  Json json = Json::object();
+  for (const auto& [status, count] : statuses) json[std::string(name_of(status))] = count;
+  return json;
+}
+
+Json by_tolerance(const std::array<Spread, kTolerances.size()>& spreads) {
+  Json json = Json::object();
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    json[std::string(kTolerances[t].name)] = to_json(spreads[t]);
+  return json;
+}
+
+Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
+  const Cell& cell = c.cell(p, s);
+  Json json{{"problem", c.problems[p].spec}, {"optimizer", c.optimizers[s].label},
+            {"planned", cell.planned},       {"runs", cell.runs.size()},
+            {"failed", cell.failed},         {"statuses", to_json(cell.statuses)},
+            {"privileges", cell.privileges}};
+  if (!cell.inapplicable.empty()) json["inapplicable"] = cell.inapplicable;
+  if (!cell.is_measured()) return json;
+  json["figures"] = {{"work", by_tolerance(cell.work)}, {"loss", to_json(cell.loss)}};
+  if (cell.x_error.n > 0) json["figures"]["x_error"] = to_json(cell.x_error);
+  json["times"] = {{"seconds", by_tolerance(cell.seconds)}, {"timed_alone", cell.is_timed_alone}};
+  return json;
+}
+
+Json profiles_json(const Comparison& c) {
+  Json json = Json::object();
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+    const Profile& profile = c.profiles[t];
+    Json lines = Json::object();
+    for (std::size_t s = 0; s < profile.solvers.size(); ++s)
+      lines[c.optimizers[s].label] = profile.solvers[s].ratios;
+    json[std::string(kTolerances[t].name)] = {
+        {"problems", profile.problems}, {"ratios", lines}, {"reading", profile_reading(c, t)}};
+  }
+  return json;
+}
+
+Json missing_json(const Comparison& c) {
+  Json list = Json::array();
+  for (const PlannedCell& cell : c.missing)
+    list.push_back({{"cell", cell.cell},
+                    {"problem", cell.problem},
+                    {"optimizer", cell.optimizer},
+                    {"seed", cell.seed}});
+  return list;
+}
+
+Json failures_json(const Comparison& c) {
+  Json list = Json::array();
+  for (const std::size_t run : c.failures) {
+    const Record& record = *c.runs[run].record;
+    list.push_back({{"cell", record.cell},
+                    {"status", name_of(record.status)},
+                    {"message", record.message},
+                    {"command", rerun_command(record.request)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string json_report(const Comparison& c) {
+  Json cells = Json::array(), unreadable = Json::array();
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (c.cell(p, s).planned > 0) cells.push_back(cell_json(c, p, s));
+  for (const Unreadable& file : c.study->unreadable)
+    unreadable.push_back({{"file", file.file.filename().string()}, {"reason", file.reason}});
+  const Json json{{"schema", kReportSchema},
+                  {"suites", c.study->plan.suites},
+                  {"planned", c.planned},
+                  {"answered", c.answered},
+                  {"missing", missing_json(c)},
+                  {"statuses", to_json(c.statuses)},
+                  {"seeds", c.seeds},
+                  {"superseded", c.study->superseded},
+                  {"unreadable", unreadable},
+                  {"failures", failures_json(c)},
+                  {"profiles", profiles_json(c)},
+                  {"cells", cells}};
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace isoline

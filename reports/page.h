@@ -1,0 +1,20 @@
+// Parts of the HTML page.
+#pragma once
+
+#include <string>
+
+#include "reports/comparison.h"
+
+namespace isoline {
+
+// Tables as HTML, complete without scripts.
+std::string matrix_html(const Comparison& comparison, std::size_t tolerance);
+std::string details_html(const Comparison& comparison);
+std::string failures_html(const Comparison& comparison);
+std::string families_html(const Comparison& comparison);
+std::string provenance_html(const Comparison& comparison);
+
+// What the charts draw, as JSON that is safe inside a script element.
+std::string page_data(const Comparison& comparison);
+
+}  // namespace isoline

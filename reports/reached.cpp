@@ -1,0 +1,55 @@
+#include "reports/reached.h"
+
+namespace isoline {
+namespace {
+
+void fill_from_hits(Run& run, const Hits& hits) {
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+    const std::size_t j = kTolerances[t].hit;
+    if (j >= hits.iteration.size() || hits.iteration[j] < 0) continue;
+    run.work[t] = static_cast<Real>(hits.work[j]);
+    run.seconds[t] = hits.wall_seconds[j];
+  }
+}
+
+void fill_from_curve(Run& run, Real minimum) {
+  const Curve& curve = run.record->curve;
+  const Real start = run.record->summary.start_loss;
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+    const Real goal = minimum + kTolerances[t].tau * (start - minimum);
+    for (std::size_t i = 0; i < curve.loss.size(); ++i) {
+      if (!(curve.loss[i] <= goal)) continue;
+      run.work[t] = static_cast<Real>(curve.work[i]);
+      run.seconds[t] = curve.wall_seconds[i];
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+BestKnown::BestKnown(const Study& study) {
+  for (const Record& record : study.runs) {
+    const auto key = std::pair(record.request.problem.spec, record.request.seed);
+    Real& least = least_.emplace(key, kNever).first->second;
+    const Real best = record.summary.best_loss;
+    if (record.status != Status::inapplicable && best < least) least = best;
+  }
+}
+
+Real BestKnown::minimum(const Record& record) const {
+  if (record.minimum) return *record.minimum;
+  return least_.at({record.request.problem.spec, record.request.seed});
+}
+
+void fill_reached(Run& run, const BestKnown& best) {
+  run.work.fill(kNever);
+  run.seconds.fill(kNever);
+  if (run.record->status == Status::inapplicable) return;
+  if (run.record->hits)
+    fill_from_hits(run, *run.record->hits);
+  else
+    fill_from_curve(run, best.minimum(*run.record));
+}
+
+}  // namespace isoline

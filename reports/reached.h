@@ -1,0 +1,25 @@
+// What a run took to reach each tolerance.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "reports/comparison.h"
+
+namespace isoline {
+
+// The least loss any run of a problem and seed has reached: f_L where none is declared.
+class BestKnown {
+ public:
+  explicit BestKnown(const Study& study);
+  Real minimum(const Record& record) const;  // declared, else the best known
+
+ private:
+  std::map<std::pair<std::string, std::uint64_t>, Real> least_;
+};
+
+// Fills work and seconds: exact from the record's hits, otherwise read off the kept curve.
+void fill_reached(Run& run, const BestKnown& best);
+
+}  // namespace isoline

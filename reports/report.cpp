@@ -1,0 +1,17 @@
+#include "reports/report.h"
+
+#include "core/json.h"
+
+namespace isoline {
+
+void write_report(const Study& study, const std::filesystem::path& out) {
+  const Comparison comparison = compare_optimizers(study);
+  std::filesystem::create_directories(out);
+  write_text(out / "index.html", html_report(comparison));
+  write_text(out / "report.md", markdown_report(comparison));
+  write_text(out / "report.tex", latex_report(comparison));
+  write_text(out / "report.csv", csv_report(comparison));
+  write_text(out / "report.json", json_report(comparison));
+}
+
+}  // namespace isoline

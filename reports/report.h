@@ -1,0 +1,24 @@
+// The report of a study: one page for people, and the same figures as Markdown, LaTeX, CSV, JSON.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "reports/comparison.h"
+#include "reports/study.h"
+
+namespace isoline {
+
+// Writes index.html, report.md, report.tex, report.csv and report.json; makes the folder.
+void write_report(const Study& study, const std::filesystem::path& out);
+
+std::string html_report(const Comparison& comparison);
+std::string markdown_report(const Comparison& comparison);
+std::string latex_report(const Comparison& comparison);
+std::string csv_report(const Comparison& comparison);   // one row a run
+std::string json_report(const Comparison& comparison);  // schema isoline.report/1
+std::string terminal_table(const Comparison& comparison);
+
+inline constexpr const char* kReportSchema = "isoline.report/1";
+
+}  // namespace isoline

@@ -1,0 +1,44 @@
+// Statistics of comparison: medians that keep failures in the denominator, performance profiles.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "core/array.h"
+
+namespace isoline {
+
+inline constexpr Real kNever = std::numeric_limits<Real>::infinity();
+
+// The median and range of n values, of which `unsolved` are infinite. Nothing is known if n = 0.
+struct Spread {
+  Real median = kNever, low = kNever, high = kNever;
+  std::size_t n = 0, unsolved = 0;
+
+  bool is_solved() const { return n > 0 && median < kNever; }
+};
+
+// Not-a-number counts as infinite: what failed was not reached. With n even the median is the mean
+// of the two in the middle, infinite if either is.
+Spread spread_of(std::vector<Real> values);
+Real median_of(std::vector<Real> values);
+
+// The share of problems that each solver solves within a factor of the least cost.
+// Dolan, Moré (2002), Math. Program. 91:201–213.
+struct ProfileLine {
+  std::vector<Real> ratios;  // r_{p,s} of the problems solved, ascending
+};
+struct Profile {
+  std::size_t problems = 0;  // n_p: also those that nobody solves
+  std::vector<ProfileLine> solvers;
+
+  Real share(std::size_t solver, Real factor) const;  // ρ_s(factor)
+  Real area(std::size_t solver, Real most) const;  // ∫ ρ_s over log2 factor in [0, log2 most], mean
+};
+
+// costs[p][s]; infinite or not-a-number: unsolved. A cost below one unit counts as one unit, so
+// that a problem solved at its start leaves the other ratios finite.
+Profile performance_profile(const std::vector<std::vector<Real>>& costs);
+
+}  // namespace isoline

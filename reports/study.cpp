@@ -1,0 +1,153 @@
+// Reads result folders. Records come by the ten thousand, and parsing them is nearly all the time a
+// report takes, so threads share the files.
+#include "reports/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <set>
+#include <thread>
+#include <tuple>
+#include <unordered_map>
+#include <variant>
+
+#include "core/errors.h"
+#include "core/json.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kMostReaders = 8;
+
+std::vector<fs::path> json_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (!fs::is_directory(folder)) return files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void require_equal_columns(const Record& record) {
+  const Curve& curve = record.curve;
+  const std::size_t points = curve.iteration.size();
+  for (const std::size_t size :
+       {curve.work.size(), curve.wall_seconds.size(), curve.processor_seconds.size(),
+        curve.loss.size(), curve.x_error.size(), curve.gradient_norm.size(),
+        curve.step_norm.size()})
+    require(size == points, "the columns of its curve differ in length");
+  if (!record.hits) return;
+  const Hits& hits = *record.hits;
+  for (const std::size_t size : {hits.work.size(), hits.target.size(), hits.wall_seconds.size()})
+    require(size == hits.iteration.size(), "the columns of its hits differ in length");
+}
+
+using Answer = std::variant<std::monostate, Record, std::string>;  // a record, or why it is none
+
+Answer read_record(const fs::path& file) {
+  try {
+    Record record = record_from_json(read_json(file));
+    require_equal_columns(record);
+    return record;
+  } catch (const std::exception& error) {
+    return std::string(error.what());
+  }
+}
+
+std::vector<Answer> read_records(const std::vector<fs::path>& files) {
+  std::vector<Answer> answers(files.size());
+  std::atomic<std::size_t> next{0};
+  const auto read_some = [&] {
+    for (std::size_t i = next++; i < files.size(); i = next++) answers[i] = read_record(files[i]);
+  };
+  const unsigned readers = std::clamp(std::thread::hardware_concurrency(), 1U, kMostReaders);
+  std::vector<std::jthread> threads;
+  for (unsigned i = 1; i < readers && i < files.size(); ++i) threads.emplace_back(read_some);
+  read_some();
+  threads.clear();  // joins
+  return answers;
+}
+
+std::string started(const Record& record) {
+  const auto run = record.provenance.find("run");
+  if (run == record.provenance.end() || !run->is_object()) return "";
+  const auto time = run->find("started");
+  return time != run->end() && time->is_string() ? time->get<std::string>() : "";
+}
+
+// ISO times sort as text; the file name decides where they are absent or equal.
+bool is_newer(const Record& a, const Record& b) {
+  return std::pair(started(a), a.file_name()) > std::pair(started(b), b.file_name());
+}
+
+void keep_newest(Study& study, std::unordered_map<std::string, std::size_t>& place, Record record) {
+  const auto [at, is_first] = place.emplace(record.cell, study.runs.size());
+  if (is_first) {
+    study.runs.push_back(std::move(record));
+    return;
+  }
+  ++study.superseded;
+  Record& kept = study.runs[at->second];
+  if (is_newer(record, kept)) kept = std::move(record);
+}
+
+void read_runs(Study& study, const std::vector<fs::path>& folders) {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : folders)
+    for (fs::path& file : json_files(folder / "runs")) files.push_back(std::move(file));
+  std::vector<Answer> answers = read_records(files);
+  std::unordered_map<std::string, std::size_t> place;  // of a cell in study.runs
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (auto* reason = std::get_if<std::string>(&answers[i]))
+      study.unreadable.push_back({files[i], std::move(*reason)});
+    else
+      keep_newest(study, place, std::get<Record>(std::move(answers[i])));
+  const auto order = [](const Record& r) {
+    return std::tie(r.request.problem.spec, r.request.optimizer.spec, r.request.seed, r.cell);
+  };
+  std::sort(study.runs.begin(), study.runs.end(),
+            [&](const Record& a, const Record& b) { return order(a) < order(b); });
+}
+
+void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& known) {
+  for (const fs::path& file : json_files(folder / "components")) try {
+      Sheet sheet = sheet_from_json(read_json(file));
+      if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
+    } catch (const std::exception& error) {
+      study.unreadable.push_back({file, error.what()});
+    }
+}
+
+void read_plan(Study& study, const fs::path& folder, std::set<std::string>& known) {
+  const fs::path file = folder / "plan.json";
+  if (fs::exists(file)) try {
+      Plan plan = plan_from_json(read_json(file));
+      for (std::string& suite : plan.suites)
+        if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
+          study.plan.suites.push_back(std::move(suite));
+      for (PlannedCell& cell : plan.cells)
+        if (known.insert(cell.cell).second) study.plan.cells.push_back(std::move(cell));
+    } catch (const std::exception& error) {
+      study.unreadable.push_back({file, error.what()});
+    }
+}
+
+}  // namespace
+
+Study read_study(const std::vector<fs::path>& folders) {
+  for (const fs::path& folder : folders)
+    require(fs::is_directory(folder), fmt::format("no result folder {}", folder.string()));
+  Study study;
+  std::set<std::string> cells, sheets;
+  for (const fs::path& folder : folders) {
+    read_plan(study, folder, cells);
+    read_sheets(study, folder, sheets);
+  }
+  read_runs(study, folders);
+  return study;
+}
+
+}  // namespace isoline

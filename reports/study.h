@@ -1,0 +1,30 @@
+// What a report reads: the plan, the records and the sheets of one or several result folders.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "core/sheet.h"
+
+namespace isoline {
+
+// A file that is no record, sheet or plan. It is listed, so that nothing vanishes in silence.
+struct Unreadable {
+  std::filesystem::path file;
+  std::string reason;
+};
+
+struct Study {
+  Plan plan;                 // the union of the folders' plans
+  std::vector<Record> runs;  // one a cell, by its newest build; by problem, optimizer, seed
+  std::vector<Sheet> sheets;
+  std::vector<Unreadable> unreadable;
+  std::size_t superseded = 0;  // readable records left aside for a newer one of the same cell
+};
+
+// Folders are laid out as core/sheet.h says; a missing one is a UsageError.
+Study read_study(const std::vector<std::filesystem::path>& folders);
+
+}  // namespace isoline

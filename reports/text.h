@@ -1,0 +1,27 @@
+// How figures and foreign text are written, the same way in every format.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "reports/statistics.h"
+
+namespace isoline {
+
+// The one way a table writes a number: whole numbers below ten million in full, all others with
+// four significant digits; "inf", "nan".
+std::string figure(Real value);
+std::string exact_figure(Real value);      // the shortest text that reads back as the same number
+std::string reached_figure(Real value);    // ✗ where infinite
+std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for what was never reached
+std::string range_figure(const Spread& spread);  // "90–300"; empty where all agree
+std::string percent(Real share);
+
+// Text from records, made safe for the place it goes to.
+std::string html_text(std::string_view text);
+std::string markdown_text(std::string_view text);
+std::string latex_text(std::string_view text);
+std::string csv_field(std::string_view text);
+std::string shell_word(std::string_view text);
+
+}  // namespace isoline

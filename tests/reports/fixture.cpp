@@ -1,0 +1,104 @@
+#include "tests/reports/fixture.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "core/json.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+Hits hits_of(const PlainRun& run) {
+  Hits hits;
+  for (std::size_t j = 0; j < 51; ++j) {
+    const bool is_met = j < run.hits;
+    const std::int64_t work = is_met ? static_cast<std::int64_t>(j) * run.work_per_hit : -1;
+    hits.target.push_back(std::pow(10.0, -0.2 * static_cast<Real>(j)));
+    hits.iteration.push_back(is_met ? static_cast<std::int64_t>(j) : -1);
+    hits.work.push_back(work);
+    hits.forwards.push_back(work);
+    hits.wall_seconds.push_back(is_met ? 1e-5 * static_cast<Real>(work) : NAN);
+  }
+  return hits;
+}
+
+Curve curve_of(const PlainRun& run) {
+  Curve curve;
+  for (std::size_t j = 0; j < run.hits; ++j) {
+    const auto k = static_cast<std::int64_t>(j);
+    curve.iteration.push_back(k);
+    curve.work.push_back(k * run.work_per_hit);
+    curve.wall_seconds.push_back(1e-5 * static_cast<Real>(k * run.work_per_hit));
+    curve.processor_seconds.push_back(curve.wall_seconds.back());
+    curve.loss.push_back(std::pow(10.0, -0.2 * static_cast<Real>(j)));
+    curve.x_error.push_back(std::sqrt(curve.loss.back()));
+    curve.gradient_norm.push_back(curve.x_error.back());
+    curve.step_norm.push_back(0.1 * curve.x_error.back());
+  }
+  return curve;
+}
+
+std::string name_in(const std::string& spec) { return spec.substr(0, spec.find('[')); }
+
+}  // namespace
+
+ResultFolder::ResultFolder() {
+  static std::atomic<int> count{0};
+  path_ = fs::temp_directory_path() / fmt::format("isoline-reports-{}-{}", ::getpid(), count++);
+  fs::create_directories(path_ / "runs");
+  fs::create_directories(path_ / "components");
+}
+
+ResultFolder::~ResultFolder() { fs::remove_all(path_); }
+
+void ResultFolder::add(const Record& record) const {
+  add_file("runs/" + record.file_name(), to_json(record).dump());
+}
+void ResultFolder::add(const Sheet& sheet) const {
+  add_file("components/" + sheet.file_name(), to_json(sheet).dump());
+}
+void ResultFolder::add(const Plan& plan) const { add_file("plan.json", to_json(plan).dump()); }
+void ResultFolder::add_file(const std::string& name, const std::string& text) const {
+  write_text(path_ / name, text);
+}
+
+Record record_of(const PlainRun& run) {
+  Record record;
+  record.request.problem = {.name = name_in(run.problem), .spec = run.problem};
+  record.request.optimizer = {.name = name_in(run.optimizer), .spec = run.optimizer};
+  record.request.problem.options["spec"] = run.problem;  // tells the cells apart
+  record.request.optimizer.options["spec"] = run.optimizer;
+  record.request.seed = run.seed;
+  record.cell = cell_digest(record.request);
+  record.build = run.build;
+  record.status = run.status;
+  record.message = run.message;
+  record.minimum = 0;
+  record.curve = curve_of(run);
+  record.hits = hits_of(run);
+  const bool has_curve = !record.curve.loss.empty();
+  record.summary = {.iterations = static_cast<std::int64_t>(run.hits),
+                    .work = static_cast<std::int64_t>(run.hits) * run.work_per_hit,
+                    .start_loss = 1,
+                    .loss = has_curve ? record.curve.loss.back() : NAN,
+                    .best_loss = has_curve ? record.curve.loss.back() : NAN,
+                    .start_x_error = 1,
+                    .x_error = has_curve ? record.curve.x_error.back() : NAN};
+  record.provenance = {{"commit", "abc"}, {"run", {{"started", run.started}}}};
+  return record;
+}
+
+Plan plan_of(const std::vector<Record>& records) {
+  Plan plan{.suites = {"test"}, .cells = {}};
+  for (const Record& record : records)
+    plan.cells.push_back({record.cell, record.request.problem.spec, record.request.optimizer.spec,
+                          record.request.seed});
+  return plan;
+}
+
+}  // namespace isoline

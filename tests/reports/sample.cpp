@@ -1,0 +1,310 @@
+// The sample study: real descents on two-dimensional losses, invented but plausible curves
+// elsewhere.
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "core/json.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Without the fsync of write_text(): thousands of them take minutes.
+void save(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+struct Kind {
+  const char* name;
+  const char* family;
+  Real speed;  // decades of loss per iteration, about
+  int price;   // forwards per iteration
+  bool is_privileged = false;
+};
+constexpr std::array<Kind, 33> kKinds = {{{"gd", "First order", 0.004, 2},
+                                          {"momentum", "First order", 0.01, 2},
+                                          {"nesterov", "First order", 0.012, 2},
+                                          {"adam", "First order", 0.02, 2},
+                                          {"adamw", "First order", 0.018, 2},
+                                          {"rmsprop", "First order", 0.009, 2},
+                                          {"adagrad", "First order", 0.005, 2},
+                                          {"lion", "First order", 0.008, 2},
+                                          {"soap", "First order", 0.05, 3},
+                                          {"muon", "First order", 0.03, 3},
+                                          {"lbfgs", "Quasi-Newton", 0.3, 2},
+                                          {"bfgs", "Quasi-Newton", 0.35, 2},
+                                          {"ceres-lbfgs", "Quasi-Newton", 0.28, 3},
+                                          {"nlopt-slsqp", "Quasi-Newton", 0.4, 3},
+                                          {"nlopt-mma", "Quasi-Newton", 0.1, 2},
+                                          {"gauss-newton", "Least squares", 0.8, 9},
+                                          {"levenberg-marquardt", "Least squares", 0.7, 9},
+                                          {"ceres-lm", "Least squares", 0.75, 9},
+                                          {"ceres-dogleg", "Least squares", 0.7, 9},
+                                          {"hig", "Half-inverse", 0.25, 9},
+                                          {"hig[beta=0.2]", "Half-inverse", 0.2, 9},
+                                          {"newton", "Second order", 1.1, 14, true},
+                                          {"newton-cg", "Second order", 0.6, 20},
+                                          {"adahessian", "Second order", 0.05, 6},
+                                          {"sip", "Scale-invariant", 0.9, 3, true},
+                                          {"sip[step=0.3]", "Scale-invariant", 0.3, 3, true},
+                                          {"nelder-mead", "Derivative-free", 0.02, 2},
+                                          {"cma-es", "Derivative-free", 0.015, 12},
+                                          {"bobyqa", "Derivative-free", 0.05, 1},
+                                          {"cobyla", "Derivative-free", 0.03, 1},
+                                          {"subplex", "Derivative-free", 0.02, 2},
+                                          {"random-search", "Derivative-free", 0.001, 1},
+                                          {"broken", "First order", 0.01, 2}}};
+constexpr std::array kProblems = {
+    "square",        "sine[xi=32,phi=45]", "rosenbrock",     "poisson", "heat",
+    "oscillators",   "oscillators[n=2]",   "quantum-dipole", "chain",   "fluid",
+    "sine",          "rosenbrock[n=10]",   "wave[steps=64]", "lens",    "burgers",
+    "heat[grid=128]"};
+
+// Counter-based and platform-free: a number in [0, 1) from a text.
+Real chance(const std::string& text) {
+  const std::string hex = digest(digest(text + "sample"));
+  return static_cast<Real>(std::stoull(hex.substr(0, 8), nullptr, 16)) / 4294967296.0;
+}
+
+struct Surface {
+  std::function<Eigen::Vector2d(const Eigen::Vector2d&)> map;  // y = P(x), y* = 0
+  Landscape in_x, in_y;
+};
+
+Landscape grid(std::array<Real, 4> window, const std::function<Real(Real, Real)>& loss) {
+  constexpr int kGrid = 97;
+  Landscape landscape{window, Matrix(kGrid, kGrid)};
+  for (int j = 0; j < kGrid; ++j)
+    for (int i = 0; i < kGrid; ++i)
+      landscape.loss(i, j) = loss(window[0] + (window[1] - window[0]) * i / (kGrid - 1),
+                                  window[2] + (window[3] - window[2]) * j / (kGrid - 1));
+  return landscape;
+}
+
+Surface surface(bool is_sine) {
+  Surface s;
+  if (is_sine)
+    s.map = [](const Eigen::Vector2d& x) {
+      return Eigen::Vector2d(std::sin(x[0]) + 0.4 * x[1], 1.5 * x[1] + 0.3 * std::sin(3 * x[0]));
+    };
+  else
+    s.map = [](const Eigen::Vector2d& x) { return Eigen::Vector2d(x[0], x[1] * x[1]); };
+  s.in_x = grid({-0.5, 3.5, -0.5, 3.5},
+                [&](Real a, Real b) { return s.map(Eigen::Vector2d(a, b)).squaredNorm(); });
+  s.in_y = grid({-1, 4, -1, 10}, [](Real a, Real b) { return a * a + b * b; });
+  return s;
+}
+
+// One step of a descent whose direction is a blend of gradient and Newton, by the method's speed.
+void descend(const Surface& s, const Kind& kind, Eigen::Vector2d& x) {
+  constexpr Real kH = 1e-6;
+  Eigen::Matrix2d J;
+  for (int i = 0; i < 2; ++i)
+    J.col(i) =
+        (s.map(x + kH * Eigen::Vector2d::Unit(i)) - s.map(x - kH * Eigen::Vector2d::Unit(i))) /
+        (2 * kH);
+  const Eigen::Vector2d y = s.map(x), gradient = 2 * J.transpose() * y;
+  const Eigen::Matrix2d H = J.transpose() * J + 1e-9 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d newton = H.inverse() * (J.transpose() * y);
+  const Real blend = std::min(1.0, kind.speed);
+  x -= blend * newton * 0.8 + (1 - blend) * std::min(0.01, 0.3 / gradient.norm()) * gradient;
+}
+
+void add_point(Record& r, std::int64_t iteration, Real loss, Real x_error, int price) {
+  const Real seconds = 2e-6 * static_cast<Real>(iteration * price + 1);
+  r.curve.iteration.push_back(iteration);
+  r.curve.work.push_back(iteration * price + 1);
+  r.curve.counts["forward"].push_back(iteration + 1);
+  r.curve.counts["pullback"].push_back(iteration);
+  r.curve.counts["jacobian"].push_back(iteration);
+  r.curve.counts["inverse"].push_back(iteration);
+  r.curve.wall_seconds.push_back(seconds * 1.0123456789);
+  r.curve.processor_seconds.push_back(seconds * 0.987654321);
+  r.curve.loss.push_back(loss);
+  r.curve.x_error.push_back(x_error);
+  r.curve.gradient_norm.push_back(std::sqrt(loss) * 1.23456789);
+  r.curve.step_norm.push_back(std::sqrt(loss) * 0.0123456789);
+}
+
+std::int64_t iteration_at(std::size_t k, std::size_t points) {
+  return k < points / 2 ? static_cast<std::int64_t>(k)
+                        : std::llround(static_cast<Real>(points) / 2 *
+                                       std::pow(1.12, static_cast<Real>(k - points / 2)));
+}
+
+void fill_surface(Record& r, const Surface& s, const Kind& kind, std::size_t points) {
+  Eigen::Vector2d x(3 - 0.3 * chance(r.cell), 3 - 0.3 * chance(r.cell + "2"));
+  if (r.request.seed == 0) x = Eigen::Vector2d(3, 3);
+  r.trajectory.emplace();
+  std::int64_t done = 0;
+  for (std::size_t k = 0; k < points; ++k) {
+    for (; done < iteration_at(k, points); ++done) descend(s, kind, x);
+    const Eigen::Vector2d y = s.map(x);
+    r.trajectory->x.push_back({x[0], x[1]});
+    r.trajectory->y.push_back({y[0], y[1]});
+    add_point(r, done, y.squaredNorm(), x.norm(), kind.price);
+    if (y.squaredNorm() < 1e-12) break;
+  }
+}
+
+void fill_invented(Record& r, const Kind& kind, std::size_t points) {
+  const std::string pair = r.request.problem.spec + kind.name;
+  const Real speed =
+      kind.speed * std::exp(2.5 * (chance(pair) - 0.6)) * std::exp(0.2 * (chance(r.cell) - 0.5));
+  const Real floor = std::pow(10.0, -3 - 12 * chance(pair + "floor"));
+  for (std::size_t k = 0; k < points; ++k) {
+    const std::int64_t i = iteration_at(k, points);
+    const Real wiggle = 1 + 0.2 * std::sin(static_cast<Real>(i) + 7 * chance(r.cell));
+    const Real loss = 3.7 * (std::pow(10.0, -speed * static_cast<Real>(i)) * wiggle + floor);
+    add_point(r, i, loss, 0.9 * std::pow(loss, 0.4), kind.price);
+    if (loss < 3.7e-10) break;
+  }
+}
+
+void finish(Record& r, bool is_declared) {
+  const Curve& curve = r.curve;
+  const Real start = curve.loss.front();
+  if (is_declared) {
+    r.minimum = 0;
+    r.hits.emplace();
+    for (int j = 0; j < 51; ++j) {
+      const Real target = start * std::pow(10.0, -0.2 * j);
+      std::size_t k = 0;
+      while (k < curve.loss.size() && !(curve.loss[k] <= target)) ++k;
+      const bool is_met = k < curve.loss.size();
+      r.hits->target.push_back(target);
+      r.hits->iteration.push_back(is_met ? curve.iteration[k] : -1);
+      r.hits->work.push_back(is_met ? curve.work[k] : -1);
+      r.hits->forwards.push_back(is_met ? curve.iteration[k] + 1 : -1);
+      r.hits->wall_seconds.push_back(is_met ? curve.wall_seconds[k] : NAN);
+    }
+  }
+  r.status = curve.loss.back() <= 1e-10 * start ? Status::target : Status::budget;
+  r.summary = {.iterations = curve.iteration.back(),
+               .work = curve.work.back(),
+               .start_loss = start,
+               .loss = curve.loss.back(),
+               .best_loss = curve.loss.back(),
+               .start_x_error = curve.x_error.front(),
+               .x_error = curve.x_error.back(),
+               .gradient_norm = curve.gradient_norm.back(),
+               .wall_seconds = curve.wall_seconds.back(),
+               .processor_seconds = curve.processor_seconds.back(),
+               .peak_memory_bytes = 12345678};
+}
+
+void fail_some(Record& r, const Kind& kind) {
+  const std::string name = kind.name;
+  const bool is_large = r.request.problem.name == "heat" || r.request.problem.name == "fluid";
+  if (std::string(kind.family) == "Derivative-free" && is_large) {
+    r = {.cell = r.cell,
+         .build = r.build,
+         .request = r.request,
+         .status = Status::inapplicable,
+         .message = "derivative-free methods are limited to 256 unknowns, this problem has 4096",
+         .provenance = r.provenance};
+    r.summary.start_x_error = NAN;
+  } else if (name == "broken" && r.request.seed % 2 == 0) {
+    r.status = Status::crashed;
+    r.message = "signal 11 (SIGSEGV) at iteration 17 <in step()>";
+  } else if (chance(r.cell + "fate") < 0.01) {
+    r.status = Status::diverged;
+    r.curve.loss.back() = r.summary.loss = INFINITY;
+  } else if (chance(r.cell + "fate") > 0.995) {
+    r.status = Status::timeout;
+    r.message = "killed at the hard limit of 60 s";
+  }
+  if (kind.is_privileged) r.privileges = {name == "newton" ? "exact Hessian" : "exact inverse"};
+}
+
+Json provenance() {
+  return {{"version", "0.1.0"},
+          {"commit", "2963533f00dbabe"},
+          {"dirty", true},
+          {"compiler", "GNU 12.2.0"},
+          {"flags", "-O3 -DNDEBUG -march=native"},
+          {"build_type", "Release"},
+          {"march", "native"},
+          {"processor", "Intel(R) Xeon(R) Processor @ 2.70GHz"},
+          {"cores", 2},
+          {"system", "Linux 6.1.0 x86_64"},
+          {"libraries",
+           {{"Eigen", "3.4.0"}, {"Ceres", "2.1.0"}, {"NLopt", "2.7.1"}, {"OpenBLAS", "0.3.21"}}},
+          {"run",
+           {{"started", "2026-11-21T06:45:42Z"},
+            {"concurrent_jobs", 2},
+            {"exclusive", false},
+            {"command", "./isoline run --suite inverse --seeds 5 --jobs 2"},
+            {"host_load", 1.25}}}};
+}
+
+Sheet sheet_of(const std::string& kind, const std::string& spec) {
+  return {.kind = kind,
+          .name = spec.substr(0, spec.find('[')),
+          .spec = spec,
+          .title = kind == "problem" ? "A physical inverse problem" : "A method of descent",
+          .formula = kind == "problem" ? "P(x) = (x₁, x₂²),  L = ‖P(x)‖²" : "θ ← θ − η ∇L",
+          .source = "Holl, Koltun, Thuerey (2022), Fig. 1",
+          .options_text = "[]",
+          .unknowns = 2,
+          .residuals = 2};
+}
+
+void write(const fs::path& folder, const Sheet& sheet) {
+  save(folder / "components" / sheet.file_name(), to_json(sheet).dump());
+}
+
+}  // namespace
+
+void write_sample_study(const fs::path& folder, const Size& size) {
+  fs::create_directories(folder / "runs");
+  fs::create_directories(folder / "components");
+  Plan plan{.suites = {"inverse"}, .cells = {}};
+  for (std::size_t s = 0; s < size.optimizers; ++s) {
+    Sheet sheet = sheet_of("optimizer", kKinds[s % kKinds.size()].name);
+    sheet.family = kKinds[s % kKinds.size()].family;
+    write(folder, sheet);
+  }
+  for (std::size_t p = 0; p < size.problems; ++p) {
+    std::string problem = kProblems[p % kProblems.size()];
+    if (p >= kProblems.size()) problem = fmt::format("invented[case={}]", p);
+    Sheet sheet = sheet_of("problem", problem);
+    const Surface shape = surface(problem[0] == 's' && problem[1] == 'i');
+    const bool is_surface = problem.substr(0, 2) == "sq" || problem.substr(0, 2) == "si";
+    if (is_surface) {
+      sheet.landscape_x = shape.in_x;
+      sheet.landscape_y = shape.in_y;
+      sheet.truth = sheet.target = {0, 0};
+    }
+    write(folder, sheet);
+    for (std::size_t s = 0; s < size.optimizers; ++s)
+      for (std::size_t seed = 0; seed < size.seeds; ++seed) {
+        const Kind& kind = kKinds[s % kKinds.size()];
+        const bool is_known = s < kKinds.size();
+        Record r = record_of({.problem = problem,
+                              .optimizer = is_known ? kind.name : fmt::format("gd[rate={}]", s),
+                              .seed = seed});
+        r.curve = {};
+        r.hits.reset();
+        r.minimum.reset();
+        r.provenance = provenance();
+        if (is_surface)
+          fill_surface(r, shape, kind, size.points);
+        else
+          fill_invented(r, kind, size.points);
+        finish(r, problem != "fluid" && problem != "burgers");
+        fail_some(r, kind);
+        plan.cells.push_back({r.cell, problem, r.request.optimizer.spec, seed});
+        if (chance(r.cell + "lost") > 0.999) continue;
+        save(folder / "runs" / r.file_name(), to_json(r).dump());
+      }
+  }
+  save(folder / "plan.json", to_json(plan).dump());
+}
+
+}  // namespace isoline
