@@ -21,6 +21,7 @@ using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
 
 constexpr Real kRounding = 1e-15;  // relative step below which θ no longer changes
 constexpr Index kPatience = 100;   // evaluations an unknown without a new best
+constexpr Real kWall = 1e20;       // what a loss that is not finite is told as: inf hangs COBYLA
 
 Handle make_handle(nlopt_algorithm algorithm, Index n) {
   return Handle(nlopt_create(algorithm, static_cast<unsigned>(n)), &nlopt_destroy);
@@ -59,17 +60,17 @@ struct Search {
   Real evaluate(const double* at_theta, double* out) {
     if (error || f.is_spent() || f.status() != Status::running) {
       nlopt_force_stop(handle);
-      return HUGE_VAL;
+      return kWall;
     }
     theta = Map<const Vector>(at_theta, theta.size());  // aligned, whatever NLopt's array is
     try {
       const Real loss = ask(out);
       take(loss);
-      return std::isfinite(loss) ? loss : HUGE_VAL;
+      return std::isfinite(loss) ? loss : kWall;
     } catch (...) {
       error = std::current_exception();
       nlopt_force_stop(handle);
-      return HUGE_VAL;
+      return kWall;
     }
   }
 };
@@ -192,7 +193,7 @@ struct Minimization {
   Real evaluate(const double* at, double* out) {
     if (error || (limits.is_over && limits.is_over())) {
       nlopt_force_stop(handle);
-      return HUGE_VAL;
+      return kWall;
     }
     x = Map<const Vector>(at, x.size());
     ++result.evaluations;
@@ -203,11 +204,11 @@ struct Minimization {
         result.value = value;
         best = x;
       }
-      return std::isfinite(value) ? value : HUGE_VAL;
+      return std::isfinite(value) ? value : kWall;
     } catch (...) {
       error = std::current_exception();
       nlopt_force_stop(handle);
-      return HUGE_VAL;
+      return kWall;
     }
   }
 };

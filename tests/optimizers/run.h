@@ -20,9 +20,9 @@ inline const OptimizerRegistry& optimizers() {
   return all;
 }
 
-struct Run {
-  Vector theta;                                      // (n), final
-  std::vector<Vector> path;                          // θ after each step of ours
+struct Outcome {
+  Vector theta;                                              // (n), final
+  std::vector<Vector> path;                                  // θ after each step of ours
   std::unique_ptr<Trace> trace = std::make_unique<Trace>();  // large
   Status status = Status::running;
 };
@@ -31,11 +31,11 @@ inline Json options_of_spec(const OptimizerEntry& entry, const std::string& text
   return complete_options(entry.options, entry.name, options_of(parse_spec(text)));
 }
 
-inline Run run(const Problem& problem, const std::string& spec, const Budget& budget) {
+inline Outcome run(const Problem& problem, const std::string& spec, const Budget& budget) {
   const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
   const Json options = options_of_spec(entry, spec);
   const auto method = entry.make(options, optimizers());
-  Run result;
+  Outcome result;
   result.theta = problem.start();
   Meter meter(problem, budget, needs_of(entry, options, problem), *result.trace);
   result.status = meter.begin(result.theta);
