@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/spec.h"
@@ -25,17 +26,23 @@ std::string_view reason_of(Oracle missing) {
 
 }  // namespace
 
+OracleSet needs_of(const OptimizerEntry& entry, const Json& options, const Problem& problem) {
+  return entry.needs_for ? entry.needs_for(options, problem) : entry.needs;
+}
+
 std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
                              const Problem& problem) {
-  const OracleSet offered = problem.offers();
+  const OracleSet offered = problem.offers(), needs = needs_of(entry, options, problem);
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     const auto oracle = static_cast<Oracle>(kind);
-    if (entry.needs.contains(oracle) && !offered.contains(oracle))
-      return std::string(reason_of(oracle));
+    if (needs.contains(oracle) && !offered.contains(oracle)) return std::string(reason_of(oracle));
   }
   if (problem.unknowns() > entry.most_unknowns)
     return fmt::format("{} unknowns, and {} is limited to {}", problem.unknowns(), entry.name,
                        entry.most_unknowns);
+  if (const Index rank = std::min(problem.unknowns(), problem.residuals()); rank > entry.most_rank)
+    return fmt::format("a Jacobian of rank {}, and {} is limited to {}", rank, entry.name,
+                       entry.most_rank);
   return entry.objection ? entry.objection(options, problem) : "";
 }
 

@@ -63,15 +63,22 @@ struct OptimizerEntry {
   std::vector<std::string> privileges = {};  // what it sees that others do not, in words
   // The path in y does not change when x is rescaled, componentwise and linearly.
   bool is_input_scale_invariant = false;
-  Index most_unknowns = std::numeric_limits<Index>::max();  // above it the cell is inapplicable
+  // Above these the cell is inapplicable: n, and min(n, m·B) where J is factorized whole.
+  Index most_unknowns = std::numeric_limits<Index>::max();
+  Index most_rank = std::numeric_limits<Index>::max();
   OptionTable options = {};
   int revision = 1;  // raised when results change
+  // All it needs, where that depends on the options or the problem; `needs` is then the least.
+  std::function<OracleSet(const Json& options, const Problem&)> needs_for = {};
   // Any further reason why this pair makes no sense; empty if it does.
   std::function<std::string(const Json& options, const Problem&)> objection = {};
   std::function<std::unique_ptr<Optimizer>(const Json& options, const OptimizerRegistry&)> make =
       {};
   std::function<std::unique_ptr<Descent>(const Json& options)> make_descent = {};  // gradient rules
 };
+
+// What this optimizer asks of this problem: what the meter is to grant.
+OracleSet needs_of(const OptimizerEntry& entry, const Json& options, const Problem& problem);
 
 // Why this optimizer cannot treat this problem, in words; empty if it can.
 std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,

@@ -1,0 +1,48 @@
+// Newton's method with the exact Hessian: θ ← θ − η H⁻¹ ∇L; Nocedal, Wright (2006), eq. 3.30.
+// Pure: it goes to whatever stationary point the quadratic model has, and stops where H is
+// singular.
+#include "core/decompose.h"
+#include "optimizers/optimizer.h"
+
+namespace isoline {
+namespace {
+
+struct Newton {
+  Real rate = 1;
+
+  struct State {
+    Linearization at;
+    Vector gradient, step;  // (n)
+  };
+  State init(Meter&, const Vector&) const { return {}; }
+  Status step(Meter& f, Vector& theta, State& s) const {
+    f.linearize(theta, s.at);
+    s.at.gradient(s.gradient);
+    if (!solve_square(s.at.hessian(), s.gradient, s.step)) {
+      f.claim("the Hessian is singular");
+      return Status::stalled;
+    }
+    theta -= rate * s.step;
+    return Status::running;
+  }
+};
+
+void fields(Newton& o, auto& field) { field("rate", o.rate, above(0), "step length η"); }
+
+}  // namespace
+
+void register_newton(OptimizerRegistry& registry) {
+  registry.add(stepper_entry<Newton>(
+      {.name = "newton",
+       .title = "Newton's method",
+       .family = Family::curvature,
+       .formula = "θ ← θ − η H⁻¹ ∇L,  H = ∇²L",
+       .source = "Nocedal, Wright (2006), eq. 3.30",
+       .note = "Without safeguards: saddles and maxima attract it as minima do.",
+       .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
+       .privileges = {"exact Hessian"},
+       .is_input_scale_invariant = true,
+       .most_unknowns = 2048}));
+}
+
+}  // namespace isoline

@@ -1,0 +1,241 @@
+// The door to NLopt (Johnson, github.com/stevengj/nlopt), on L. NLopt keeps its own loop; each new
+// best evaluation is an iteration, and the best point is the result. Its tolerances are off but for
+// steps below the rounding of θ, and a search without a new best in a long time is stopped: some of
+// its methods would shrink their simplex for ever. What NLopt says of its success is recorded, not
+// believed: it reports success on plateaus.
+#include <nlopt.h>
+
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+
+#include "optimizers/lbfgs.h"
+#include "optimizers/optimizer.h"
+
+namespace isoline {
+namespace {
+
+using Eigen::Map;
+using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
+
+constexpr Real kRounding = 1e-15;  // relative step below which θ no longer changes
+constexpr Index kPatience = 100;   // evaluations an unknown without a new best
+constexpr Real kWall = 1e20;       // what a loss that is not finite is told as: inf hangs COBYLA
+
+Handle make_handle(nlopt_algorithm algorithm, Index n) {
+  return Handle(nlopt_create(algorithm, static_cast<unsigned>(n)), &nlopt_destroy);
+}
+
+// One solve, as seen from NLopt's calls back.
+struct Search {
+  Meter& f;
+  nlopt_opt handle;
+  Linearization at;
+  Vector theta, gradient, best;  // (n)
+  Real best_loss = std::numeric_limits<Real>::infinity();
+  Index since_best = 0;
+  std::exception_ptr error;  // none crosses NLopt: thrown again after the solve
+
+  Real ask(double* out) {
+    if (!out) return f.loss(theta);
+    f.linearize(theta, at);
+    at.gradient(gradient);
+    Map<Vector>(out, gradient.size()) = gradient;
+    return at.loss();
+  }
+
+  void take(Real loss) {
+    if (!(loss < best_loss)) {
+      if (++since_best > kPatience * (theta.size() + 1)) nlopt_force_stop(handle);
+      return;
+    }
+    const bool is_start = !std::isfinite(best_loss);
+    best_loss = loss;
+    best = theta;
+    since_best = 0;
+    if (!is_start && f.iterate(best) != Status::running) nlopt_force_stop(handle);
+  }
+
+  Real evaluate(const double* at_theta, double* out) {
+    if (error || f.is_spent() || f.status() != Status::running) {
+      nlopt_force_stop(handle);
+      return kWall;
+    }
+    theta = Map<const Vector>(at_theta, theta.size());  // aligned, whatever NLopt's array is
+    try {
+      const Real loss = ask(out);
+      take(loss);
+      return std::isfinite(loss) ? loss : kWall;
+    } catch (...) {
+      error = std::current_exception();
+      nlopt_force_stop(handle);
+      return kWall;
+    }
+  }
+};
+
+double evaluate_search(unsigned, const double* theta, double* gradient, void* search) {
+  return static_cast<Search*>(search)->evaluate(theta, gradient);
+}
+
+class Nlopt final : public Optimizer {
+ public:
+  explicit Nlopt(nlopt_algorithm algorithm) : algorithm_(algorithm) {}
+  void start(Meter&, const Vector&) override {}
+  bool reports_iterations() const override { return true; }
+  Status step(Meter& f, Vector& theta) override {
+    const Handle handle = make_handle(algorithm_, theta.size());
+    Search search{f, handle.get(), {}, theta, Vector(theta.size()), theta};
+    nlopt_set_min_objective(handle.get(), evaluate_search, &search);
+    nlopt_set_xtol_rel(handle.get(), kRounding);
+    Real loss = 0;
+    const nlopt_result result = nlopt_optimize(handle.get(), theta.data(), &loss);
+    if (search.error) std::rethrow_exception(search.error);
+    f.claim(nlopt_result_to_string(result));
+    theta = search.best;
+    if (f.status() != Status::running) return f.status();
+    if (f.is_spent()) return Status::budget;
+    const bool has_converged = result > 0 || result == NLOPT_ROUNDOFF_LIMITED;
+    return has_converged ? Status::converged : Status::stalled;
+  }
+
+ private:
+  nlopt_algorithm algorithm_;
+};
+
+OptimizerEntry nlopt_entry(OptimizerEntry entry, nlopt_algorithm algorithm) {
+  entry.family = Family::nlopt;
+  entry.needs = {Oracle::forward, Oracle::pullback};
+  entry.make = [algorithm](const Json&, const OptimizerRegistry&) {
+    return std::make_unique<Nlopt>(algorithm);
+  };
+  return entry;
+}
+
+OptimizerEntry derivative_free_entry(OptimizerEntry entry, nlopt_algorithm algorithm) {
+  entry = nlopt_entry(std::move(entry), algorithm);
+  entry.family = Family::nlopt_derivative_free;
+  entry.needs = {Oracle::forward};
+  entry.most_unknowns = 256;
+  return entry;
+}
+
+void add_gradient_methods(OptimizerRegistry& registry) {
+  registry.add(nlopt_entry({.name = "nlopt-lbfgs",
+                            .title = "Limited-memory BFGS (NLopt)",
+                            .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps",
+                            .source = "NLopt 2.7, Luksan's PLIS; Nocedal (1980)"},
+                           NLOPT_LD_LBFGS));
+  registry.add(nlopt_entry({.name = "nlopt-var2",
+                            .title = "Shifted limited-memory variable metric (NLopt)",
+                            .formula = "θ ← θ − α (μI + S) ∇L,  S of rank two a step",
+                            .source = "NLopt 2.7, Luksan's PLIP; Vlcek, Luksan (2006)"},
+                           NLOPT_LD_VAR2));
+  registry.add(nlopt_entry({.name = "nlopt-tnewton",
+                            .title = "Truncated Newton, preconditioned, restarted (NLopt)",
+                            .formula = "H d ≈ −∇L by conjugate gradients,  θ ← θ + α d",
+                            .source = "NLopt 2.7, Luksan's PNET; Dembo, Steihaug (1983)",
+                            .note = "Products H d are differences of gradients."},
+                           NLOPT_LD_TNEWTON_PRECOND_RESTART));
+  registry.add(nlopt_entry({.name = "nlopt-slsqp",
+                            .title = "Sequential least-squares programming (NLopt)",
+                            .formula = "min ∇Lᵀd + ½ dᵀB d,  θ ← θ + α d",
+                            .source = "NLopt 2.7; Kraft (1994)",
+                            .note = "Between evaluations it does not look at the clock.",
+                            .most_unknowns = 1000},  // dense, O(n³) a step
+                           NLOPT_LD_SLSQP));
+  registry.add(nlopt_entry({.name = "nlopt-mma",
+                            .title = "Method of moving asymptotes (NLopt)",
+                            .formula = "min of a convex separable upper approximation of L",
+                            .source = "NLopt 2.7; Svanberg (2002)"},
+                           NLOPT_LD_MMA));
+  registry.add(nlopt_entry({.name = "nlopt-ccsaq",
+                            .title = "Conservative convex separable approximation (NLopt)",
+                            .formula = "min L + ∇Lᵀd + ½ρ Σ (dᵢ/σᵢ)²,  ρ raised until conservative",
+                            .source = "NLopt 2.7; Svanberg (2002)"},
+                           NLOPT_LD_CCSAQ));
+}
+
+void add_derivative_free_methods(OptimizerRegistry& registry) {
+  registry.add(derivative_free_entry({.name = "nlopt-bobyqa",
+                                      .title = "BOBYQA (NLopt)",
+                                      .formula = "min of a quadratic through 2n+1 points, ‖d‖ ≤ Δ",
+                                      .source = "NLopt 2.7; Powell (2009)"},
+                                     NLOPT_LN_BOBYQA));
+  registry.add(
+      derivative_free_entry({.name = "nlopt-cobyla",
+                             .title = "COBYLA (NLopt)",
+                             .formula = "min of a linear model through n+1 points, ‖d‖ ≤ Δ",
+                             .source = "NLopt 2.7; Powell (1994)"},
+                            NLOPT_LN_COBYLA));
+  registry.add(derivative_free_entry({.name = "nlopt-neldermead",
+                                      .title = "Nelder-Mead simplex (NLopt)",
+                                      .formula = "reflect, expand, contract or shrink n+1 points",
+                                      .source = "NLopt 2.7; Nelder, Mead (1965)"},
+                                     NLOPT_LN_NELDERMEAD));
+  registry.add(derivative_free_entry({.name = "nlopt-sbplx",
+                                      .title = "Subplex (NLopt)",
+                                      .formula = "Nelder-Mead on a sequence of subspaces",
+                                      .source = "NLopt 2.7; Rowan (1990)"},
+                                     NLOPT_LN_SBPLX));
+}
+
+// What minimize_lbfgs hands through NLopt.
+struct Minimization {
+  const ValueAndGradient& f;
+  const LbfgsLimits& limits;
+  nlopt_opt handle;
+  Vector x, gradient, best;  // (n)
+  LbfgsResult result{std::numeric_limits<Real>::infinity(), 0};
+  std::exception_ptr error;
+
+  Real evaluate(const double* at, double* out) {
+    if (error || (limits.is_over && limits.is_over())) {
+      nlopt_force_stop(handle);
+      return kWall;
+    }
+    x = Map<const Vector>(at, x.size());
+    ++result.evaluations;
+    try {
+      const Real value = f(x, gradient);
+      if (out) Map<Vector>(out, gradient.size()) = gradient;
+      if (value < result.value) {
+        result.value = value;
+        best = x;
+      }
+      return std::isfinite(value) ? value : kWall;
+    } catch (...) {
+      error = std::current_exception();
+      nlopt_force_stop(handle);
+      return kWall;
+    }
+  }
+};
+
+double evaluate_minimization(unsigned, const double* x, double* gradient, void* minimization) {
+  return static_cast<Minimization*>(minimization)->evaluate(x, gradient);
+}
+
+}  // namespace
+
+LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x) {
+  const Handle handle = make_handle(NLOPT_LD_LBFGS, x.size());
+  Minimization minimization{f, limits, handle.get(), x, Vector(x.size()), x};
+  nlopt_set_min_objective(handle.get(), evaluate_minimization, &minimization);
+  nlopt_set_xtol_rel(handle.get(), kRounding);
+  nlopt_set_stopval(handle.get(), limits.enough);
+  nlopt_set_maxeval(handle.get(), static_cast<int>(limits.evaluations));
+  Real value = 0;
+  nlopt_optimize(handle.get(), x.data(), &value);  // its verdict adds nothing to the value reached
+  if (minimization.error) std::rethrow_exception(minimization.error);
+  x = minimization.best;
+  return minimization.result;
+}
+
+void register_nlopt(OptimizerRegistry& registry) {
+  add_gradient_methods(registry);
+  add_derivative_free_methods(registry);
+}
+
+}  // namespace isoline

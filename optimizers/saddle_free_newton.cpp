@@ -1,0 +1,69 @@
+// Saddle-free Newton with a limit on the change of loss, Holl, Koltun, Thuerey (2022), sine
+// problem; |H|⁻¹ after Dauphin et al. (2014). With H = V diag(S) Vᵀ and g̃ = Vᵀ∇L, the step
+// along the i-th eigenvector is −η sign(g̃ᵢ) |g̃ᵢ/Sᵢ|, and where Sᵢ is not above S̄ at most Δ/|g̃ᵢ|. S̄,
+// the root of |S₁S₂| in the published script, is the geometric mean of |S| for any n; the script's
+// transposed V is corrected.
+#include <algorithm>
+#include <cmath>
+
+#include "core/decompose.h"
+#include "optimizers/optimizer.h"
+
+namespace isoline {
+namespace {
+
+struct SaddleFreeNewton {
+  Real rate = 1, max_loss_change = 0.2;
+
+  struct State {
+    Linearization at;
+    SymmetricEigen eigen;
+    Vector gradient, along;  // (n), ∇L and the step in the eigenbasis
+  };
+  State init(Meter&, const Vector&) const { return {}; }
+  Status step(Meter& f, Vector& theta, State& s) const {
+    f.linearize(theta, s.at);
+    s.at.gradient(s.gradient);
+    if (!symmetric_eigen(s.at.hessian(), s.eigen)) {
+      f.claim("the Hessian has no eigenvalues in finite numbers");
+      return Status::stalled;
+    }
+    s.along.noalias() = s.eigen.V.transpose() * s.gradient;
+    const Real mean = std::exp(s.eigen.lambda.array().abs().log().mean());  // S̄; 0 if any S is
+    for (Index i = 0; i < s.along.size(); ++i)
+      s.along[i] = signed_length(s.along[i], s.eigen.lambda[i], mean);
+    theta.noalias() -= rate * s.eigen.V * s.along;
+    return Status::running;
+  }
+
+  Real signed_length(Real slope, Real curvature, Real mean) const {
+    if (slope == 0 || curvature == 0) return 0;
+    const Real newton = std::abs(slope / curvature);
+    const Real limit = max_loss_change / std::abs(slope);
+    return std::copysign(curvature > mean ? newton : std::min(newton, limit), slope);
+  }
+};
+
+void fields(SaddleFreeNewton& o, auto& field) {
+  field("rate", o.rate, above(0), "step length η");
+  field("max-loss-change", o.max_loss_change, above(0),
+        "limit Δ on the linear change of loss along a direction of low or negative curvature");
+}
+
+}  // namespace
+
+void register_saddle_free_newton(OptimizerRegistry& registry) {
+  registry.add(stepper_entry<SaddleFreeNewton>(
+      {.name = "saddle-free-newton",
+       .title = "Saddle-free Newton with a step limit",
+       .family = Family::curvature,
+       .formula = "H = V diag(S) Vᵀ, g̃ = Vᵀ∇L;  θ ← θ − η V d,  dᵢ = sign(g̃ᵢ)·(|g̃ᵢ/Sᵢ| where "
+                  "Sᵢ > S̄, else min(|g̃ᵢ/Sᵢ|, Δ/|g̃ᵢ|))",
+       .source = "Holl, Koltun, Thuerey (2022), published script; Dauphin et al. (2014)",
+       .note = "S̄ is the geometric mean of |S|; directions without curvature stay.",
+       .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
+       .privileges = {"exact Hessian"},
+       .most_unknowns = 2048}));
+}
+
+}  // namespace isoline

@@ -1,0 +1,134 @@
+// What the methods' formulas promise of each other.
+#include <gtest/gtest.h>
+
+#include "core/decompose.h"
+#include "run.h"
+#include "trial_problems.h"
+
+namespace isoline {
+namespace {
+
+// To 1e-10, and to rounding times cond(J)² where that is more.
+void expect_same_path(const Problem& problem, const std::string& one, const std::string& other) {
+  constexpr int kSteps = 10;
+  const Outcome a = run(problem, one, iterations(kSteps)),
+                b = run(problem, other, iterations(kSteps));
+  ASSERT_EQ(a.path.size(), b.path.size());
+  Point at;
+  Svd svd;
+  Matrix J;
+  for (std::size_t i = 0; i < a.path.size(); ++i) {
+    problem.forward(a.path[i], at);
+    problem.jacobian(J, at);
+    ASSERT_TRUE(thin_svd(J, svd));
+    const Real cond = svd.sigma[0] / svd.sigma[svd.sigma.size() - 1];
+    EXPECT_LE((a.path[i] - b.path[i]).norm() / a.path[i].norm(),
+              std::max(1e-10, 1e-15 * cond * cond))
+        << one << ", " << other << ", step " << i;
+  }
+}
+
+TEST(HalfInverse, KappaOneIsGaussNewton) {
+  expect_same_path(tridiagonal(), "hig[kappa=1,cutoff=0]", "gauss-newton");
+  expect_same_path(easy(), "hig[kappa=1,cutoff=0,rate=0.3]", "gauss-newton[rate=0.3]");
+}
+
+TEST(HalfInverse, KappaMinusOneIsGradientDescent) {
+  expect_same_path(tridiagonal(), "hig[kappa=-1,cutoff=0,rate=0.02]", "gd[rate=0.02]");
+  expect_same_path(easy(), "hig[kappa=-1,cutoff=0,rate=0.1]", "gd[rate=0.1]");
+}
+
+Vector first_step(const Problem& problem, const std::string& spec) {
+  return run(problem, spec, iterations(1)).theta - problem.start();
+}
+
+// Both laws hold exactly; the tolerance is rounding alone.
+TEST(HalfInverse, StepScalesWithTheLossAndWithThePower1MinusKappaOfTheOutput) {
+  const Eigen::Vector2d start(1, 2), target(0.5, -0.3);
+  constexpr Real kScale = 7;
+  for (const char* kappa : {"-1", "0", "0.25", "0.5", "0.75", "1"}) {
+    const std::string spec = std::string("hig[kappa=") + kappa + "]";
+    const Vector step = first_step(linear(easy_matrix(), start, target), spec);
+    const Vector heavier = first_step(linear(easy_matrix(), start, target, kScale), spec);
+    EXPECT_LE((heavier - kScale * step).norm(), 1e-13 * heavier.norm()) << kappa;
+    const Vector larger = first_step(linear(kScale * easy_matrix(), start, kScale * target), spec);
+    const Vector expected = std::pow(kScale, 1 - std::stod(kappa)) * step;
+    EXPECT_LE((larger - expected).norm(), 1e-13 * expected.norm()) << kappa;
+  }
+}
+
+TEST(HalfInverse, SingularValuesUpToTheCutoffAreDiscarded) {
+  const Matrix M = Eigen::Vector2d(1, 1e-3).asDiagonal();
+  const Problem problem = linear(M, Eigen::Vector2d(1, 1), Eigen::Vector2d(0, 0));
+  const Vector kept = first_step(problem, "hig[kappa=1,cutoff=0.9e-3]");
+  const Vector discarded = first_step(problem, "hig[kappa=1,cutoff=1.1e-3]");
+  EXPECT_NEAR(kept[1], -1, 1e-12);
+  EXPECT_EQ(discarded[1], 0);
+}
+
+TEST(InverseGradient, StepsAsGaussNewtonWhereTheJacobianIsSquare) {
+  expect_same_path(tridiagonal(), "inverse-gradient", "gauss-newton");
+}
+
+TEST(CeresGaussNewton, TakesTheStepsOfGaussNewton) {
+  const Problem problem = tridiagonal();
+  for (int steps = 1; steps <= 4; ++steps) {  // at the fifth both stand at the root
+    const Vector ours = run(problem, "gauss-newton", iterations(steps)).theta;
+    const Vector theirs = run(problem, "ceres-gauss-newton", iterations(steps)).theta;
+    EXPECT_LE((ours - theirs).norm(), 1e-10 * ours.norm()) << steps;
+  }
+}
+
+TEST(Sip, IdentityNetworkAndUnitStepSolveInOne) {
+  for (const char* spec : {"sip", "sip[inverse=lbfgs]"}) {
+    const Outcome result = run(easy(), spec, iterations(1));
+    EXPECT_LE((easy_matrix() * result.theta - Eigen::Vector2d(0.5, -0.3)).norm(), 1e-12) << spec;
+  }
+}
+
+TEST(Sip, NetworkIsDrawnToTheInvertedTargets) {
+  for (const char* spec :
+       {"sip[network-optimizer=gd[rate=1]]", "sip[network-optimizer=gd,step=0.5]",
+        "sip[inverse=lbfgs,network-optimizer=gd[rate=1]]",
+        "sip[network-optimizer=adam[rate=0.05]]"}) {
+    const Outcome result = run(learned_line(), spec, {.iterations = 5000, .target = 1e-8});
+    EXPECT_EQ(result.status, Status::target) << spec;
+    EXPECT_NEAR(result.theta[0], 2, 1e-3) << spec;
+    EXPECT_NEAR(result.theta[1], 1, 1e-3) << spec;
+  }
+}
+
+// One sample of four has no inverse: it adds nothing to the mean, the others all they would.
+TEST(Sip, SampleWithoutInverseTeachesNothing) {
+  const Vector step =
+      first_step(learned_line(true), "sip[inverse=analytic,network-optimizer=gd[rate=1]]");
+  const Vector gap = Eigen::Vector3d(1 - 1, 1.5 - 1, 2.5 - 1);  // x̃ − x of the first three
+  EXPECT_NEAR(step[0], gap.sum() / 4, 1e-14);
+  EXPECT_NEAR(step[1], gap.dot(Eigen::Vector3d(-1, -0.5, 0.5)) / 4, 1e-14);
+}
+
+TEST(Sip, L1ProxySeesSignsAlone) {
+  const Vector step = first_step(learned_line(), "sip[proxy=l1,network-optimizer=gd[rate=1]]");
+  EXPECT_NEAR(step[0], 3.0 / 4, 1e-14);  // one sample is right already: x = 1, y* = 1
+  EXPECT_NEAR(step[1], (-0.5 + 0.5 + 1) / 4, 1e-14);
+}
+
+TEST(Sip, AnalyticInverseIsRefusedWhereThereIsNone) {
+  const OptimizerEntry& sip = optimizers().at("sip");
+  const auto why = [&](const std::string& spec) {
+    return why_inapplicable(sip, options_of_spec(sip, spec), tridiagonal());
+  };
+  EXPECT_EQ(why("sip[inverse=analytic]"), "the physics has no local inverse");
+  EXPECT_EQ(why("sip"), "");
+  EXPECT_EQ(why("sip[inverse=lbfgs]"), "");
+}
+
+TEST(InverseGradient, NeedsAsManyResidualsAsUnknowns) {
+  const Problem tall = linear(Matrix::Ones(3, 2), Vector::Ones(2), Vector::Zero(3));
+  const OptimizerEntry& entry = optimizers().at("inverse-gradient");
+  EXPECT_EQ(why_inapplicable(entry, options_of_spec(entry, entry.name), tall),
+            "the Jacobian has no inverse: 3 residuals, 2 unknowns");
+}
+
+}  // namespace
+}  // namespace isoline

@@ -1,0 +1,58 @@
+// The run loop in small, as the harness has it: begin, start, step and iterate, finish.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/spec.h"
+#include "optimizers/optimizer.h"
+
+namespace isoline {
+
+inline const OptimizerRegistry& optimizers() {
+  static const OptimizerRegistry all = [] {
+    OptimizerRegistry registry("optimizer");
+    register_optimizers(registry);
+    return registry;
+  }();
+  return all;
+}
+
+struct Outcome {
+  Vector theta;                                              // (n), final
+  std::vector<Vector> path;                                  // θ after each step of ours
+  std::unique_ptr<Trace> trace = std::make_unique<Trace>();  // large
+  Status status = Status::running;
+};
+
+inline Json options_of_spec(const OptimizerEntry& entry, const std::string& text) {
+  return complete_options(entry.options, entry.name, options_of(parse_spec(text)));
+}
+
+inline Outcome run(const Problem& problem, const std::string& spec, const Budget& budget) {
+  const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
+  const Json options = options_of_spec(entry, spec);
+  const auto method = entry.make(options, optimizers());
+  Outcome result;
+  result.theta = problem.start();
+  Meter meter(problem, budget, needs_of(entry, options, problem), *result.trace);
+  result.status = meter.begin(result.theta);
+  method->start(meter, result.theta);
+  while (result.status == Status::running) {
+    result.status = method->step(meter, result.theta);
+    if (method->reports_iterations()) break;
+    const Status seen = meter.iterate(result.theta);
+    if (result.status == Status::running) result.status = seen;
+    result.path.push_back(result.theta);
+  }
+  meter.finish(result.theta, result.status);
+  result.status = result.trace->status;
+  return result;
+}
+
+// `count` iterations, come what may: no target, no stall in so few.
+inline Budget iterations(std::int64_t count) { return {.iterations = count, .target = 0}; }
+
+}  // namespace isoline

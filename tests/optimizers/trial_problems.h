@@ -1,0 +1,118 @@
+// Problems small enough to check optimizers by hand.
+#pragma once
+
+#include <cmath>
+
+#include "problems/dense_physics.h"
+#include "problems/problem.h"
+
+namespace isoline {
+
+// y = M x, M (m, k); x by least squares, unique where M has full column rank.
+class Linear final : public DensePhysics {
+ public:
+  explicit Linear(Matrix M) : DensePhysics(M.cols(), M.rows()), M_(std::move(M)) {}
+  void value(VectorRef x, VectorOut y) const override { y = M_ * x; }
+  void derivative(VectorRef, BatchOut J) const override { J = M_; }
+  bool has_curvature() const override { return true; }
+  void second(VectorRef, VectorRef, BatchOut) const override {}
+  Inverse inverse_kind() const override {
+    return M_.rows() == M_.cols() ? Inverse::exact : Inverse::none;
+  }
+  bool invert(VectorRef y, VectorRef, VectorOut x) const override {  // Cramer's rule, k = 2
+    const Real determinant = M_(0, 0) * M_(1, 1) - M_(0, 1) * M_(1, 0);
+    x << M_(1, 1) * y[0] - M_(0, 1) * y[1], M_(0, 0) * y[1] - M_(1, 0) * y[0];
+    x /= determinant;
+    return true;
+  }
+
+ private:
+  Matrix M_;
+};
+
+inline Problem linear(const Matrix& M, const Vector& start, const Vector& target, Real weight = 1) {
+  return Problem({.physics = std::make_unique<Linear>(M),
+                  .start = start,
+                  .target = target,
+                  .loss = std::make_unique<HalfSquared>(weight),
+                  .minimum = 0});
+}
+
+// cond 2.6: a convex quadratic on which every method must arrive.
+inline Matrix easy_matrix() { return Eigen::Matrix2d{{2, 1}, {0, 1}}; }
+inline Problem easy() {
+  return linear(easy_matrix(), Eigen::Vector2d(1, 2), Eigen::Vector2d(0.5, -0.3));
+}
+
+// Broyden's tridiagonal function, Moré, Garbow, Hillstrom (1981), problem 30.
+class Tridiagonal final : public DensePhysics {
+ public:
+  explicit Tridiagonal(Index n) : DensePhysics(n, n) {}
+  void value(VectorRef x, VectorOut y) const override {
+    const Index n = x.size();
+    for (Index i = 0; i < n; ++i)
+      y[i] = (3 - 2 * x[i]) * x[i] - (i > 0 ? x[i - 1] : 0) - (i + 1 < n ? 2 * x[i + 1] : 0) + 1;
+  }
+  void derivative(VectorRef x, BatchOut J) const override {
+    J.diagonal() = (3 - 4 * x.array()).matrix();
+    J.diagonal(-1).setConstant(-1);
+    J.diagonal(1).setConstant(-2);
+  }
+};
+
+inline Problem tridiagonal() {
+  constexpr Index kSize = 10;
+  return Problem({.physics = std::make_unique<Tridiagonal>(kSize),
+                  .start = Vector::Constant(kSize, -1),
+                  .target = Vector::Zero(kSize),
+                  .minimum = 0});
+}
+
+// y = x², one sample at a time, invertible for y ≥ 0 alone.
+class Squares final : public DensePhysics {
+ public:
+  Squares() : DensePhysics(1, 1) {}
+  void value(VectorRef x, VectorOut y) const override { y[0] = x[0] * x[0]; }
+  void derivative(VectorRef x, BatchOut J) const override { J(0, 0) = 2 * x[0]; }
+  Inverse inverse_kind() const override { return Inverse::exact; }
+  bool invert(VectorRef y, VectorRef x0, VectorOut x) const override {
+    x[0] = std::copysign(std::sqrt(y[0]), x0[0]);
+    return y[0] >= 0;
+  }
+};
+
+// x = θ₀ + θ₁ · input, one sample a column.
+class Line final : public Network {
+ public:
+  Index parameters() const override { return 2; }
+  Index outputs() const override { return 1; }
+  Vector start(RandomStream&) const override { return Eigen::Vector2d(1, 0); }
+  std::vector<Block> layout() const override { return {{0, 2, 1, Block::Kind::weight}}; }
+  void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const override {
+    w.x = in;
+    x = (theta[0] + theta[1] * in.array()).matrix();
+  }
+  void pushforward(VectorRef v, BatchOut Jv, Workspace& w) const override {
+    Jv = (v[0] + v[1] * w.x.array()).matrix();
+  }
+  void pullback(BatchRef u, VectorOut JTu, Workspace& w) const override {
+    JTu << u.sum(), u.cwiseProduct(w.x).sum();
+  }
+};
+
+// Learns x = 2 + input from the squares of x. A last target below zero is out of the physics'
+// reach.
+inline Problem learned_line(bool with_impossible_sample = false) {
+  Matrix input(1, 4), target(1, 4);
+  input << -1, -0.5, 0.5, 1;
+  target = (2 + input.array()).square().matrix();
+  if (with_impossible_sample) target(0, 3) = -1;
+  return Problem({.physics = std::make_unique<Squares>(),
+                  .start = Eigen::Vector2d(1, 0),
+                  .target = target,
+                  .network = std::make_unique<Line>(),
+                  .input = input,
+                  .minimum = 0});
+}
+
+}  // namespace isoline
