@@ -24,7 +24,8 @@ void run(const Catalog& catalog, const Request& request, Trace& trace) {
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
   if (!reason.empty()) throw NotApplicable(reason);
   const auto method = entry.make(request.optimizer.options, catalog.optimizers);
-  Meter meter(problem, request.budget, entry.needs, trace);
+  const OracleSet granted = needs_of(entry, request.optimizer.options, problem);
+  Meter meter(problem, request.budget, granted, trace);
   drive(*method, meter, problem.start());
 }
 

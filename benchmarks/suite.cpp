@@ -39,7 +39,8 @@ MatrixBlock block_from(const Json& json) {
 // What a step costs, which decides the grids that a method can be given.
 std::string_view cost_class(const OptimizerEntry& entry) {
   if (entry.family == Family::nlopt_derivative_free) return "derivative-free";
-  const bool is_limited = entry.most_unknowns < std::numeric_limits<Index>::max();
+  constexpr Index kUnlimited = std::numeric_limits<Index>::max();
+  const bool is_limited = entry.most_unknowns < kUnlimited || entry.most_rank < kUnlimited;
   return is_limited ? "factorizing" : "matrix-free";
 }
 

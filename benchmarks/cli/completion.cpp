@@ -1,0 +1,61 @@
+// isoline completion bash: a script for the shell, with the names of problems and optimizers.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "benchmarks/cli/verbs.h"
+
+namespace isoline {
+namespace {
+
+// Names come from the program at each completion, so that new components are known at once.
+constexpr const char* kBash = R"(# bash completion for isoline:  source <(./isoline completion bash)
+_isoline() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} verb=${COMP_WORDS[1]}
+  local program=${COMP_WORDS[0]} list="" prefix=""
+  case $before in
+    --problem) list=$("$program" list problems --names 2>/dev/null) ;;
+    --optimizer) list=$("$program" list optimizers --names 2>/dev/null) ;;
+    --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
+    --rates) COMPREPLY=($(compgen -W "builtin none" -- "$word") $(compgen -f -- "$word")); return ;;
+  esac
+  if [[ -n $list ]]; then
+    [[ $word == *,* ]] && prefix=${word%,*},
+    COMPREPLY=($(compgen -P "$prefix" -W "$list" -- "${word##*,}"))
+    return
+  fi
+  if [[ $COMP_CWORD -eq 1 ]]; then
+    COMPREPLY=($(compgen -W "@VERBS@ --help --version" -- "$word"))
+    return
+  fi
+  case $word in
+    -*) list=$("$program" "$verb" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u) ;;
+    *) case $verb in
+         run) list=$("$program" list suites --names 2>/dev/null) ;;
+         describe) list=$("$program" list all --names 2>/dev/null) ;;
+         check) list=$("$program" list problems --names 2>/dev/null) ;;
+         list) list="problems optimizers suites all" ;;
+         completion) list=bash ;;
+         *) COMPREPLY=($(compgen -f -- "$word")); return ;;
+       esac ;;
+  esac
+  COMPREPLY=($(compgen -W "$list" -- "$word"))
+}
+complete -o nosort -F _isoline isoline ./isoline
+)";
+
+}  // namespace
+
+void add_completion(CLI::App& app, Session&) {
+  const auto shell = std::make_shared<std::string>("bash");
+  CLI::App* verb = app.add_subcommand("completion", "Print the completion script of a shell");
+  verb->add_option("SHELL", *shell, "bash")->check(CLI::IsMember({"bash"}))->capture_default_str();
+  verb->callback([&app] {
+    std::string verbs, script = kBash;
+    for (const CLI::App* each : app.get_subcommands({})) verbs += each->get_name() + " ";
+    script.replace(script.find("@VERBS@"), std::string_view("@VERBS@").size(), verbs);
+    fmt::print("{}", script);
+  });
+}
+
+}  // namespace isoline

@@ -1,0 +1,82 @@
+// isoline describe NAME: what a component is, in words.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/sheets.h"
+#include "core/json.h"
+#include "core/spec.h"
+
+namespace isoline {
+namespace {
+
+Sheet sheet_of(Session& session, const Spec& spec) {
+  const Catalog& catalog = session.catalog();
+  if (catalog.problems.contains(spec.name))
+    return problem_sheet(catalog, complete_problem(catalog, spec.name, options_of(spec)));
+  if (catalog.optimizers.contains(spec.name))
+    return optimizer_sheet(catalog, complete_optimizer(catalog, spec.name, options_of(spec)));
+  std::vector<std::string> known = catalog.problems.names();
+  for (const std::string& name : catalog.optimizers.names()) known.push_back(name);
+  throw UsageError(unknown_name("component", spec.name, known));
+}
+
+void print_options(const Json& options) {
+  if (options.empty())
+    fmt::print("\nIt has no options.\n");
+  else
+    fmt::print("\nOptions\n");
+  for (const Json& option : options) {
+    std::string law;
+    if (option.contains("range")) law = option["range"].get<std::string>();
+    if (option.contains("choices"))
+      law = fmt::format("{}", fmt::join(option["choices"].get<std::vector<std::string>>(), "|"));
+    const Json& standard = option.at("default");
+    fmt::print("  {:20} {:>12}  {:22} {}\n", option.at("name").get<std::string>(),
+               standard.is_string() ? standard.get<std::string>() : standard.dump(), law,
+               option.at("doc").get<std::string>());
+  }
+}
+
+void print(const Sheet& sheet) {
+  const bool is_problem = sheet.kind == "problem";
+  fmt::print("{}: {} ({})\n\n  {}\n\nSource      {}\n", sheet.name, sheet.title, sheet.kind,
+             sheet.formula, sheet.source);
+  if (!sheet.note.empty()) fmt::print("Note        {}\n", sheet.note);
+  if (is_problem)
+    fmt::print("Size        {} unknowns, {} residuals\nInverse     {}\n", sheet.unknowns,
+               sheet.residuals, sheet.inverse);
+  else
+    fmt::print("Family      {}\n", sheet.family);
+  fmt::print("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", "));
+  if (!is_problem)
+    fmt::print("Privileges  {}\n", sheet.privileges.empty()
+                                       ? "none"
+                                       : fmt::format("{}", fmt::join(sheet.privileges, "; ")));
+  print_options(parse_json(sheet.options_text, "options"));
+}
+
+}  // namespace
+
+void add_describe(CLI::App& app, Session& session) {
+  struct Options {
+    std::string name;
+    bool as_json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "describe", "Tell a problem's or an optimizer's formula, options, needs and source");
+  verb->add_option("NAME", options->name, "A name of `isoline list`, or a spec")->required();
+  verb->add_flag("--json", options->as_json, "As JSON");
+  verb->callback([options, &session] {
+    const Sheet sheet = sheet_of(session, parse_spec(options->name));
+    if (options->as_json)
+      fmt::print("{}\n", to_json(sheet).dump(2));
+    else
+      print(sheet);
+  });
+}
+
+}  // namespace isoline

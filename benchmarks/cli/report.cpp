@@ -1,0 +1,33 @@
+// isoline report DIR...: tables, plots and statistics from records.
+#include "reports/report.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "benchmarks/cli/verbs.h"
+
+namespace isoline {
+
+void add_report(CLI::App& app, Session&) {
+  struct Options {
+    std::vector<std::string> folders;
+    std::string out;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "report", "Write index.html, report.md, report.csv, report.tex and report.json");
+  verb->add_option("DIR", options->folders, "Result folders of `isoline run`")->required();
+  verb->add_option("--out", options->out, "Where to write (default: report/ in the first DIR)");
+  verb->callback([options] {
+    namespace fs = std::filesystem;
+    const std::vector<fs::path> folders(options->folders.begin(), options->folders.end());
+    const fs::path out = options->out.empty() ? folders.front() / "report" : fs::path(options->out);
+    const Study study = read_study(folders);
+    write_report(study, out);
+    fmt::print("{}\nreport: {}\n", terminal_table(compare_optimizers(study)),
+               (out / "index.html").string());
+  });
+}
+
+}  // namespace isoline

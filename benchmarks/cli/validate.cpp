@@ -1,0 +1,69 @@
+// isoline validate PATH...: are the records, plans, sheets, suites and rates what they claim to be?
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/resources.h"
+#include "core/json.h"
+#include "core/schema.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> violations_in(const fs::path& path) {
+  try {
+    const Json document = read_json(path);
+    if (!document.is_object() || !document.contains("schema") || !document["schema"].is_string())
+      return {"it names no schema"};
+    const auto claimed = document["schema"].get<std::string>();  // "isoline.run/1"
+    const auto dot = claimed.find('.'), slash = claimed.find('/');
+    const std::string name = claimed.substr(dot + 1, slash - dot - 1);
+    const auto found = builtin_schemas().find(name);
+    if (found == builtin_schemas().end()) return {fmt::format("unknown schema '{}'", claimed)};
+    return schema_violations(document, parse_json(std::string(found->second), name));
+  } catch (const UsageError& error) {
+    return {error.what()};
+  }
+}
+
+std::vector<fs::path> files_under(const std::vector<std::string>& paths) {
+  std::vector<fs::path> files;
+  for (const fs::path path : paths) {
+    require(fs::exists(path), fmt::format("no such file or folder: {}", path.string()));
+    if (!fs::is_directory(path))
+      files.push_back(path);
+    else
+      for (const auto& entry : fs::recursive_directory_iterator(path))
+        if (entry.is_regular_file() && entry.path().extension() == ".json")
+          files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, Session& session) {
+  const auto paths = std::make_shared<std::vector<std::string>>();
+  CLI::App* verb = app.add_subcommand(
+      "validate", "Hold records, suites and every other JSON file of ours to its schema");
+  verb->add_option("PATH", *paths, "Files, or folders to search for *.json")->required();
+  verb->callback([paths, &session] {
+    std::size_t wrong = 0;
+    const std::vector<fs::path> files = files_under(*paths);
+    for (const fs::path& file : files) {
+      const auto violations = violations_in(file);
+      wrong += !violations.empty();
+      for (const std::string& violation : violations)
+        fmt::print("{}: {}\n", file.string(), violation);
+    }
+    fmt::print("{} files, {} wrong\n", files.size(), wrong);
+    if (wrong > 0) session.exit_code = kWorse;
+  });
+}
+
+}  // namespace isoline
