@@ -15,30 +15,32 @@ struct Options {
 };
 void fields(Options& o, auto& field) { field("m", o.m, between(3, 1000), "number of residuals"); }
 
+// e^(−rate·t) entry by entry: an expression, not an array.
+auto decay(const Eigen::ArrayXd& t, Real rate) {
+  return t.unaryExpr([rate](Real ti) { return std::exp(-rate * ti); });
+}
+
 class Box3d final : public DensePhysics {
  public:
   explicit Box3d(Index m)
       : DensePhysics(3, m),
         t_(Vector::LinSpaced(m, 1, static_cast<Real>(m)) / 10),
-        weight_(decay(1) - decay(10)) {}
+        weight_(decay(t_, 1) - decay(t_, 10)) {}
   void value(VectorRef x, VectorOut y) const override {
-    y = decay(x[0]) - decay(x[1]) - x[2] * weight_;
+    y = decay(t_, x[0]) - decay(t_, x[1]) - x[2] * weight_;
   }
   void derivative(VectorRef x, BatchOut J) const override {
-    J.col(0) = -t_ * decay(x[0]);
-    J.col(1) = t_ * decay(x[1]);
+    J.col(0) = -t_ * decay(t_, x[0]);
+    J.col(1) = t_ * decay(t_, x[1]);
     J.col(2) = -weight_;
   }
   bool has_curvature() const override { return true; }
   void second(VectorRef x, VectorRef u, BatchOut H) const override {
-    H(0, 0) = (u.array() * t_.square() * decay(x[0])).sum();
-    H(1, 1) = -(u.array() * t_.square() * decay(x[1])).sum();
+    H(0, 0) = (u.array() * t_.square() * decay(t_, x[0])).sum();
+    H(1, 1) = -(u.array() * t_.square() * decay(t_, x[1])).sum();
   }
 
  private:
-  Eigen::ArrayXd decay(Real rate) const {  // e^(−rate·t), (m)
-    return t_.unaryExpr([rate](Real t) { return std::exp(-rate * t); });
-  }
   Eigen::ArrayXd t_, weight_;  // (m)
 };
 

@@ -14,6 +14,11 @@ struct Options {
 };
 void fields(Options& o, auto& field) { field("m", o.m, between(4, 1000), "number of residuals"); }
 
+// p + q s − r entry by entry: an expression, not an array.
+auto misfit(Real p, Real q, const Eigen::ArrayXd& s, const Eigen::ArrayXd& r) {
+  return p + q * s - r;
+}
+
 class BrownDennis final : public DensePhysics {
  public:
   explicit BrownDennis(Index m)
@@ -22,12 +27,14 @@ class BrownDennis final : public DensePhysics {
     sin_t_ = t_.sin();
     cos_t_ = t_.cos();
   }
-  void value(VectorRef x, VectorOut y) const override { y = a(x).square() + b(x).square(); }
+  void value(VectorRef x, VectorOut y) const override {
+    y = misfit(x[0], x[1], t_, exp_t_).square() + misfit(x[2], x[3], sin_t_, cos_t_).square();
+  }
   void derivative(VectorRef x, BatchOut J) const override {
-    J.col(0) = 2 * a(x);
-    J.col(1) = 2 * a(x) * t_;
-    J.col(2) = 2 * b(x);
-    J.col(3) = 2 * b(x) * sin_t_;
+    J.col(0) = 2 * misfit(x[0], x[1], t_, exp_t_);
+    J.col(1) = J.col(0).array() * t_;
+    J.col(2) = 2 * misfit(x[2], x[3], sin_t_, cos_t_);
+    J.col(3) = J.col(2).array() * sin_t_;
   }
   bool has_curvature() const override { return true; }
   void second(VectorRef, VectorRef u, BatchOut H) const override {
@@ -40,8 +47,6 @@ class BrownDennis final : public DensePhysics {
   }
 
  private:
-  Eigen::ArrayXd a(VectorRef x) const { return x[0] + x[1] * t_ - exp_t_; }
-  Eigen::ArrayXd b(VectorRef x) const { return x[2] + x[3] * sin_t_ - cos_t_; }
   Eigen::ArrayXd t_, exp_t_, sin_t_, cos_t_;  // (m)
 };
 
