@@ -16,7 +16,6 @@ namespace {
 
 using Eigen::Map;
 using TrustRegionSetup = void (*)(const Json& options, ceres::Solver::Options&);
-using LineSearchSetup = void (*)(const Json& options, ceres::GradientProblemSolver::Options&);
 
 // What Ceres asks of one θ, in several calls, costs one forward pass. No exception crosses Ceres:
 // it is kept and thrown again after the solve.
@@ -132,48 +131,39 @@ Status verdict(const Evaluation& evaluation, const Summary& summary) {
   return summary.termination_type == ceres::CONVERGENCE ? Status::converged : Status::stalled;
 }
 
-class TrustRegion final : public Optimizer {
+Status solve(const ceres::Solver::Options& options, Evaluation& evaluation, Vector& theta) {
+  ceres::Problem problem;  // owns the block
+  problem.AddResidualBlock(new ResidualBlock(evaluation), nullptr, theta.data());
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return verdict(evaluation, summary);
+}
+
+Status solve(const ceres::GradientProblemSolver::Options& options, Evaluation& evaluation,
+             Vector& theta) {
+  const ceres::GradientProblem problem(new LossFunction(evaluation));  // owns the function
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(options, problem, theta.data(), &summary);
+  return verdict(evaluation, summary);
+}
+
+// Options: of Ceres' trust-region solver, or of its line searches.
+template <class Options>
+class Ceres final : public Optimizer {
  public:
-  TrustRegion(TrustRegionSetup setup, const Json& options) {
-    options_.linear_solver_type = ceres::DENSE_QR;
-    setup(options, options_);
-  }
+  explicit Ceres(Options options) : options_(std::move(options)) {}
   void start(Meter&, const Vector&) override {}
   bool reports_iterations() const override { return true; }
   Status step(Meter& f, Vector& theta) override {
     Evaluation evaluation(f);
-    ceres::Problem problem;  // owns the block
-    problem.AddResidualBlock(new ResidualBlock(evaluation), nullptr, theta.data());
     Watch watch(f, theta);
-    ceres::Solver::Options options = options_;
+    Options options = options_;
     set_common(options, watch);
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    return verdict(evaluation, summary);
+    return solve(options, evaluation, theta);
   }
 
  private:
-  ceres::Solver::Options options_;
-};
-
-class LineSearch final : public Optimizer {
- public:
-  LineSearch(LineSearchSetup setup, const Json& options) { setup(options, options_); }
-  void start(Meter&, const Vector&) override {}
-  bool reports_iterations() const override { return true; }
-  Status step(Meter& f, Vector& theta) override {
-    Evaluation evaluation(f);
-    const ceres::GradientProblem problem(new LossFunction(evaluation));  // owns the function
-    Watch watch(f, theta);
-    ceres::GradientProblemSolver::Options options = options_;
-    set_common(options, watch);
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, theta.data(), &summary);
-    return verdict(evaluation, summary);
-  }
-
- private:
-  ceres::GradientProblemSolver::Options options_;
+  const Options options_;
 };
 
 struct Radius {
@@ -190,110 +180,111 @@ void fields(Memory& o, auto& field) {
   field("memory", o.memory, between(1, 1000), "pairs of steps and gradient changes kept");
 }
 
-OptimizerEntry trust_region_entry(OptimizerEntry entry, TrustRegionSetup setup) {
+OptimizerEntry trust_region(OptimizerEntry entry, TrustRegionSetup setup) {
   entry.family = Family::ceres;
   entry.needs = {Oracle::forward, Oracle::jacobian};
   entry.most_unknowns = 4096;
   entry.most_rank = 2048;  // dense QR
-  entry.make = [setup](const Json& options, const OptimizerRegistry&) {
-    return std::make_unique<TrustRegion>(setup, options);
+  entry.make = [setup](const Json& json, const OptimizerRegistry&) {
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    setup(json, options);
+    return std::make_unique<Ceres<ceres::Solver::Options>>(options);
   };
   return entry;
 }
 
-OptimizerEntry line_search_entry(OptimizerEntry entry, LineSearchSetup setup) {
+OptimizerEntry line_search(OptimizerEntry entry, ceres::LineSearchDirectionType direction) {
   entry.family = Family::ceres;
   entry.needs = {Oracle::forward, Oracle::pullback};
-  entry.make = [setup](const Json& options, const OptimizerRegistry&) {
-    return std::make_unique<LineSearch>(setup, options);
+  entry.make = [direction](const Json& json, const OptimizerRegistry&) {
+    ceres::GradientProblemSolver::Options options;
+    options.line_search_direction_type = direction;
+    if (direction == ceres::LBFGS)
+      options.max_lbfgs_rank = static_cast<int>(read_options<Memory>(json).memory);
+    return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(options);
   };
   return entry;
 }
 
-void add_trust_region_methods(OptimizerRegistry& registry) {
-  registry.add(trust_region_entry(
-      {.name = "ceres-gauss-newton",
-       .title = "Gauss-Newton, safeguarded (Ceres)",
-       .formula = "θ ← θ − J⁺ (y − y*)",
-       .source = "Ceres 2.1, Levenberg-Marquardt with its trust radius opened to 1e16",
-       .note = "Steps that raise the loss are still rejected, then damped.",
-       .is_input_scale_invariant = true},
-      [](const Json&, ceres::Solver::Options& o) {
-        o.initial_trust_region_radius = o.max_trust_region_radius;
-        o.min_relative_decrease = 0;
-      }));
-  registry.add(trust_region_entry(
-      {.name = "ceres-lm",
-       .title = "Levenberg-Marquardt (Ceres)",
-       .formula = "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
-       .source = "Ceres 2.1; Levenberg (1944), Marquardt (1963), Nielsen (1999)",
-       .options = option_table<Radius>()},
-      [](const Json& json, ceres::Solver::Options& o) {
-        o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
-      }));
-  registry.add(trust_region_entry(
+void set_radius(const Json& json, ceres::Solver::Options& o) {
+  o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
+}
+
+void add_trust_regions(OptimizerRegistry& registry) {
+  registry.add(
+      trust_region({.name = "ceres-gauss-newton",
+                    .title = "Gauss-Newton, safeguarded (Ceres)",
+                    .formula = "θ ← θ − J⁺ (y − y*)",
+                    .source = "Ceres 2.1, Levenberg-Marquardt with its trust radius opened to 1e16",
+                    .note = "Steps that raise the loss are still rejected, then damped.",
+                    .is_input_scale_invariant = true},
+                   [](const Json&, ceres::Solver::Options& o) {
+                     o.initial_trust_region_radius = o.max_trust_region_radius;
+                     o.min_relative_decrease = 0;
+                   }));
+  registry.add(trust_region({.name = "ceres-lm",
+                             .title = "Levenberg-Marquardt (Ceres)",
+                             .formula = "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
+                             .source = "Ceres 2.1; Marquardt (1963), Nielsen (1999)",
+                             .options = option_table<Radius>()},
+                            set_radius));
+  registry.add(trust_region(
       {.name = "ceres-dogleg",
        .title = "Powell's dogleg (Ceres)",
-       .formula = "min ½‖r + J d‖² along the path to steepest descent, then to Gauss-Newton",
+       .formula = "min ‖r + J d‖² along the path to steepest descent, then to Gauss-Newton",
        .source = "Ceres 2.1; Powell (1970)",
+       .note = "Invariant while its Gauss-Newton steps lie within the radius.",
+       .is_input_scale_invariant = true,
        .options = option_table<Radius>()},
       [](const Json& json, ceres::Solver::Options& o) {
         o.trust_region_strategy_type = ceres::DOGLEG;
-        o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
+        set_radius(json, o);
       }));
-  registry.add(trust_region_entry(
+  registry.add(trust_region(
       {.name = "ceres-subspace-dogleg",
        .title = "Subspace dogleg (Ceres)",
-       .formula = "min ½‖r + J d‖² over the plane of steepest descent and Gauss-Newton, ‖D d‖ ≤ Δ",
+       .formula = "min ‖r + J d‖² over the plane of steepest descent and Gauss-Newton, ‖D d‖ ≤ Δ",
        .source = "Ceres 2.1; Byrd, Schnabel, Shultz (1988)",
+       .note = "Invariant while its Gauss-Newton steps lie within the radius.",
+       .is_input_scale_invariant = true,
        .options = option_table<Radius>()},
       [](const Json& json, ceres::Solver::Options& o) {
         o.trust_region_strategy_type = ceres::DOGLEG;
         o.dogleg_type = ceres::SUBSPACE_DOGLEG;
-        o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
+        set_radius(json, o);
       }));
 }
 
 void add_line_searches(OptimizerRegistry& registry) {
-  registry.add(line_search_entry({.name = "ceres-steepest-descent",
-                                  .title = "Steepest descent with line search (Ceres)",
-                                  .formula = "θ ← θ − α ∇L,  α by the Wolfe conditions",
-                                  .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 3.5"},
-                                 [](const Json&, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type = ceres::STEEPEST_DESCENT;
-                                 }));
-  registry.add(line_search_entry({.name = "ceres-ncg",
-                                  .title = "Nonlinear conjugate gradients (Ceres)",
-                                  .formula = "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d",
-                                  .source = "Ceres 2.1; Fletcher, Reeves (1964)"},
-                                 [](const Json&, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type =
-                                       ceres::NONLINEAR_CONJUGATE_GRADIENT;
-                                 }));
-  registry.add(line_search_entry({.name = "ceres-bfgs",
-                                  .title = "BFGS (Ceres)",
-                                  .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ by rank-two updates",
-                                  .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 6.1",
-                                  .most_unknowns = 2048},  // B is dense
-                                 [](const Json&, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type = ceres::BFGS;
-                                 }));
-  registry.add(line_search_entry({.name = "ceres-lbfgs",
-                                  .title = "Limited-memory BFGS (Ceres)",
-                                  .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps",
-                                  .source = "Ceres 2.1; Nocedal (1980)",
-                                  .options = option_table<Memory>()},
-                                 [](const Json& json, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type = ceres::LBFGS;
-                                   o.max_lbfgs_rank =
-                                       static_cast<int>(read_options<Memory>(json).memory);
-                                 }));
+  registry.add(line_search({.name = "ceres-steepest-descent",
+                            .title = "Steepest descent with line search (Ceres)",
+                            .formula = "θ ← θ − α ∇L,  α by the Wolfe conditions",
+                            .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 3.5"},
+                           ceres::STEEPEST_DESCENT));
+  registry.add(line_search({.name = "ceres-ncg",
+                            .title = "Nonlinear conjugate gradients (Ceres)",
+                            .formula = "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d",
+                            .source = "Ceres 2.1; Fletcher, Reeves (1964)"},
+                           ceres::NONLINEAR_CONJUGATE_GRADIENT));
+  registry.add(line_search({.name = "ceres-bfgs",
+                            .title = "BFGS (Ceres)",
+                            .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ by rank-two updates",
+                            .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 6.1",
+                            .most_unknowns = 2048},  // B is dense
+                           ceres::BFGS));
+  registry.add(line_search({.name = "ceres-lbfgs",
+                            .title = "Limited-memory BFGS (Ceres)",
+                            .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps",
+                            .source = "Ceres 2.1; Nocedal (1980)",
+                            .options = option_table<Memory>()},
+                           ceres::LBFGS));
 }
 
 }  // namespace
 
 void register_ceres(OptimizerRegistry& registry) {
-  add_trust_region_methods(registry);
+  add_trust_regions(registry);
   add_line_searches(registry);
 }
 

@@ -5,6 +5,7 @@
 // believed: it reports success on plateaus.
 #include <nlopt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -21,7 +22,9 @@ using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
 
 constexpr Real kRounding = 1e-15;  // relative step below which θ no longer changes
 constexpr Index kPatience = 100;   // evaluations an unknown without a new best
-constexpr Real kWall = 1e20;       // what a loss that is not finite is told as: inf hangs COBYLA
+constexpr const char* kStartNote =
+    "Its first steps are the size of the start's coordinates, and so follow their units.";
+constexpr Real kWall = 1e20;  // what a loss that is not finite is told as: inf hangs COBYLA
 
 Handle make_handle(nlopt_algorithm algorithm, Index n) {
   return Handle(nlopt_create(algorithm, static_cast<unsigned>(n)), &nlopt_destroy);
@@ -161,7 +164,9 @@ void add_derivative_free_methods(OptimizerRegistry& registry) {
   registry.add(derivative_free_entry({.name = "nlopt-bobyqa",
                                       .title = "BOBYQA (NLopt)",
                                       .formula = "min of a quadratic through 2n+1 points, ‖d‖ ≤ Δ",
-                                      .source = "NLopt 2.7; Powell (2009)"},
+                                      .source = "NLopt 2.7; Powell (2009)",
+                                      .note = kStartNote,
+                                      .is_input_scale_invariant = true},
                                      NLOPT_LN_BOBYQA));
   registry.add(
       derivative_free_entry({.name = "nlopt-cobyla",
@@ -172,7 +177,9 @@ void add_derivative_free_methods(OptimizerRegistry& registry) {
   registry.add(derivative_free_entry({.name = "nlopt-neldermead",
                                       .title = "Nelder-Mead simplex (NLopt)",
                                       .formula = "reflect, expand, contract or shrink n+1 points",
-                                      .source = "NLopt 2.7; Nelder, Mead (1965)"},
+                                      .source = "NLopt 2.7; Nelder, Mead (1965)",
+                                      .note = kStartNote,
+                                      .is_input_scale_invariant = true},
                                      NLOPT_LN_NELDERMEAD));
   registry.add(derivative_free_entry({.name = "nlopt-sbplx",
                                       .title = "Subplex (NLopt)",
@@ -181,54 +188,75 @@ void add_derivative_free_methods(OptimizerRegistry& registry) {
                                      NLOPT_LN_SBPLX));
 }
 
-// What minimize_lbfgs hands through NLopt.
+// What minimize_lbfgs hands through NLopt. Luksan's first trial step is the whole gradient, and his
+// test of convergence is ‖∇f‖ ≤ 1e-8: both make sense in units of the start, f₀ for the misfit and
+// Polyak's step f₀/‖∇f₀‖ for lengths, which also keeps the first step on the branch of the start.
 struct Minimization {
   const ValueAndGradient& f;
   const LbfgsLimits& limits;
-  nlopt_opt handle;
-  Vector x, gradient, best;  // (n)
+  Vector origin, x, gradient, best;  // (n)
+  nlopt_opt handle = nullptr;
   LbfgsResult result{std::numeric_limits<Real>::infinity(), 0};
-  std::exception_ptr error;
+  Real unit = 0, length = 0;  // f₀, f₀/‖∇f₀‖; 0: not yet known
+  std::exception_ptr error = nullptr;
 
-  Real evaluate(const double* at, double* out) {
-    if (error || (limits.is_over && limits.is_over())) {
-      nlopt_force_stop(handle);
-      return kWall;
-    }
-    x = Map<const Vector>(at, x.size());
+  bool is_over() const {
+    return error || result.value <= limits.enough || result.evaluations >= limits.evaluations ||
+           (limits.is_over && limits.is_over());
+  }
+  Real stop() {
+    nlopt_force_stop(handle);
+    return kWall;
+  }
+
+  Real evaluate(const double* z, double* out) {  // at x = origin + length z
+    if (is_over()) return stop();
+    x = origin + length * Map<const Vector>(z, origin.size());
     ++result.evaluations;
     try {
       const Real value = f(x, gradient);
-      if (out) Map<Vector>(out, gradient.size()) = gradient;
-      if (value < result.value) {
-        result.value = value;
-        best = x;
+      if (value < result.value) best = x;
+      result.value = std::min(result.value, value);
+      if (length == 0) {
+        unit = value;
+        length = value / gradient.norm();
+        if (!std::isfinite(length)) return stop();
       }
-      return std::isfinite(value) ? value : kWall;
+      if (out) Map<Vector>(out, gradient.size()) = (length / unit) * gradient;
+      return std::isfinite(value) ? value / unit : kWall;
     } catch (...) {
       error = std::current_exception();
-      nlopt_force_stop(handle);
-      return kWall;
+      return stop();
     }
   }
-};
 
-double evaluate_minimization(unsigned, const double* x, double* gradient, void* minimization) {
-  return static_cast<Minimization*>(minimization)->evaluate(x, gradient);
-}
+  void descend() {
+    const Handle owned = make_handle(NLOPT_LD_LBFGS, origin.size());
+    handle = owned.get();
+    origin = best;
+    length = 0;
+    Vector z = Vector::Zero(origin.size());
+    const auto evaluate_this = [](unsigned, const double* at, double* out, void* self) {
+      return static_cast<Minimization*>(self)->evaluate(at, out);
+    };
+    nlopt_set_min_objective(handle, evaluate_this, this);
+    nlopt_set_xtol_rel(handle, kRounding);
+    Real value = 0;
+    nlopt_optimize(handle, z.data(), &value);  // its verdict adds nothing to the value reached
+    if (error) std::rethrow_exception(error);
+  }
+};
 
 }  // namespace
 
 LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x) {
-  const Handle handle = make_handle(NLOPT_LD_LBFGS, x.size());
-  Minimization minimization{f, limits, handle.get(), x, Vector(x.size()), x};
-  nlopt_set_min_objective(handle.get(), evaluate_minimization, &minimization);
-  nlopt_set_xtol_rel(handle.get(), kRounding);
-  nlopt_set_stopval(handle.get(), limits.enough);
-  nlopt_set_maxeval(handle.get(), static_cast<int>(limits.evaluations));
-  Real value = 0;
-  nlopt_optimize(handle.get(), x.data(), &value);  // its verdict adds nothing to the value reached
-  if (minimization.error) std::rethrow_exception(minimization.error);
+  constexpr Real kWorthwhile = 0.1;  // a descent in new units goes on while it gains this factor
+  Minimization minimization{f, limits, x, x, Vector(x.size()), x};
+  Real before = 0;
+  do {
+    before = minimization.result.value;
+    minimization.descend();
+  } while (!minimization.is_over() && minimization.result.value < kWorthwhile * before);
   x = minimization.best;
   return minimization.result;
 }
