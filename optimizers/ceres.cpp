@@ -19,45 +19,37 @@ using TrustRegionSetup = void (*)(const Json& options, ceres::Solver::Options&);
 
 // What Ceres asks of one θ, in several calls, costs one forward pass. No exception crosses Ceres:
 // it is kept and thrown again after the solve.
-class Evaluation {
- public:
-  explicit Evaluation(Meter& f) : f_(f), theta_(f.unknowns()) {}
+struct Evaluation {
+  Meter& f;
+  Vector theta;  // (n)
+  Linearization point = {};
+  bool has_point = false;
+  std::exception_ptr error = nullptr;
 
-  // Runs `read` on the linearization at θ; false where the run is over or θ is not finite.
+  // Runs `read` on the linearization at θ; false where the run is over or something is not finite.
   template <class Read>
-  bool at(const double* theta, Read read) {
-    if (error_ || f_.is_spent() || f_.status() != Status::running) return false;
-    theta_ = Map<const Vector>(theta, theta_.size());  // aligned, whatever Ceres' array is
-    if (!theta_.allFinite()) return false;
+  bool at(const double* parameters, Read read) {
+    if (error || f.is_spent() || f.status() != Status::running) return false;
+    theta = Map<const Vector>(parameters, theta.size());  // aligned, whatever Ceres' array is
+    if (!theta.allFinite()) return false;
     try {
-      if (!has_point_ || theta_ != at_.theta()) f_.linearize(theta_, at_);
-      has_point_ = true;
-      read(at_);
+      if (!has_point || theta != point.theta()) f.linearize(theta, point);
+      has_point = true;
+      read(point);
     } catch (...) {
-      error_ = std::current_exception();
+      error = std::current_exception();
       return false;
     }
-    return std::isfinite(at_.loss());
+    return std::isfinite(point.loss());
   }
-  Meter& meter() const { return f_; }
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  Meter& f_;
-  Vector theta_;  // (n)
-  Linearization at_;
-  bool has_point_ = false;
-  std::exception_ptr error_;
 };
 
 // r and its Jacobian as one block of n parameters.
 class ResidualBlock final : public ceres::CostFunction {
  public:
   explicit ResidualBlock(Evaluation& evaluation) : evaluation_(evaluation) {
-    set_num_residuals(static_cast<int>(evaluation.meter().residuals()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(evaluation.meter().unknowns()));
+    set_num_residuals(static_cast<int>(evaluation.f.residuals()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(evaluation.f.unknowns()));
   }
   bool Evaluate(double const* const* theta, double* r, double** J) const override {
     using RowMajor = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -65,7 +57,7 @@ class ResidualBlock final : public ceres::CostFunction {
       at.residual(residual_);
       Map<Vector>(r, residual_.size()) = residual_;
       if (!J || !J[0]) return;
-      const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation_.meter().samples()));
+      const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation_.f.samples()));
       Map<RowMajor>(J[0], residual_.size(), at.theta().size()) = scale * at.jacobian();
     });
   }
@@ -79,7 +71,7 @@ class ResidualBlock final : public ceres::CostFunction {
 class LossFunction final : public ceres::FirstOrderFunction {
  public:
   explicit LossFunction(Evaluation& evaluation) : evaluation_(evaluation) {}
-  int NumParameters() const override { return static_cast<int>(evaluation_.meter().unknowns()); }
+  int NumParameters() const override { return static_cast<int>(evaluation_.f.unknowns()); }
   bool Evaluate(const double* theta, double* loss, double* gradient) const override {
     return evaluation_.at(theta, [&](Linearization& at) {
       *loss = at.loss();
@@ -123,8 +115,8 @@ void set_common(Options& options, Watch& watch) {
 
 template <class Summary>
 Status verdict(const Evaluation& evaluation, const Summary& summary) {
-  evaluation.rethrow();
-  Meter& f = evaluation.meter();
+  if (evaluation.error) std::rethrow_exception(evaluation.error);
+  Meter& f = evaluation.f;
   f.claim(summary.message);
   if (f.status() != Status::running) return f.status();
   if (f.is_spent()) return Status::budget;
@@ -155,7 +147,7 @@ class Ceres final : public Optimizer {
   void start(Meter&, const Vector&) override {}
   bool reports_iterations() const override { return true; }
   Status step(Meter& f, Vector& theta) override {
-    Evaluation evaluation(f);
+    Evaluation evaluation{f, theta};
     Watch watch(f, theta);
     Options options = options_;
     set_common(options, watch);
@@ -173,13 +165,6 @@ void fields(Radius& o, auto& field) {
   field("initial-radius", o.initial_radius, above(0), "trust radius at the start, Ceres' default");
 }
 
-struct Memory {
-  Index memory = 20;
-};
-void fields(Memory& o, auto& field) {
-  field("memory", o.memory, between(1, 1000), "pairs of steps and gradient changes kept");
-}
-
 OptimizerEntry trust_region(OptimizerEntry entry, TrustRegionSetup setup) {
   entry.family = Family::ceres;
   entry.needs = {Oracle::forward, Oracle::jacobian};
@@ -190,19 +175,6 @@ OptimizerEntry trust_region(OptimizerEntry entry, TrustRegionSetup setup) {
     options.linear_solver_type = ceres::DENSE_QR;
     setup(json, options);
     return std::make_unique<Ceres<ceres::Solver::Options>>(options);
-  };
-  return entry;
-}
-
-OptimizerEntry line_search(OptimizerEntry entry, ceres::LineSearchDirectionType direction) {
-  entry.family = Family::ceres;
-  entry.needs = {Oracle::forward, Oracle::pullback};
-  entry.make = [direction](const Json& json, const OptimizerRegistry&) {
-    ceres::GradientProblemSolver::Options options;
-    options.line_search_direction_type = direction;
-    if (direction == ceres::LBFGS)
-      options.max_lbfgs_rank = static_cast<int>(read_options<Memory>(json).memory);
-    return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(options);
   };
   return entry;
 }
@@ -256,36 +228,45 @@ void add_trust_regions(OptimizerRegistry& registry) {
       }));
 }
 
-void add_line_searches(OptimizerRegistry& registry) {
-  registry.add(line_search({.name = "ceres-steepest-descent",
-                            .title = "Steepest descent with line search (Ceres)",
-                            .formula = "θ ← θ − α ∇L,  α by the Wolfe conditions",
-                            .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 3.5"},
-                           ceres::STEEPEST_DESCENT));
-  registry.add(line_search({.name = "ceres-ncg",
-                            .title = "Nonlinear conjugate gradients (Ceres)",
-                            .formula = "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d",
-                            .source = "Ceres 2.1; Fletcher, Reeves (1964)"},
-                           ceres::NONLINEAR_CONJUGATE_GRADIENT));
-  registry.add(line_search({.name = "ceres-bfgs",
-                            .title = "BFGS (Ceres)",
-                            .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ by rank-two updates",
-                            .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 6.1",
-                            .most_unknowns = 2048},  // B is dense
-                           ceres::BFGS));
-  registry.add(line_search({.name = "ceres-lbfgs",
-                            .title = "Limited-memory BFGS (Ceres)",
-                            .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps",
-                            .source = "Ceres 2.1; Nocedal (1980)",
-                            .options = option_table<Memory>()},
-                           ceres::LBFGS));
+struct LineSearch {
+  ceres::LineSearchDirectionType direction;
+  const char *name, *title, *formula, *source;
+  Index most_unknowns = std::numeric_limits<Index>::max();
+};
+
+const LineSearch kLineSearches[] = {
+    {ceres::STEEPEST_DESCENT, "ceres-steepest-descent", "Steepest descent with line search (Ceres)",
+     "θ ← θ − α ∇L,  α by the Wolfe conditions",
+     "Ceres 2.1; Nocedal, Wright (2006), algorithm 3.5"},
+    {ceres::NONLINEAR_CONJUGATE_GRADIENT, "ceres-ncg", "Nonlinear conjugate gradients (Ceres)",
+     "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d", "Ceres 2.1; Fletcher, Reeves (1964)"},
+    {ceres::BFGS, "ceres-bfgs", "BFGS (Ceres)",
+     "θ ← θ − α B ∇L,  B ≈ H⁻¹ by rank-two updates, dense",
+     "Ceres 2.1; Nocedal, Wright (2006), algorithm 6.1", 2048},
+    {ceres::LBFGS, "ceres-lbfgs", "Limited-memory BFGS (Ceres)",
+     "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last 20 steps", "Ceres 2.1; Nocedal (1980)"},
+};
+
+OptimizerEntry entry_of(const LineSearch& method) {
+  return {.name = method.name,
+          .title = method.title,
+          .family = Family::ceres,
+          .formula = method.formula,
+          .source = method.source,
+          .needs = {Oracle::forward, Oracle::pullback},
+          .most_unknowns = method.most_unknowns,
+          .make = [direction = method.direction](const Json&, const OptimizerRegistry&) {
+            ceres::GradientProblemSolver::Options options;
+            options.line_search_direction_type = direction;
+            return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(options);
+          }};
 }
 
 }  // namespace
 
 void register_ceres(OptimizerRegistry& registry) {
   add_trust_regions(registry);
-  add_line_searches(registry);
+  for (const LineSearch& method : kLineSearches) registry.add(entry_of(method));
 }
 
 }  // namespace isoline
