@@ -15,7 +15,6 @@ namespace isoline {
 namespace {
 
 using Eigen::Map;
-using TrustRegionSetup = void (*)(const Json& options, ceres::Solver::Options&);
 
 // What Ceres asks of one θ, in several calls, costs one forward pass. No exception crosses Ceres:
 // it is kept and thrown again after the solve.
@@ -45,67 +44,60 @@ struct Evaluation {
 };
 
 // r and its Jacobian as one block of n parameters.
-class ResidualBlock final : public ceres::CostFunction {
- public:
-  explicit ResidualBlock(Evaluation& evaluation) : evaluation_(evaluation) {
+struct ResidualBlock final : ceres::CostFunction {
+  Evaluation& evaluation;
+  mutable Vector residual;  // (m·B)
+
+  explicit ResidualBlock(Evaluation& shared) : evaluation(shared) {
     set_num_residuals(static_cast<int>(evaluation.f.residuals()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(evaluation.f.unknowns()));
   }
   bool Evaluate(double const* const* theta, double* r, double** J) const override {
     using RowMajor = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    return evaluation_.at(theta[0], [&](Linearization& at) {
-      at.residual(residual_);
-      Map<Vector>(r, residual_.size()) = residual_;
+    return evaluation.at(theta[0], [&](Linearization& at) {
+      at.residual(residual);
+      Map<Vector>(r, residual.size()) = residual;
       if (!J || !J[0]) return;
-      const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation_.f.samples()));
-      Map<RowMajor>(J[0], residual_.size(), at.theta().size()) = scale * at.jacobian();
+      const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation.f.samples()));
+      Map<RowMajor>(J[0], residual.size(), at.theta().size()) = scale * at.jacobian();
     });
   }
-
- private:
-  Evaluation& evaluation_;
-  mutable Vector residual_;  // (m·B)
 };
 
 // L and its gradient.
-class LossFunction final : public ceres::FirstOrderFunction {
- public:
-  explicit LossFunction(Evaluation& evaluation) : evaluation_(evaluation) {}
-  int NumParameters() const override { return static_cast<int>(evaluation_.f.unknowns()); }
+struct LossFunction final : ceres::FirstOrderFunction {
+  Evaluation& evaluation;
+  mutable Vector slope;  // (n), ∇L
+
+  explicit LossFunction(Evaluation& shared) : evaluation(shared) {}
+  int NumParameters() const override { return static_cast<int>(evaluation.f.unknowns()); }
   bool Evaluate(const double* theta, double* loss, double* gradient) const override {
-    return evaluation_.at(theta, [&](Linearization& at) {
+    return evaluation.at(theta, [&](Linearization& at) {
       *loss = at.loss();
       if (!gradient) return;
-      at.gradient(gradient_);
-      Map<Vector>(gradient, gradient_.size()) = gradient_;
+      at.gradient(slope);
+      Map<Vector>(gradient, slope.size()) = slope;
     });
   }
-
- private:
-  Evaluation& evaluation_;
-  mutable Vector gradient_;  // (n)
 };
 
 // Reports each iteration; Ceres has then updated θ.
-class Watch final : public ceres::IterationCallback {
- public:
-  Watch(Meter& f, const Vector& theta) : f_(f), theta_(theta) {}
+struct Watch final : ceres::IterationCallback {
+  Meter& f;
+  const Vector& theta;
+
+  Watch(Meter& meter, const Vector& current) : f(meter), theta(current) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (summary.iteration == 0) return ceres::SOLVER_CONTINUE;  // the start
-    if (!summary.step_is_successful) f_.reject_step();
-    return f_.iterate(theta_) == Status::running ? ceres::SOLVER_CONTINUE
-                                                 : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (!summary.step_is_successful) f.reject_step();
+    return f.iterate(theta) == Status::running ? ceres::SOLVER_CONTINUE
+                                               : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
-
- private:
-  Meter& f_;
-  const Vector& theta_;
 };
 
 template <class Options>
 void set_common(Options& options, Watch& watch) {
-  FLAGS_minloglevel =
-      google::GLOG_FATAL;  // Ceres warns on standard error of what is ours to record
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of is ours to record
   options.max_num_iterations = std::numeric_limits<int>::max();
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 0;
   options.logging_type = ceres::SILENT;
@@ -158,74 +150,62 @@ class Ceres final : public Optimizer {
   const Options options_;
 };
 
-struct Radius {
-  Real initial_radius = 1e4;
+constexpr const char* kRadiusNote = "Invariant while its Gauss-Newton steps lie within the radius.";
+
+struct TrustRegion {
+  ceres::TrustRegionStrategyType strategy;
+  ceres::DoglegType dogleg;
+  const char *name, *title, *formula, *source;
+  const char* note = "";
+  bool is_input_scale_invariant = false, is_wide_open = false;
 };
-void fields(Radius& o, auto& field) {
-  field("initial-radius", o.initial_radius, above(0), "trust radius at the start, Ceres' default");
-}
 
-OptimizerEntry trust_region(OptimizerEntry entry, TrustRegionSetup setup) {
-  entry.family = Family::ceres;
-  entry.needs = {Oracle::forward, Oracle::jacobian};
-  entry.most_unknowns = 4096;
-  entry.most_rank = 2048;  // dense QR
-  entry.make = [setup](const Json& json, const OptimizerRegistry&) {
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    setup(json, options);
-    return std::make_unique<Ceres<ceres::Solver::Options>>(options);
-  };
-  return entry;
-}
+const TrustRegion kTrustRegions[] = {
+    {ceres::LEVENBERG_MARQUARDT,
+     {},
+     "ceres-gauss-newton",
+     "Gauss-Newton, safeguarded (Ceres)",
+     "θ ← θ − J⁺ (y − y*)",
+     "Ceres 2.1, Levenberg-Marquardt from the trust radius 1e16",
+     "Steps that raise the loss are still rejected, then damped.",
+     true,
+     true},
+    {ceres::LEVENBERG_MARQUARDT,
+     {},
+     "ceres-lm",
+     "Levenberg-Marquardt (Ceres)",
+     "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
+     "Ceres 2.1; Marquardt (1963), Nielsen (1999)"},
+    {ceres::DOGLEG, ceres::TRADITIONAL_DOGLEG, "ceres-dogleg", "Powell's dogleg (Ceres)",
+     "min ‖r + J d‖² along the path to steepest descent, then to Gauss-Newton",
+     "Ceres 2.1; Powell (1970)", kRadiusNote, true},
+    {ceres::DOGLEG, ceres::SUBSPACE_DOGLEG, "ceres-subspace-dogleg", "Subspace dogleg (Ceres)",
+     "min ‖r + J d‖² over the plane of steepest descent and Gauss-Newton, ‖D d‖ ≤ Δ",
+     "Ceres 2.1; Byrd, Schnabel, Shultz (1988)", kRadiusNote, true},
+};
 
-void set_radius(const Json& json, ceres::Solver::Options& o) {
-  o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
-}
-
-void add_trust_regions(OptimizerRegistry& registry) {
-  registry.add(
-      trust_region({.name = "ceres-gauss-newton",
-                    .title = "Gauss-Newton, safeguarded (Ceres)",
-                    .formula = "θ ← θ − J⁺ (y − y*)",
-                    .source = "Ceres 2.1, Levenberg-Marquardt with its trust radius opened to 1e16",
-                    .note = "Steps that raise the loss are still rejected, then damped.",
-                    .is_input_scale_invariant = true},
-                   [](const Json&, ceres::Solver::Options& o) {
-                     o.initial_trust_region_radius = o.max_trust_region_radius;
-                     o.min_relative_decrease = 0;
-                   }));
-  registry.add(trust_region({.name = "ceres-lm",
-                             .title = "Levenberg-Marquardt (Ceres)",
-                             .formula = "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
-                             .source = "Ceres 2.1; Marquardt (1963), Nielsen (1999)",
-                             .options = option_table<Radius>()},
-                            set_radius));
-  registry.add(trust_region(
-      {.name = "ceres-dogleg",
-       .title = "Powell's dogleg (Ceres)",
-       .formula = "min ‖r + J d‖² along the path to steepest descent, then to Gauss-Newton",
-       .source = "Ceres 2.1; Powell (1970)",
-       .note = "Invariant while its Gauss-Newton steps lie within the radius.",
-       .is_input_scale_invariant = true,
-       .options = option_table<Radius>()},
-      [](const Json& json, ceres::Solver::Options& o) {
-        o.trust_region_strategy_type = ceres::DOGLEG;
-        set_radius(json, o);
-      }));
-  registry.add(trust_region(
-      {.name = "ceres-subspace-dogleg",
-       .title = "Subspace dogleg (Ceres)",
-       .formula = "min ‖r + J d‖² over the plane of steepest descent and Gauss-Newton, ‖D d‖ ≤ Δ",
-       .source = "Ceres 2.1; Byrd, Schnabel, Shultz (1988)",
-       .note = "Invariant while its Gauss-Newton steps lie within the radius.",
-       .is_input_scale_invariant = true,
-       .options = option_table<Radius>()},
-      [](const Json& json, ceres::Solver::Options& o) {
-        o.trust_region_strategy_type = ceres::DOGLEG;
-        o.dogleg_type = ceres::SUBSPACE_DOGLEG;
-        set_radius(json, o);
-      }));
+OptimizerEntry entry_of(const TrustRegion& m) {
+  return {.name = m.name,
+          .title = m.title,
+          .family = Family::ceres,
+          .formula = m.formula,
+          .source = m.source,
+          .note = m.note,
+          .needs = {Oracle::forward, Oracle::jacobian},
+          .is_input_scale_invariant = m.is_input_scale_invariant,
+          .most_unknowns = 4096,
+          .most_rank = 2048,  // dense QR
+          .make = [m](const Json&, const OptimizerRegistry&) {
+            ceres::Solver::Options o;
+            o.linear_solver_type = ceres::DENSE_QR;
+            o.trust_region_strategy_type = m.strategy;
+            o.dogleg_type = m.dogleg;
+            if (m.is_wide_open) {
+              o.initial_trust_region_radius = o.max_trust_region_radius;
+              o.min_relative_decrease = 0;
+            }
+            return std::make_unique<Ceres<ceres::Solver::Options>>(o);
+          }};
 }
 
 struct LineSearch {
@@ -265,7 +245,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
 }  // namespace
 
 void register_ceres(OptimizerRegistry& registry) {
-  add_trust_regions(registry);
+  for (const TrustRegion& method : kTrustRegions) registry.add(entry_of(method));
   for (const LineSearch& method : kLineSearches) registry.add(entry_of(method));
 }
 
