@@ -15,106 +15,89 @@ namespace isoline {
 namespace {
 
 using Eigen::Map;
-using TrustRegionSetup = void (*)(const Json& options, ceres::Solver::Options&);
-using LineSearchSetup = void (*)(const Json& options, ceres::GradientProblemSolver::Options&);
 
 // What Ceres asks of one θ, in several calls, costs one forward pass. No exception crosses Ceres:
 // it is kept and thrown again after the solve.
-class Evaluation {
- public:
-  explicit Evaluation(Meter& f) : f_(f), theta_(f.unknowns()) {}
+struct Evaluation {
+  Meter& f;
+  Vector theta;  // (n)
+  Linearization point = {};
+  bool has_point = false;
+  std::exception_ptr error = nullptr;
 
-  // Runs `read` on the linearization at θ; false where the run is over or θ is not finite.
+  // Runs `read` on the linearization at θ; false where the run is over or something is not finite.
   template <class Read>
-  bool at(const double* theta, Read read) {
-    if (error_ || f_.is_spent() || f_.status() != Status::running) return false;
-    theta_ = Map<const Vector>(theta, theta_.size());  // aligned, whatever Ceres' array is
-    if (!theta_.allFinite()) return false;
+  bool at(const double* parameters, Read read) {
+    if (error || f.is_spent() || f.status() != Status::running) return false;
+    theta = Map<const Vector>(parameters, theta.size());  // aligned, whatever Ceres' array is
+    if (!theta.allFinite()) return false;
     try {
-      if (!has_point_ || theta_ != at_.theta()) f_.linearize(theta_, at_);
-      has_point_ = true;
-      read(at_);
+      if (!has_point || theta != point.theta()) f.linearize(theta, point);
+      has_point = true;
+      read(point);
     } catch (...) {
-      error_ = std::current_exception();
+      error = std::current_exception();
       return false;
     }
-    return std::isfinite(at_.loss());
+    return std::isfinite(point.loss());
   }
-  Meter& meter() const { return f_; }
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  Meter& f_;
-  Vector theta_;  // (n)
-  Linearization at_;
-  bool has_point_ = false;
-  std::exception_ptr error_;
 };
 
 // r and its Jacobian as one block of n parameters.
-class ResidualBlock final : public ceres::CostFunction {
- public:
-  explicit ResidualBlock(Evaluation& evaluation) : evaluation_(evaluation) {
-    set_num_residuals(static_cast<int>(evaluation.meter().residuals()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(evaluation.meter().unknowns()));
+struct ResidualBlock final : ceres::CostFunction {
+  Evaluation& evaluation;
+  mutable Vector residual;  // (m·B)
+
+  explicit ResidualBlock(Evaluation& shared) : evaluation(shared) {
+    set_num_residuals(static_cast<int>(evaluation.f.residuals()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(evaluation.f.unknowns()));
   }
   bool Evaluate(double const* const* theta, double* r, double** J) const override {
     using RowMajor = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    return evaluation_.at(theta[0], [&](Linearization& at) {
-      at.residual(residual_);
-      Map<Vector>(r, residual_.size()) = residual_;
+    return evaluation.at(theta[0], [&](Linearization& at) {
+      at.residual(residual);
+      Map<Vector>(r, residual.size()) = residual;
       if (!J || !J[0]) return;
-      const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation_.meter().samples()));
-      Map<RowMajor>(J[0], residual_.size(), at.theta().size()) = scale * at.jacobian();
+      const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation.f.samples()));
+      Map<RowMajor>(J[0], residual.size(), at.theta().size()) = scale * at.jacobian();
     });
   }
-
- private:
-  Evaluation& evaluation_;
-  mutable Vector residual_;  // (m·B)
 };
 
 // L and its gradient.
-class LossFunction final : public ceres::FirstOrderFunction {
- public:
-  explicit LossFunction(Evaluation& evaluation) : evaluation_(evaluation) {}
-  int NumParameters() const override { return static_cast<int>(evaluation_.meter().unknowns()); }
+struct LossFunction final : ceres::FirstOrderFunction {
+  Evaluation& evaluation;
+  mutable Vector slope;  // (n), ∇L
+
+  explicit LossFunction(Evaluation& shared) : evaluation(shared) {}
+  int NumParameters() const override { return static_cast<int>(evaluation.f.unknowns()); }
   bool Evaluate(const double* theta, double* loss, double* gradient) const override {
-    return evaluation_.at(theta, [&](Linearization& at) {
+    return evaluation.at(theta, [&](Linearization& at) {
       *loss = at.loss();
       if (!gradient) return;
-      at.gradient(gradient_);
-      Map<Vector>(gradient, gradient_.size()) = gradient_;
+      at.gradient(slope);
+      Map<Vector>(gradient, slope.size()) = slope;
     });
   }
-
- private:
-  Evaluation& evaluation_;
-  mutable Vector gradient_;  // (n)
 };
 
 // Reports each iteration; Ceres has then updated θ.
-class Watch final : public ceres::IterationCallback {
- public:
-  Watch(Meter& f, const Vector& theta) : f_(f), theta_(theta) {}
+struct Watch final : ceres::IterationCallback {
+  Meter& f;
+  const Vector& theta;
+
+  Watch(Meter& meter, const Vector& current) : f(meter), theta(current) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (summary.iteration == 0) return ceres::SOLVER_CONTINUE;  // the start
-    if (!summary.step_is_successful) f_.reject_step();
-    return f_.iterate(theta_) == Status::running ? ceres::SOLVER_CONTINUE
-                                                 : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (!summary.step_is_successful) f.reject_step();
+    return f.iterate(theta) == Status::running ? ceres::SOLVER_CONTINUE
+                                               : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
-
- private:
-  Meter& f_;
-  const Vector& theta_;
 };
 
 template <class Options>
 void set_common(Options& options, Watch& watch) {
-  FLAGS_minloglevel =
-      google::GLOG_FATAL;  // Ceres warns on standard error of what is ours to record
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of is ours to record
   options.max_num_iterations = std::numeric_limits<int>::max();
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 0;
   options.logging_type = ceres::SILENT;
@@ -124,177 +107,146 @@ void set_common(Options& options, Watch& watch) {
 
 template <class Summary>
 Status verdict(const Evaluation& evaluation, const Summary& summary) {
-  evaluation.rethrow();
-  Meter& f = evaluation.meter();
+  if (evaluation.error) std::rethrow_exception(evaluation.error);
+  Meter& f = evaluation.f;
   f.claim(summary.message);
   if (f.status() != Status::running) return f.status();
   if (f.is_spent()) return Status::budget;
   return summary.termination_type == ceres::CONVERGENCE ? Status::converged : Status::stalled;
 }
 
-class TrustRegion final : public Optimizer {
+Status solve(const ceres::Solver::Options& options, Evaluation& evaluation, Vector& theta) {
+  ceres::Problem problem;  // owns the block
+  problem.AddResidualBlock(new ResidualBlock(evaluation), nullptr, theta.data());
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return verdict(evaluation, summary);
+}
+
+Status solve(const ceres::GradientProblemSolver::Options& options, Evaluation& evaluation,
+             Vector& theta) {
+  const ceres::GradientProblem problem(new LossFunction(evaluation));  // owns the function
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(options, problem, theta.data(), &summary);
+  return verdict(evaluation, summary);
+}
+
+// Options: of Ceres' trust-region solver, or of its line searches.
+template <class Options>
+class Ceres final : public Optimizer {
  public:
-  TrustRegion(TrustRegionSetup setup, const Json& options) {
-    options_.linear_solver_type = ceres::DENSE_QR;
-    setup(options, options_);
-  }
+  explicit Ceres(Options options) : options_(std::move(options)) {}
   void start(Meter&, const Vector&) override {}
   bool reports_iterations() const override { return true; }
   Status step(Meter& f, Vector& theta) override {
-    Evaluation evaluation(f);
-    ceres::Problem problem;  // owns the block
-    problem.AddResidualBlock(new ResidualBlock(evaluation), nullptr, theta.data());
+    Evaluation evaluation{f, theta};
     Watch watch(f, theta);
-    ceres::Solver::Options options = options_;
+    Options options = options_;
     set_common(options, watch);
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    return verdict(evaluation, summary);
+    return solve(options, evaluation, theta);
   }
 
  private:
-  ceres::Solver::Options options_;
+  const Options options_;
 };
 
-class LineSearch final : public Optimizer {
- public:
-  LineSearch(LineSearchSetup setup, const Json& options) { setup(options, options_); }
-  void start(Meter&, const Vector&) override {}
-  bool reports_iterations() const override { return true; }
-  Status step(Meter& f, Vector& theta) override {
-    Evaluation evaluation(f);
-    const ceres::GradientProblem problem(new LossFunction(evaluation));  // owns the function
-    Watch watch(f, theta);
-    ceres::GradientProblemSolver::Options options = options_;
-    set_common(options, watch);
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, theta.data(), &summary);
-    return verdict(evaluation, summary);
-  }
+constexpr const char* kRadiusNote = "Invariant while its Gauss-Newton steps lie within the radius.";
 
- private:
-  ceres::GradientProblemSolver::Options options_;
+struct TrustRegion {
+  ceres::TrustRegionStrategyType strategy;
+  ceres::DoglegType dogleg;
+  const char *name, *title, *formula, *source;
+  const char* note = "";
+  bool is_input_scale_invariant = false, is_wide_open = false;
 };
 
-struct Radius {
-  Real initial_radius = 1e4;
+const TrustRegion kTrustRegions[] = {
+    {ceres::LEVENBERG_MARQUARDT,
+     {},
+     "ceres-gauss-newton",
+     "Gauss-Newton, safeguarded (Ceres)",
+     "θ ← θ − J⁺ (y − y*)",
+     "Ceres 2.1, Levenberg-Marquardt from the trust radius 1e16",
+     "Steps that raise the loss are still rejected, then damped.",
+     true,
+     true},
+    {ceres::LEVENBERG_MARQUARDT,
+     {},
+     "ceres-lm",
+     "Levenberg-Marquardt (Ceres)",
+     "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
+     "Ceres 2.1; Marquardt (1963), Nielsen (1999)"},
+    {ceres::DOGLEG, ceres::TRADITIONAL_DOGLEG, "ceres-dogleg", "Powell's dogleg (Ceres)",
+     "min ‖r + J d‖² along the path to steepest descent, then to Gauss-Newton",
+     "Ceres 2.1; Powell (1970)", kRadiusNote, true},
+    {ceres::DOGLEG, ceres::SUBSPACE_DOGLEG, "ceres-subspace-dogleg", "Subspace dogleg (Ceres)",
+     "min ‖r + J d‖² over the plane of steepest descent and Gauss-Newton, ‖D d‖ ≤ Δ",
+     "Ceres 2.1; Byrd, Schnabel, Shultz (1988)", kRadiusNote, true},
 };
-void fields(Radius& o, auto& field) {
-  field("initial-radius", o.initial_radius, above(0), "trust radius at the start, Ceres' default");
+
+OptimizerEntry entry_of(const TrustRegion& m) {
+  return {.name = m.name,
+          .title = m.title,
+          .family = Family::ceres,
+          .formula = m.formula,
+          .source = m.source,
+          .note = m.note,
+          .needs = {Oracle::forward, Oracle::jacobian},
+          .is_input_scale_invariant = m.is_input_scale_invariant,
+          .most_unknowns = 4096,
+          .most_rank = 2048,  // dense QR
+          .make = [m](const Json&, const OptimizerRegistry&) {
+            ceres::Solver::Options o;
+            o.linear_solver_type = ceres::DENSE_QR;
+            o.trust_region_strategy_type = m.strategy;
+            o.dogleg_type = m.dogleg;
+            if (m.is_wide_open) {
+              o.initial_trust_region_radius = o.max_trust_region_radius;
+              o.min_relative_decrease = 0;
+            }
+            return std::make_unique<Ceres<ceres::Solver::Options>>(o);
+          }};
 }
 
-struct Memory {
-  Index memory = 20;
+struct LineSearch {
+  ceres::LineSearchDirectionType direction;
+  const char *name, *title, *formula, *source;
+  Index most_unknowns = std::numeric_limits<Index>::max();
 };
-void fields(Memory& o, auto& field) {
-  field("memory", o.memory, between(1, 1000), "pairs of steps and gradient changes kept");
-}
 
-OptimizerEntry trust_region_entry(OptimizerEntry entry, TrustRegionSetup setup) {
-  entry.family = Family::ceres;
-  entry.needs = {Oracle::forward, Oracle::jacobian};
-  entry.most_unknowns = 4096;
-  entry.most_rank = 2048;  // dense QR
-  entry.make = [setup](const Json& options, const OptimizerRegistry&) {
-    return std::make_unique<TrustRegion>(setup, options);
-  };
-  return entry;
-}
+const LineSearch kLineSearches[] = {
+    {ceres::STEEPEST_DESCENT, "ceres-steepest-descent", "Steepest descent with line search (Ceres)",
+     "θ ← θ − α ∇L,  α by the Wolfe conditions",
+     "Ceres 2.1; Nocedal, Wright (2006), algorithm 3.5"},
+    {ceres::NONLINEAR_CONJUGATE_GRADIENT, "ceres-ncg", "Nonlinear conjugate gradients (Ceres)",
+     "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d", "Ceres 2.1; Fletcher, Reeves (1964)"},
+    {ceres::BFGS, "ceres-bfgs", "BFGS (Ceres)",
+     "θ ← θ − α B ∇L,  B ≈ H⁻¹ by rank-two updates, dense",
+     "Ceres 2.1; Nocedal, Wright (2006), algorithm 6.1", 2048},
+    {ceres::LBFGS, "ceres-lbfgs", "Limited-memory BFGS (Ceres)",
+     "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last 20 steps", "Ceres 2.1; Nocedal (1980)"},
+};
 
-OptimizerEntry line_search_entry(OptimizerEntry entry, LineSearchSetup setup) {
-  entry.family = Family::ceres;
-  entry.needs = {Oracle::forward, Oracle::pullback};
-  entry.make = [setup](const Json& options, const OptimizerRegistry&) {
-    return std::make_unique<LineSearch>(setup, options);
-  };
-  return entry;
-}
-
-void add_trust_region_methods(OptimizerRegistry& registry) {
-  registry.add(trust_region_entry(
-      {.name = "ceres-gauss-newton",
-       .title = "Gauss-Newton, safeguarded (Ceres)",
-       .formula = "θ ← θ − J⁺ (y − y*)",
-       .source = "Ceres 2.1, Levenberg-Marquardt with its trust radius opened to 1e16",
-       .note = "Steps that raise the loss are still rejected, then damped.",
-       .is_input_scale_invariant = true},
-      [](const Json&, ceres::Solver::Options& o) {
-        o.initial_trust_region_radius = o.max_trust_region_radius;
-        o.min_relative_decrease = 0;
-      }));
-  registry.add(trust_region_entry(
-      {.name = "ceres-lm",
-       .title = "Levenberg-Marquardt (Ceres)",
-       .formula = "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
-       .source = "Ceres 2.1; Levenberg (1944), Marquardt (1963), Nielsen (1999)",
-       .options = option_table<Radius>()},
-      [](const Json& json, ceres::Solver::Options& o) {
-        o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
-      }));
-  registry.add(trust_region_entry(
-      {.name = "ceres-dogleg",
-       .title = "Powell's dogleg (Ceres)",
-       .formula = "min ½‖r + J d‖² along the path to steepest descent, then to Gauss-Newton",
-       .source = "Ceres 2.1; Powell (1970)",
-       .options = option_table<Radius>()},
-      [](const Json& json, ceres::Solver::Options& o) {
-        o.trust_region_strategy_type = ceres::DOGLEG;
-        o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
-      }));
-  registry.add(trust_region_entry(
-      {.name = "ceres-subspace-dogleg",
-       .title = "Subspace dogleg (Ceres)",
-       .formula = "min ½‖r + J d‖² over the plane of steepest descent and Gauss-Newton, ‖D d‖ ≤ Δ",
-       .source = "Ceres 2.1; Byrd, Schnabel, Shultz (1988)",
-       .options = option_table<Radius>()},
-      [](const Json& json, ceres::Solver::Options& o) {
-        o.trust_region_strategy_type = ceres::DOGLEG;
-        o.dogleg_type = ceres::SUBSPACE_DOGLEG;
-        o.initial_trust_region_radius = read_options<Radius>(json).initial_radius;
-      }));
-}
-
-void add_line_searches(OptimizerRegistry& registry) {
-  registry.add(line_search_entry({.name = "ceres-steepest-descent",
-                                  .title = "Steepest descent with line search (Ceres)",
-                                  .formula = "θ ← θ − α ∇L,  α by the Wolfe conditions",
-                                  .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 3.5"},
-                                 [](const Json&, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type = ceres::STEEPEST_DESCENT;
-                                 }));
-  registry.add(line_search_entry({.name = "ceres-ncg",
-                                  .title = "Nonlinear conjugate gradients (Ceres)",
-                                  .formula = "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d",
-                                  .source = "Ceres 2.1; Fletcher, Reeves (1964)"},
-                                 [](const Json&, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type =
-                                       ceres::NONLINEAR_CONJUGATE_GRADIENT;
-                                 }));
-  registry.add(line_search_entry({.name = "ceres-bfgs",
-                                  .title = "BFGS (Ceres)",
-                                  .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ by rank-two updates",
-                                  .source = "Ceres 2.1; Nocedal, Wright (2006), algorithm 6.1",
-                                  .most_unknowns = 2048},  // B is dense
-                                 [](const Json&, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type = ceres::BFGS;
-                                 }));
-  registry.add(line_search_entry({.name = "ceres-lbfgs",
-                                  .title = "Limited-memory BFGS (Ceres)",
-                                  .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps",
-                                  .source = "Ceres 2.1; Nocedal (1980)",
-                                  .options = option_table<Memory>()},
-                                 [](const Json& json, ceres::GradientProblemSolver::Options& o) {
-                                   o.line_search_direction_type = ceres::LBFGS;
-                                   o.max_lbfgs_rank =
-                                       static_cast<int>(read_options<Memory>(json).memory);
-                                 }));
+OptimizerEntry entry_of(const LineSearch& method) {
+  return {.name = method.name,
+          .title = method.title,
+          .family = Family::ceres,
+          .formula = method.formula,
+          .source = method.source,
+          .needs = {Oracle::forward, Oracle::pullback},
+          .most_unknowns = method.most_unknowns,
+          .make = [direction = method.direction](const Json&, const OptimizerRegistry&) {
+            ceres::GradientProblemSolver::Options options;
+            options.line_search_direction_type = direction;
+            return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(options);
+          }};
 }
 
 }  // namespace
 
 void register_ceres(OptimizerRegistry& registry) {
-  add_trust_region_methods(registry);
-  add_line_searches(registry);
+  for (const TrustRegion& method : kTrustRegions) registry.add(entry_of(method));
+  for (const LineSearch& method : kLineSearches) registry.add(entry_of(method));
 }
 
 }  // namespace isoline

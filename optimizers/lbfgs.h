@@ -1,5 +1,5 @@
-// Limited-memory BFGS (Nocedal 1980) for the methods that minimize something inside a step, such as
-// inverting a physics numerically. Luksan's code, by way of NLopt.
+// Limited-memory BFGS (Nocedal 1980) for the methods that minimize a misfit f ≥ 0 inside a step,
+// such as inverting a physics numerically. Luksan's code, by way of NLopt.
 #pragma once
 
 #include <functional>

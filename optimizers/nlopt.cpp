@@ -5,6 +5,7 @@
 // believed: it reports success on plateaus.
 #include <nlopt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -104,138 +105,145 @@ class Nlopt final : public Optimizer {
   nlopt_algorithm algorithm_;
 };
 
-OptimizerEntry nlopt_entry(OptimizerEntry entry, nlopt_algorithm algorithm) {
-  entry.family = Family::nlopt;
-  entry.needs = {Oracle::forward, Oracle::pullback};
-  entry.make = [algorithm](const Json&, const OptimizerRegistry&) {
-    return std::make_unique<Nlopt>(algorithm);
-  };
-  return entry;
+struct Method {
+  nlopt_algorithm algorithm;
+  const char *name, *title, *formula, *source;
+  const char* note = "";
+  bool is_input_scale_invariant = false;
+  Index most_unknowns = std::numeric_limits<Index>::max();
+};
+
+const Method kByGradient[] = {
+    {NLOPT_LD_LBFGS, "nlopt-lbfgs", "Limited-memory BFGS (NLopt)",
+     "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps", "NLopt 2.7, Luksan's PLIS; Nocedal (1980)"},
+    {NLOPT_LD_VAR2, "nlopt-var2", "Shifted limited-memory variable metric (NLopt)",
+     "θ ← θ − α (μI + S) ∇L,  S of rank two a step",
+     "NLopt 2.7, Luksan's PLIP; Vlcek, Luksan (2006)"},
+    {NLOPT_LD_TNEWTON_PRECOND_RESTART, "nlopt-tnewton",
+     "Truncated Newton, preconditioned, restarted (NLopt)",
+     "H d ≈ −∇L by conjugate gradients,  θ ← θ + α d",
+     "NLopt 2.7, Luksan's PNET; Dembo, Steihaug (1983)",
+     "Products H d are differences of gradients."},
+    {NLOPT_LD_SLSQP, "nlopt-slsqp", "Sequential least-squares programming (NLopt)",
+     "min ∇Lᵀd + ½ dᵀB d,  θ ← θ + α d", "NLopt 2.7; Kraft (1994)",
+     "Dense, O(n³) a step; between evaluations it does not look at the clock.", false, 1000},
+    {NLOPT_LD_MMA, "nlopt-mma", "Method of moving asymptotes (NLopt)",
+     "min of a convex separable upper approximation of L", "NLopt 2.7; Svanberg (2002)"},
+    {NLOPT_LD_CCSAQ, "nlopt-ccsaq", "Conservative convex separable approximation (NLopt)",
+     "min L + ∇Lᵀd + ½ρ Σ (dᵢ/σᵢ)²,  ρ raised until conservative", "NLopt 2.7; Svanberg (2002)"},
+};
+
+constexpr Index kMostWithoutGradient = 256;
+constexpr const char* kStartNote =
+    "Its first steps are the size of the start's coordinates, and so follow their units.";
+
+const Method kWithoutGradient[] = {
+    {NLOPT_LN_BOBYQA, "nlopt-bobyqa", "BOBYQA (NLopt)",
+     "min of a quadratic through 2n+1 points, ‖d‖ ≤ Δ", "NLopt 2.7; Powell (2009)", kStartNote,
+     true, kMostWithoutGradient},
+    {NLOPT_LN_COBYLA, "nlopt-cobyla", "COBYLA (NLopt)",
+     "min of a linear model through n+1 points, ‖d‖ ≤ Δ", "NLopt 2.7; Powell (1994)", "", false,
+     kMostWithoutGradient},
+    {NLOPT_LN_NELDERMEAD, "nlopt-neldermead", "Nelder-Mead simplex (NLopt)",
+     "reflect, expand, contract or shrink n+1 points", "NLopt 2.7; Nelder, Mead (1965)", kStartNote,
+     true, kMostWithoutGradient},
+    {NLOPT_LN_SBPLX, "nlopt-sbplx", "Subplex (NLopt)", "Nelder-Mead on a sequence of subspaces",
+     "NLopt 2.7; Rowan (1990)", "", false, kMostWithoutGradient},
+};
+
+OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
+  return {.name = m.name,
+          .title = m.title,
+          .family = family,
+          .formula = m.formula,
+          .source = m.source,
+          .note = m.note,
+          .needs = needs,
+          .is_input_scale_invariant = m.is_input_scale_invariant,
+          .most_unknowns = m.most_unknowns,
+          .make = [algorithm = m.algorithm](const Json&, const OptimizerRegistry&) {
+            return std::make_unique<Nlopt>(algorithm);
+          }};
 }
 
-OptimizerEntry derivative_free_entry(OptimizerEntry entry, nlopt_algorithm algorithm) {
-  entry = nlopt_entry(std::move(entry), algorithm);
-  entry.family = Family::nlopt_derivative_free;
-  entry.needs = {Oracle::forward};
-  entry.most_unknowns = 256;
-  return entry;
-}
-
-void add_gradient_methods(OptimizerRegistry& registry) {
-  registry.add(nlopt_entry({.name = "nlopt-lbfgs",
-                            .title = "Limited-memory BFGS (NLopt)",
-                            .formula = "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps",
-                            .source = "NLopt 2.7, Luksan's PLIS; Nocedal (1980)"},
-                           NLOPT_LD_LBFGS));
-  registry.add(nlopt_entry({.name = "nlopt-var2",
-                            .title = "Shifted limited-memory variable metric (NLopt)",
-                            .formula = "θ ← θ − α (μI + S) ∇L,  S of rank two a step",
-                            .source = "NLopt 2.7, Luksan's PLIP; Vlcek, Luksan (2006)"},
-                           NLOPT_LD_VAR2));
-  registry.add(nlopt_entry({.name = "nlopt-tnewton",
-                            .title = "Truncated Newton, preconditioned, restarted (NLopt)",
-                            .formula = "H d ≈ −∇L by conjugate gradients,  θ ← θ + α d",
-                            .source = "NLopt 2.7, Luksan's PNET; Dembo, Steihaug (1983)",
-                            .note = "Products H d are differences of gradients."},
-                           NLOPT_LD_TNEWTON_PRECOND_RESTART));
-  registry.add(nlopt_entry({.name = "nlopt-slsqp",
-                            .title = "Sequential least-squares programming (NLopt)",
-                            .formula = "min ∇Lᵀd + ½ dᵀB d,  θ ← θ + α d",
-                            .source = "NLopt 2.7; Kraft (1994)",
-                            .note = "Between evaluations it does not look at the clock.",
-                            .most_unknowns = 1000},  // dense, O(n³) a step
-                           NLOPT_LD_SLSQP));
-  registry.add(nlopt_entry({.name = "nlopt-mma",
-                            .title = "Method of moving asymptotes (NLopt)",
-                            .formula = "min of a convex separable upper approximation of L",
-                            .source = "NLopt 2.7; Svanberg (2002)"},
-                           NLOPT_LD_MMA));
-  registry.add(nlopt_entry({.name = "nlopt-ccsaq",
-                            .title = "Conservative convex separable approximation (NLopt)",
-                            .formula = "min L + ∇Lᵀd + ½ρ Σ (dᵢ/σᵢ)²,  ρ raised until conservative",
-                            .source = "NLopt 2.7; Svanberg (2002)"},
-                           NLOPT_LD_CCSAQ));
-}
-
-void add_derivative_free_methods(OptimizerRegistry& registry) {
-  registry.add(derivative_free_entry({.name = "nlopt-bobyqa",
-                                      .title = "BOBYQA (NLopt)",
-                                      .formula = "min of a quadratic through 2n+1 points, ‖d‖ ≤ Δ",
-                                      .source = "NLopt 2.7; Powell (2009)"},
-                                     NLOPT_LN_BOBYQA));
-  registry.add(
-      derivative_free_entry({.name = "nlopt-cobyla",
-                             .title = "COBYLA (NLopt)",
-                             .formula = "min of a linear model through n+1 points, ‖d‖ ≤ Δ",
-                             .source = "NLopt 2.7; Powell (1994)"},
-                            NLOPT_LN_COBYLA));
-  registry.add(derivative_free_entry({.name = "nlopt-neldermead",
-                                      .title = "Nelder-Mead simplex (NLopt)",
-                                      .formula = "reflect, expand, contract or shrink n+1 points",
-                                      .source = "NLopt 2.7; Nelder, Mead (1965)"},
-                                     NLOPT_LN_NELDERMEAD));
-  registry.add(derivative_free_entry({.name = "nlopt-sbplx",
-                                      .title = "Subplex (NLopt)",
-                                      .formula = "Nelder-Mead on a sequence of subspaces",
-                                      .source = "NLopt 2.7; Rowan (1990)"},
-                                     NLOPT_LN_SBPLX));
-}
-
-// What minimize_lbfgs hands through NLopt.
+// What minimize_lbfgs hands through NLopt. Luksan's first trial step is the whole gradient, and his
+// test of convergence is ‖∇f‖ ≤ 1e-8: both make sense in units of the start, f₀ for the misfit and
+// Polyak's step f₀/‖∇f₀‖ for lengths, which also keeps the first step on the branch of the start.
 struct Minimization {
   const ValueAndGradient& f;
   const LbfgsLimits& limits;
-  nlopt_opt handle;
-  Vector x, gradient, best;  // (n)
+  Vector origin, x, gradient, best;  // (n)
+  nlopt_opt handle = nullptr;
   LbfgsResult result{std::numeric_limits<Real>::infinity(), 0};
-  std::exception_ptr error;
+  Real unit = 0, length = 0;  // f₀, f₀/‖∇f₀‖; 0: not yet known
+  std::exception_ptr error = nullptr;
 
-  Real evaluate(const double* at, double* out) {
-    if (error || (limits.is_over && limits.is_over())) {
-      nlopt_force_stop(handle);
-      return kWall;
-    }
-    x = Map<const Vector>(at, x.size());
+  bool is_over() const {
+    return error || result.value <= limits.enough || result.evaluations >= limits.evaluations ||
+           (limits.is_over && limits.is_over());
+  }
+  Real stop() {
+    nlopt_force_stop(handle);
+    return kWall;
+  }
+
+  Real evaluate(const double* z, double* out) {  // at x = origin + length z
+    if (is_over()) return stop();
+    x = origin + length * Map<const Vector>(z, origin.size());
     ++result.evaluations;
     try {
       const Real value = f(x, gradient);
-      if (out) Map<Vector>(out, gradient.size()) = gradient;
-      if (value < result.value) {
-        result.value = value;
-        best = x;
+      if (value < result.value) best = x;
+      result.value = std::min(result.value, value);
+      if (length == 0) {
+        unit = value;
+        length = value / gradient.norm();
+        if (!std::isfinite(length)) return stop();
       }
-      return std::isfinite(value) ? value : kWall;
+      if (out) Map<Vector>(out, gradient.size()) = (length / unit) * gradient;
+      return std::isfinite(value) ? value / unit : kWall;
     } catch (...) {
       error = std::current_exception();
-      nlopt_force_stop(handle);
-      return kWall;
+      return stop();
     }
   }
-};
 
-double evaluate_minimization(unsigned, const double* x, double* gradient, void* minimization) {
-  return static_cast<Minimization*>(minimization)->evaluate(x, gradient);
-}
+  void descend() {
+    const Handle owned = make_handle(NLOPT_LD_LBFGS, origin.size());
+    handle = owned.get();
+    origin = best;
+    length = 0;
+    Vector z = Vector::Zero(origin.size());
+    const auto evaluate_this = [](unsigned, const double* at, double* out, void* self) {
+      return static_cast<Minimization*>(self)->evaluate(at, out);
+    };
+    nlopt_set_min_objective(handle, evaluate_this, this);
+    nlopt_set_xtol_rel(handle, kRounding);
+    Real value = 0;
+    nlopt_optimize(handle, z.data(), &value);  // its verdict adds nothing to the value reached
+    if (error) std::rethrow_exception(error);
+  }
+};
 
 }  // namespace
 
 LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x) {
-  const Handle handle = make_handle(NLOPT_LD_LBFGS, x.size());
-  Minimization minimization{f, limits, handle.get(), x, Vector(x.size()), x};
-  nlopt_set_min_objective(handle.get(), evaluate_minimization, &minimization);
-  nlopt_set_xtol_rel(handle.get(), kRounding);
-  nlopt_set_stopval(handle.get(), limits.enough);
-  nlopt_set_maxeval(handle.get(), static_cast<int>(limits.evaluations));
-  Real value = 0;
-  nlopt_optimize(handle.get(), x.data(), &value);  // its verdict adds nothing to the value reached
-  if (minimization.error) std::rethrow_exception(minimization.error);
+  constexpr Real kWorthwhile = 0.1;  // a descent in new units goes on while it gains this factor
+  Minimization minimization{f, limits, x, x, Vector(x.size()), x};
+  Real before = 0;
+  do {
+    before = minimization.result.value;
+    minimization.descend();
+  } while (!minimization.is_over() && minimization.result.value < kWorthwhile * before);
   x = minimization.best;
   return minimization.result;
 }
 
 void register_nlopt(OptimizerRegistry& registry) {
-  add_gradient_methods(registry);
-  add_derivative_free_methods(registry);
+  for (const Method& method : kByGradient)
+    registry.add(entry_of(method, Family::nlopt, {Oracle::forward, Oracle::pullback}));
+  for (const Method& method : kWithoutGradient)
+    registry.add(entry_of(method, Family::nlopt_derivative_free, {Oracle::forward}));
 }
 
 }  // namespace isoline
