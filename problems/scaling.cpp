@@ -36,11 +36,11 @@ class Scaling final : public DensePhysics {
 
 ProblemParts make_scaling(const Options& o, const Draw& draw) {
   auto physics = std::make_unique<Scaling>(o.alpha);
-  const Vector y0 = draw.start(Eigen::Vector2d(3, 3));  // drawn in y: one start for all α
-  Vector start(2);
-  physics->invert(y0, y0, start);
+  const Eigen::Vector2d y0(3, 3);
+  Vector x0(2);  // P⁻¹(3, 3)
+  physics->invert(y0, y0, x0);
   return {.physics = std::move(physics),
-          .start = start,
+          .start = draw.start(x0),
           .target = Vector::Zero(2),
           .minimum = 0,
           .truth = Vector::Zero(2),
@@ -54,8 +54,7 @@ void register_scaling(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "scaling",
                               .title = "One scaled coordinate",
                               .formula = "P(x) = (x₁, αx₂),  L = ½‖P(x)‖²",
-                              .source = "After Holl, Koltun, Thuerey (2022), Fig. 1",
-                              .note = "The start is drawn in y, around (3, 3), and pulled back."},
+                              .source = "After Holl, Koltun, Thuerey (2022), Fig. 1"},
                              make_scaling));
 }
 

@@ -20,8 +20,9 @@ class Square final : public DensePhysics {
   void second(VectorRef, VectorRef u, BatchOut H) const override { H(1, 1) = 2 * u[1]; }
   Inverse inverse_kind() const override { return Inverse::exact; }
   bool invert(VectorRef y, VectorRef x0, VectorOut x) const override {  // the root on x0's side
+    if (y[1] < 0) return false;
     x << y[0], std::copysign(std::sqrt(y[1]), x0[1]);
-    return y[1] >= 0;
+    return true;
   }
 };
 

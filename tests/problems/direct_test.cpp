@@ -8,16 +8,14 @@
 namespace isoline {
 namespace {
 
-TEST(Scaling, TheStartInYIsTheSameForEveryAlpha) {
-  for (const std::uint64_t seed : {0, 3}) {
-    Point reference, at;
-    const Problem one = make("scaling[alpha=1]", seed);
-    one.forward(one.start(), reference);
-    for (const char* spec : {"scaling", "scaling[alpha=1e-3]", "scaling[alpha=1e3]"}) {
-      const Problem problem = make(spec, seed);
-      problem.forward(problem.start(), at);
-      EXPECT_LE((at.y - reference.y).norm(), 1e-15);  // one division and one product
-    }
+TEST(Scaling, ThePublishedStartInYIsTheSameForEveryAlpha) {
+  Point reference, at;
+  const Problem one = make("scaling[alpha=1]", 0);
+  one.forward(one.start(), reference);
+  for (const char* spec : {"scaling", "scaling[alpha=1e-3]", "scaling[alpha=1e3]"}) {
+    const Problem problem = make(spec, 0);
+    problem.forward(problem.start(), at);
+    EXPECT_LE((at.y - reference.y).norm(), 1e-15);  // one division and one product
   }
 }
 
