@@ -96,8 +96,7 @@ class Nlopt final : public Optimizer {
     theta = search.best;
     if (f.status() != Status::running) return f.status();
     if (f.is_spent()) return Status::budget;
-    const bool has_converged = result > 0 || result == NLOPT_ROUNDOFF_LIMITED;
-    return has_converged ? Status::converged : Status::stalled;
+    return result > 0 || result == NLOPT_ROUNDOFF_LIMITED ? Status::converged : Status::stalled;
   }
 
  private:
