@@ -1,7 +1,5 @@
 // Adam, Kingma, Ba (2015), algorithm 1: m ← β₁ m + (1 − β₁) ∇L, v ← β₂ v + (1 − β₂) ∇L²,
 // θ ← θ − η m̂/(√v̂ + ε), where m̂ = m/(1 − β₁ᵗ) and v̂ = v/(1 − β₂ᵗ).
-#include <cmath>
-
 #include "optimizers/optimizer.h"
 
 namespace isoline {

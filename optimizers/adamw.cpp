@@ -1,7 +1,5 @@
 // Adam with decoupled weight decay, Loshchilov, Hutter (2019), algorithm 2: θ ← (1 − η λ) θ, then
 // Adam's step. As in PyTorch the decay is multiplied by the rate η.
-#include <cmath>
-
 #include "optimizers/optimizer.h"
 
 namespace isoline {

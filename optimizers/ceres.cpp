@@ -200,10 +200,8 @@ OptimizerEntry entry_of(const TrustRegion& m) {
             o.linear_solver_type = ceres::DENSE_QR;
             o.trust_region_strategy_type = m.strategy;
             o.dogleg_type = m.dogleg;
-            if (m.is_wide_open) {
-              o.initial_trust_region_radius = o.max_trust_region_radius;
-              o.min_relative_decrease = 0;
-            }
+            if (m.is_wide_open) o.initial_trust_region_radius = o.max_trust_region_radius;
+            if (m.is_wide_open) o.min_relative_decrease = 0;
             return std::make_unique<Ceres<ceres::Solver::Options>>(o);
           }};
 }

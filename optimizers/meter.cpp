@@ -181,6 +181,10 @@ void Meter::finish(VectorRef theta, Status verdict) {
     measure(theta);
     see(judged_.loss);
   }
+  trace_.last.counts = counts_;  // a library may have asked much since its last iteration
+  trace_.last.work = work_;
+  trace_.last.wall_seconds = watch_.seconds();
+  trace_.last.processor_seconds = watch_.processor_seconds();
   const int points = trace_.points;
   if (points == 0 || trace_.point[points - 1].iteration != iteration_) keep_point();
   if (verdict == Status::running) verdict = Status::converged;

@@ -76,10 +76,6 @@ struct Search {
   }
 };
 
-double evaluate_search(unsigned, const double* theta, double* gradient, void* search) {
-  return static_cast<Search*>(search)->evaluate(theta, gradient);
-}
-
 class Nlopt final : public Optimizer {
  public:
   explicit Nlopt(nlopt_algorithm algorithm) : algorithm_(algorithm) {}
@@ -88,7 +84,10 @@ class Nlopt final : public Optimizer {
   Status step(Meter& f, Vector& theta) override {
     const Handle handle = make_handle(algorithm_, theta.size());
     Search search{f, handle.get(), {}, theta, Vector(theta.size()), theta};
-    nlopt_set_min_objective(handle.get(), evaluate_search, &search);
+    const auto evaluate = [](unsigned, const double* at, double* out, void* self) {
+      return static_cast<Search*>(self)->evaluate(at, out);
+    };
+    nlopt_set_min_objective(handle.get(), evaluate, &search);
     nlopt_set_xtol_rel(handle.get(), kRounding);
     Real loss = 0;
     const nlopt_result result = nlopt_optimize(handle.get(), theta.data(), &loss);
@@ -97,8 +96,7 @@ class Nlopt final : public Optimizer {
     theta = search.best;
     if (f.status() != Status::running) return f.status();
     if (f.is_spent()) return Status::budget;
-    const bool has_converged = result > 0 || result == NLOPT_ROUNDOFF_LIMITED;
-    return has_converged ? Status::converged : Status::stalled;
+    return result > 0 || result == NLOPT_ROUNDOFF_LIMITED ? Status::converged : Status::stalled;
   }
 
  private:
@@ -113,17 +111,20 @@ struct Method {
   Index most_unknowns = std::numeric_limits<Index>::max();
 };
 
+constexpr const char* kFirstStepNote =
+    "Its first trial step is the whole gradient; it gives up where that is far too long.";
+
 const Method kByGradient[] = {
     {NLOPT_LD_LBFGS, "nlopt-lbfgs", "Limited-memory BFGS (NLopt)",
-     "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps", "NLopt 2.7, Luksan's PLIS; Nocedal (1980)"},
+     "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps", "NLopt 2.7, Luksan's PLIS; Nocedal (1980)",
+     kFirstStepNote},
     {NLOPT_LD_VAR2, "nlopt-var2", "Shifted limited-memory variable metric (NLopt)",
      "θ ← θ − α (μI + S) ∇L,  S of rank two a step",
-     "NLopt 2.7, Luksan's PLIP; Vlcek, Luksan (2006)"},
+     "NLopt 2.7, Luksan's PLIP; Vlcek, Luksan (2006)", kFirstStepNote},
     {NLOPT_LD_TNEWTON_PRECOND_RESTART, "nlopt-tnewton",
      "Truncated Newton, preconditioned, restarted (NLopt)",
-     "H d ≈ −∇L by conjugate gradients,  θ ← θ + α d",
-     "NLopt 2.7, Luksan's PNET; Dembo, Steihaug (1983)",
-     "Products H d are differences of gradients."},
+     "H d ≈ −∇L by conjugate gradients, H d by differences of ∇L,  θ ← θ + α d",
+     "NLopt 2.7, Luksan's PNET; Dembo, Steihaug (1983)", kFirstStepNote},
     {NLOPT_LD_SLSQP, "nlopt-slsqp", "Sequential least-squares programming (NLopt)",
      "min ∇Lᵀd + ½ dᵀB d,  θ ← θ + α d", "NLopt 2.7; Kraft (1994)",
      "Dense, O(n³) a step; between evaluations it does not look at the clock.", false, 1000},

@@ -86,6 +86,21 @@ TEST(Optimizers, StopWhenTheIterationsAreSpent) {
   }
 }
 
+// Also where a library has evaluated without finding anything better.
+TEST(Optimizers, LeaveTheLedgerAsItStandsAtTheEnd) {
+  const Matrix M = Eigen::Vector2d(1e3, 1e-3).asDiagonal();
+  for (const auto& [name, entry] : optimizers()) {
+    const Problem steep = linear(M, Eigen::Vector2d(1, 1), Eigen::Vector2d(0, 0));
+    const Outcome result = run(steep, name, {.iterations = 5, .work = 500, .target = 0});
+    const TracePoint& last = result.trace->last;
+    std::int64_t work = 0;
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      work += last.counts[kind] * steep.prices()[kind];
+    EXPECT_EQ(last.work, work) << name;
+    EXPECT_GT(last.work, 0) << name;
+  }
+}
+
 // Each oracle a method declares and is not given must be missed: needs name nothing in vain.
 TEST(Optimizers, AreRefusedWhatTheyWereNotGranted) {
   const Problem problem = easy();

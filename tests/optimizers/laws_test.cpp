@@ -79,6 +79,18 @@ TEST(CeresGaussNewton, TakesTheStepsOfGaussNewton) {
   }
 }
 
+// Candidates that raise the loss are counted as rejected and leave θ where it was.
+TEST(LevenbergMarquardt, LossNeverRises) {
+  const Outcome result = run(far_root(), "levenberg-marquardt", iterations(60));
+  Real before = result.trace->start_loss;
+  for (int i = 0; i < result.trace->points; ++i) {
+    EXPECT_LE(result.trace->point[i].loss, before) << i;
+    before = result.trace->point[i].loss;
+  }
+  EXPECT_GT(result.trace->rejected_steps, 0);
+  EXPECT_LE(before, 1e-20);
+}
+
 TEST(Sip, IdentityNetworkAndUnitStepSolveInOne) {
   for (const char* spec : {"sip", "sip[inverse=lbfgs]"}) {
     const Outcome result = run(easy(), spec, iterations(1));
