@@ -24,6 +24,17 @@ std::string dagger(const std::vector<std::string>& privileges) {
                      html_text(fmt::format("{}", fmt::join(privileges, ", "))));
 }
 
+// "5/5, 1 failed" as one small line each.
+std::string small_lines(std::string_view text) {
+  std::string html;
+  while (!text.empty()) {
+    const std::size_t end = text.find(", ");
+    html += fmt::format("<small>{}</small>", text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
+  }
+  return html;
+}
+
 std::string matrix_cell(const Cell& cell, std::size_t tolerance, Real least) {
   const std::string text = matrix_text(cell, tolerance);
   if (cell.planned == 0) return "<td class=none></td>";
@@ -31,9 +42,8 @@ std::string matrix_cell(const Cell& cell, std::size_t tolerance, Real least) {
   if (!cell.is_measured())
     return fmt::format("<td class=na title=\"{}\">n/a</td>", html_text(cell.inapplicable));
   const Spread& work = cell.work[tolerance];
-  const std::string count = is_complete(cell, tolerance) && work.n == 1
-                                ? ""
-                                : fmt::format("<small>{}</small>", count_text(cell, tolerance));
+  const std::string count =
+      is_complete(cell, tolerance) && work.n == 1 ? "" : small_lines(count_text(cell, tolerance));
   const std::string title = html_text(status_text(cell.statuses));
   if (!work.is_solved()) return fmt::format("<td class=no title=\"{}\">✗{}</td>", title, count);
   return fmt::format("<td class=\"{}{}\" title=\"{}\">{}{}{}</td>", heat(work.median, least),

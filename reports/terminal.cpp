@@ -52,7 +52,7 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
 
 std::string header_of(const Comparison& c, std::size_t p, std::size_t name_width) {
   const std::string name = printable(c.problems[p].spec);
-  std::string line = "\n" + left(name, name_width + 2);
+  std::string line = fmt::format("\n{}", left(name, name_width + 2));
   if (width_of(name) > name_width + 2) line.append("\n").append(name_width + 2, ' ');
   line += right("1e-6", 7) + right("work 1e-1 ", 10) + right("1e-3 ", 10) + right("1e-6 ", 10);
   line += right("s to 1e-6", 12) + right("loss", 11) + right("x error", 11);
