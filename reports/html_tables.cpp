@@ -57,14 +57,18 @@ Real least_work(const Comparison& c, std::size_t problem, std::size_t tolerance)
   return least;
 }
 
-std::string spread_cell(const Spread& spread, bool is_best = false, bool is_marked = false) {
+std::string spread_cell(const Spread& spread, const char* kind = "") {
   if (spread.n == 0) return "<td></td>";
-  const std::string range = range_figure(spread);
-  return fmt::format("<td{}>{}{}{}</td>",
-                     is_best     ? " class=best"
-                     : is_marked ? " class=together"
-                                 : "",
-                     reached_figure(spread.median), is_marked ? "≈" : "",
+  const std::string range = range_figure(spread, reached_figure);
+  return fmt::format("<td{}>{}{}</td>", kind, reached_figure(spread.median),
+                     range.empty() ? "" : "<small>" + range + "</small>");
+}
+
+std::string time_cell(const Spread& seconds, bool is_timed_alone) {
+  const std::string range = range_figure(seconds, milliseconds);
+  return fmt::format("<td{}>{}{}{}</td>", is_timed_alone ? "" : " class=together",
+                     milliseconds(seconds.median),
+                     is_timed_alone || !seconds.is_solved() ? "" : "≈",
                      range.empty() ? "" : "<small>" + range + "</small>");
 }
 
@@ -79,9 +83,9 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
                                                : "inapplicable: " + html_text(cell.inapplicable));
   row += fmt::format("<td>{}</td>", count_text(cell, kTightest));
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.work[t], cell.is_best[t]);
+    row += spread_cell(cell.work[t], cell.is_best[t] ? " class=best" : "");
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.seconds[t], false, !cell.is_timed_alone);
+    row += time_cell(cell.seconds[t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
   const Request& request = c.runs[cell.runs[0]].record->request;
   return row + fmt::format(
@@ -120,7 +124,7 @@ std::string details_html(const Comparison& c) {
   std::string html =
       "<table class=sortable id=detail-table><thead><tr><th>problem</th><th>optimizer</th>"
       "<th title=\"runs that reach 1e-6 of all runs\">reach 1e-6</th>";
-  for (const char* what : {"work", "time, s"})
+  for (const char* what : {"work", "time, ms"})
     for (const Tolerance& tolerance : kTolerances)
       html += fmt::format("<th>{}<br>to {}</th>", what, tolerance.name);
   html += "<th>final loss</th><th>x error</th><th>status</th><th>rerun</th></tr></thead><tbody>\n";
@@ -147,7 +151,8 @@ std::string failures_html(const Comparison& c) {
         "colspan=2>{}</td></tr>\n",
         html_text(file.file.string()), html_text(file.reason));
   if (html.empty()) return "<p>None: every run ended by a verdict of its own.</p>";
-  return "<div class=scroll><table class=sortable><thead><tr><th>problem</th><th>optimizer</th>"
+  return "<div class=scroll tabindex=0 role=region aria-label=Failures><table "
+         "class=sortable><thead><tr><th>problem</th><th>optimizer</th>"
          "<th>seed</th><th>status</th><th>message</th><th>rerun</th></tr></thead><tbody>\n" +
          html + "</tbody></table></div>";
 }

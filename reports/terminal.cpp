@@ -44,7 +44,7 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     line += right(reached_figure(cell.work[t].median) + (cell.is_best[t] ? "*" : " "), 10);
   line +=
-      right(reached_figure(cell.seconds[kTightest].median) + (cell.is_timed_alone ? "" : "≈"), 12);
+      right(milliseconds(cell.seconds[kTightest].median) + (cell.is_timed_alone ? "" : "≈"), 12);
   line += right(reached_figure(cell.loss.median), 11);
   line += right(cell.x_error.n == 0 ? "" : reached_figure(cell.x_error.median), 11);
   return line + "  " + status_text(cell.statuses) + "\n";
@@ -55,7 +55,7 @@ std::string header_of(const Comparison& c, std::size_t p, std::size_t name_width
   std::string line = fmt::format("\n{}", left(name, name_width + 2));
   if (width_of(name) > name_width + 2) line.append("\n").append(name_width + 2, ' ');
   line += right("1e-6", 7) + right("work 1e-1 ", 10) + right("1e-3 ", 10) + right("1e-6 ", 10);
-  line += right("s to 1e-6", 12) + right("loss", 11) + right("x error", 11);
+  line += right("ms to 1e-6", 12) + right("loss", 11) + right("x error", 11);
   return line + "  status\n";
 }
 

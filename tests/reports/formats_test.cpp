@@ -51,6 +51,11 @@ TEST(Figure, IsShortAndReadable) {
   EXPECT_EQ(figure(12345), "12345");
   EXPECT_EQ(figure(12.5), "12.5");
   EXPECT_EQ(figure(1.23456e-8), "1.235e-8");
+  EXPECT_EQ(figure(0.00018), "1.8e-4");
+  EXPECT_EQ(figure(0.0002), "2e-4");
+  EXPECT_EQ(figure(0.0123456), "0.01235");
+  EXPECT_EQ(milliseconds(3.847e-5), "0.0385");
+  EXPECT_EQ(milliseconds(61.2), "61200");
   EXPECT_EQ(figure(123456789.0), "1.235e8");
   EXPECT_EQ(figure(1e100), "1e100");
   EXPECT_EQ(figure(-0.0), "0");
