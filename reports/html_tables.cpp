@@ -45,7 +45,9 @@ std::string matrix_cell(const Cell& cell, std::size_t tolerance, Real least) {
   const std::string count =
       is_complete(cell, tolerance) && work.n == 1 ? "" : small_lines(count_text(cell, tolerance));
   const std::string title = html_text(status_text(cell.statuses));
-  if (!work.is_solved()) return fmt::format("<td class=no title=\"{}\">✗{}</td>", title, count);
+  if (!work.is_solved())
+    return fmt::format("<td class=no title=\"{}\">✗{}{}</td>", title, dagger(cell.privileges),
+                       count);
   return fmt::format("<td class=\"{}{}\" title=\"{}\">{}{}{}</td>", heat(work.median, least),
                      cell.is_best[tolerance] ? " best" : "", title, text, dagger(cell.privileges),
                      count);
