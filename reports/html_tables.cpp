@@ -90,11 +90,8 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
     row += time_cell(cell.seconds[t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
   const Request& request = c.runs[cell.runs[0]].record->request;
-  return row + fmt::format(
-                   "<td class=text>{}</td><td><button class=copy data-text=\"{}\" "
-                   "title=\"Copy the command that repeats the first of these runs\">copy"
-                   "</button></td></tr>\n",
-                   status_text(cell.statuses), html_text(rerun_command(request)));
+  return row + fmt::format("<td class=text>{}</td><td data-copy=\"{}\"></td></tr>\n",
+                           status_text(cell.statuses), html_text(rerun_command(request)));
 }
 
 }  // namespace
