@@ -1,3 +1,4 @@
+// Words the one-sentence readings of the charts.
 #include "reports/readings.h"
 
 #include <fmt/format.h>

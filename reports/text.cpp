@@ -1,3 +1,4 @@
+// Writes figures, and escapes foreign text for each format.
 #include "reports/text.h"
 
 #include <fmt/format.h>
