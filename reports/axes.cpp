@@ -1,3 +1,4 @@
+// Finds the problems and optimizers of a study, and what to call them.
 #include "reports/axes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Puts runs into cells, aggregates them over seeds, ranks and counts.
 #include "reports/comparison.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Marching squares, the joining of their segments, and the choice of levels.
 #include "reports/contour.h"
 
 #include <algorithm>

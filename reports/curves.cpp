@@ -1,3 +1,4 @@
+// Medians of curves on a common, thinned grid of iterations.
 #include "reports/curves.h"
 
 #include <algorithm>

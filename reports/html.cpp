@@ -69,7 +69,10 @@ std::string remarks_html(const Comparison& c) {
 std::string matrices_html(const Comparison& c) {
   std::string html;
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    html += fmt::format("<div class=\"scroll pane\" data-tau={}>{}</div>\n", t, matrix_html(c, t));
+    html += fmt::format(
+        "<div class=\"scroll pane\" data-tau={} tabindex=0 role=region "
+        "aria-label=\"Work\">{}</div>\n",
+        t, matrix_html(c, t));
   return html;
 }
 

@@ -18,14 +18,14 @@ std::string optimizer_item(const Comparison& c, const OptimizerAxis& optimizer) 
     html +=
         fmt::format(" {} <span class=formula>{}</span> <cite>{}</cite>", html_text(sheet->title),
                     html_text(sheet->formula), html_text(sheet->source));
-  html += fmt::format(" <span class=count>solves {} of {} to 1e-6", optimizer.solved[kTightest],
+  html += fmt::format("<span class=count>solves {} of {} to 1e-6", optimizer.solved[kTightest],
                       c.problems.size());
   if (optimizer.applicable < c.problems.size())
-    html += fmt::format(", applies to {}", optimizer.applicable);
-  html += "</span>";
+    html += fmt::format(" · applies to {}", optimizer.applicable);
   if (!optimizer.privileges.empty())
-    html += fmt::format(" <span class=privilege>† sees {}</span>",
+    html += fmt::format(" · <span class=privilege>† sees {}</span>",
                         html_text(fmt::format("{}", fmt::join(optimizer.privileges, ", "))));
+  html += "</span>";
   return html + "</li>\n";
 }
 

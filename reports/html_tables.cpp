@@ -24,6 +24,17 @@ std::string dagger(const std::vector<std::string>& privileges) {
                      html_text(fmt::format("{}", fmt::join(privileges, ", "))));
 }
 
+// "5/5, 1 failed" as one small line each.
+std::string small_lines(std::string_view text) {
+  std::string html;
+  while (!text.empty()) {
+    const std::size_t end = text.find(", ");
+    html += fmt::format("<small>{}</small>", text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
+  }
+  return html;
+}
+
 std::string matrix_cell(const Cell& cell, std::size_t tolerance, Real least) {
   const std::string text = matrix_text(cell, tolerance);
   if (cell.planned == 0) return "<td class=none></td>";
@@ -31,11 +42,12 @@ std::string matrix_cell(const Cell& cell, std::size_t tolerance, Real least) {
   if (!cell.is_measured())
     return fmt::format("<td class=na title=\"{}\">n/a</td>", html_text(cell.inapplicable));
   const Spread& work = cell.work[tolerance];
-  const std::string count = is_complete(cell, tolerance) && work.n == 1
-                                ? ""
-                                : fmt::format("<small>{}</small>", count_text(cell, tolerance));
+  const std::string count =
+      is_complete(cell, tolerance) && work.n == 1 ? "" : small_lines(count_text(cell, tolerance));
   const std::string title = html_text(status_text(cell.statuses));
-  if (!work.is_solved()) return fmt::format("<td class=no title=\"{}\">✗{}</td>", title, count);
+  if (!work.is_solved())
+    return fmt::format("<td class=no title=\"{}\">✗{}{}</td>", title, dagger(cell.privileges),
+                       count);
   return fmt::format("<td class=\"{}{}\" title=\"{}\">{}{}{}</td>", heat(work.median, least),
                      cell.is_best[tolerance] ? " best" : "", title, text, dagger(cell.privileges),
                      count);
@@ -47,14 +59,18 @@ Real least_work(const Comparison& c, std::size_t problem, std::size_t tolerance)
   return least;
 }
 
-std::string spread_cell(const Spread& spread, bool is_best = false, bool is_marked = false) {
+std::string spread_cell(const Spread& spread, const char* kind = "") {
   if (spread.n == 0) return "<td></td>";
-  const std::string range = range_figure(spread);
-  return fmt::format("<td{}>{}{}{}</td>",
-                     is_best     ? " class=best"
-                     : is_marked ? " class=together"
-                                 : "",
-                     reached_figure(spread.median), is_marked ? "≈" : "",
+  const std::string range = range_figure(spread, reached_figure);
+  return fmt::format("<td{}>{}{}</td>", kind, reached_figure(spread.median),
+                     range.empty() ? "" : "<small>" + range + "</small>");
+}
+
+std::string time_cell(const Spread& seconds, bool is_timed_alone) {
+  const std::string range = range_figure(seconds, milliseconds);
+  return fmt::format("<td{}>{}{}{}</td>", is_timed_alone ? "" : " class=together",
+                     milliseconds(seconds.median),
+                     is_timed_alone || !seconds.is_solved() ? "" : "≈",
                      range.empty() ? "" : "<small>" + range + "</small>");
 }
 
@@ -69,16 +85,13 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
                                                : "inapplicable: " + html_text(cell.inapplicable));
   row += fmt::format("<td>{}</td>", count_text(cell, kTightest));
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.work[t], cell.is_best[t]);
+    row += spread_cell(cell.work[t], cell.is_best[t] ? " class=best" : "");
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.seconds[t], false, !cell.is_timed_alone);
+    row += time_cell(cell.seconds[t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
   const Request& request = c.runs[cell.runs[0]].record->request;
-  return row + fmt::format(
-                   "<td class=text>{}</td><td><button class=copy data-text=\"{}\" "
-                   "title=\"Copy the command that repeats the first of these runs\">copy"
-                   "</button></td></tr>\n",
-                   status_text(cell.statuses), html_text(rerun_command(request)));
+  return row + fmt::format("<td class=text>{}</td><td data-copy=\"{}\"></td></tr>\n",
+                           status_text(cell.statuses), html_text(rerun_command(request)));
 }
 
 }  // namespace
@@ -110,7 +123,7 @@ std::string details_html(const Comparison& c) {
   std::string html =
       "<table class=sortable id=detail-table><thead><tr><th>problem</th><th>optimizer</th>"
       "<th title=\"runs that reach 1e-6 of all runs\">reach 1e-6</th>";
-  for (const char* what : {"work", "time, s"})
+  for (const char* what : {"work", "time, ms"})
     for (const Tolerance& tolerance : kTolerances)
       html += fmt::format("<th>{}<br>to {}</th>", what, tolerance.name);
   html += "<th>final loss</th><th>x error</th><th>status</th><th>rerun</th></tr></thead><tbody>\n";
@@ -137,7 +150,8 @@ std::string failures_html(const Comparison& c) {
         "colspan=2>{}</td></tr>\n",
         html_text(file.file.string()), html_text(file.reason));
   if (html.empty()) return "<p>None: every run ended by a verdict of its own.</p>";
-  return "<div class=scroll><table class=sortable><thead><tr><th>problem</th><th>optimizer</th>"
+  return "<div class=scroll tabindex=0 role=region aria-label=Failures><table "
+         "class=sortable><thead><tr><th>problem</th><th>optimizer</th>"
          "<th>seed</th><th>status</th><th>message</th><th>rerun</th></tr></thead><tbody>\n" +
          html + "</tbody></table></div>";
 }

@@ -13,13 +13,15 @@
 namespace isoline {
 namespace {
 
-constexpr std::size_t kPathPoints = 120;
-
-// Points a curve, so that all curves together stay within a few megabytes.
+// Points a line, so that all lines together stay within a few megabytes.
 std::size_t points_per_curve(const Comparison& c) {
-  constexpr std::size_t kAll = 60000, kLeast = 10, kMost = 64;
+  constexpr std::size_t kAll = 60000, kLeast = 6, kMost = 64;
   const std::size_t curves = std::max<std::size_t>(1, c.problems.size() * c.optimizers.size());
   return std::clamp(kAll / curves, kLeast, kMost);
+}
+std::size_t points_per_path(std::size_t paths) {
+  constexpr std::size_t kAll = 8000, kLeast = 12, kMost = 120;
+  return std::clamp(kAll / std::max<std::size_t>(1, paths), kLeast, kMost);
 }
 
 std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
@@ -68,8 +70,8 @@ std::string contours_json(const std::string& problem, const Landscape& landscape
 
 using Rows = std::vector<std::vector<Real>>;
 
-std::string path_json(const Rows& rows, std::size_t optimizer) {
-  const std::string points = list(thinned(rows.size(), kPathPoints), [&](std::size_t i) {
+std::string path_json(const Rows& rows, std::size_t optimizer, std::size_t most) {
+  const std::string points = list(thinned(rows.size(), most), [&](std::size_t i) {
     return rows[i].size() == 2 ? point(rows[i][0], rows[i][1]) : "null,null";
   });
   return fmt::format("{{\"s\":{},\"points\":{}}}", optimizer, points);
@@ -78,7 +80,9 @@ std::string path_json(const Rows& rows, std::size_t optimizer) {
 std::string plane_json(const std::string& problem, const Landscape& landscape,
                        const std::vector<Path>& all, Rows Path::*rows,
                        const std::vector<Real>& goal) {
-  const auto ranked_path = [&](const Path& path) { return path_json(path.*rows, path.index); };
+  const auto ranked_path = [&](const Path& path) {
+    return path_json(path.*rows, path.index, points_per_path(all.size()));
+  };
   return fmt::format("{{\"window\":{},\"contours\":{},\"paths\":{},\"goal\":{}}}",
                      list(landscape.window, number), contours_json(problem, landscape),
                      list(all, ranked_path), list(goal, number));

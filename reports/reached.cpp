@@ -1,3 +1,4 @@
+// Reads what each tolerance took off the hits of a record, or else off its curve.
 #include "reports/reached.h"
 
 namespace isoline {

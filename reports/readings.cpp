@@ -1,3 +1,4 @@
+// Words the one-sentence readings of the charts.
 #include "reports/readings.h"
 
 #include <fmt/format.h>
@@ -24,6 +25,8 @@ std::string leaders(const Comparison& c, const Profile& profile, Real factor, Re
   if (names.size() > kNamed) return fmt::format("{} methods", names.size());
   return fmt::format("{}", fmt::join(names, " and "));
 }
+
+std::string multiple(Real ratio) { return fmt::format("{:.3g}×", ratio); }
 
 std::string unsolved_text(std::size_t unsolved, std::size_t applicable) {
   if (unsolved == 0) return fmt::format(" All {} methods get there.", applicable);
@@ -68,8 +71,8 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
   std::string text = fmt::format("Least median work to 1e-6: {}, {} forward solves",
                                  c.optimizers[order[0]].label, figure(work(order[0])));
   if (solved > 1 && work(order[1]) > work(order[0]))
-    text += fmt::format("; next {}, {}× as much", c.optimizers[order[1]].label,
-                        figure(work(order[1]) / std::max(work(order[0]), 1.0)));
+    text += fmt::format("; next {}, {} as much", c.optimizers[order[1]].label,
+                        multiple(work(order[1]) / std::max(work(order[0]), 1.0)));
   else if (solved > 1)
     text += fmt::format(", tied with {}", c.optimizers[order[1]].label);
   return text + "." + unsolved_text(order.size() - solved, order.size());
@@ -82,10 +85,11 @@ std::string path_reading(const Comparison& c, std::size_t problem) {
   const auto length_in_x = [](const Path& path) { return detour(path.x); };
   const auto [straight, winding] = std::ranges::minmax(all, {}, length_in_x);
   return fmt::format(
-      "In x space {} runs straightest, {}× the distance between its ends; {} takes the longest "
+      "In x space {} runs straightest, {} the distance between its ends; {} takes the longest "
       "way, "
-      "{}×.",
-      straight.optimizer, figure(detour(straight.x)), winding.optimizer, figure(detour(winding.x)));
+      "{}.",
+      straight.optimizer, multiple(detour(straight.x)), winding.optimizer,
+      multiple(detour(winding.x)));
 }
 
 }  // namespace isoline

@@ -1,3 +1,4 @@
+// Writes all formats of a report into a folder.
 #include "reports/report.h"
 
 #include "core/json.h"

@@ -1,3 +1,4 @@
+// Medians that keep failures, and performance profiles.
 #include "reports/statistics.h"
 
 #include <algorithm>

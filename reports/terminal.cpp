@@ -10,7 +10,7 @@
 namespace isoline {
 namespace {
 
-// Characters, not bytes: fmt counts neither ✗ nor † as its users see them in every locale.
+// Characters, not bytes: what a column holds.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(
       text, [](char letter) { return (static_cast<unsigned char>(letter) & 0xC0) != 0x80; }));
@@ -42,9 +42,11 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
                             cell.work[kTightest].n),
                 7);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    line += right(reached_figure(cell.work[t].median) + (cell.is_best[t] ? "*" : " "), 10);
-  line +=
-      right(reached_figure(cell.seconds[kTightest].median) + (cell.is_timed_alone ? "" : "≈"), 12);
+    line += right(reached_figure(cell.work[t].median) + (cell.is_best[t] ? "*" : " "),
+                  t == 0 ? 12 : 10);
+  const Spread& seconds = cell.seconds[kTightest];
+  const bool is_marked = !cell.is_timed_alone && seconds.is_solved();
+  line += right(milliseconds(seconds.median) + (is_marked ? "≈" : " "), 12);
   line += right(reached_figure(cell.loss.median), 11);
   line += right(cell.x_error.n == 0 ? "" : reached_figure(cell.x_error.median), 11);
   return line + "  " + status_text(cell.statuses) + "\n";
@@ -52,25 +54,27 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
 
 std::string header_of(const Comparison& c, std::size_t p, std::size_t name_width) {
   const std::string name = printable(c.problems[p].spec);
-  std::string line = "\n" + left(name, name_width + 2);
+  std::string line = fmt::format("\n{}", left(name, name_width + 2));
   if (width_of(name) > name_width + 2) line.append("\n").append(name_width + 2, ' ');
-  line += right("1e-6", 7) + right("work 1e-1 ", 10) + right("1e-3 ", 10) + right("1e-6 ", 10);
-  line += right("s to 1e-6", 12) + right("loss", 11) + right("x error", 11);
+  line += right("reach", 7) + right("work 1e-1 ", 12) + right("1e-3 ", 10) + right("1e-6 ", 10);
+  line += right("ms to 1e-6 ", 12) + right("loss", 11) + right("x error", 11);
   return line + "  status\n";
 }
 
 std::string failure_lines(const Comparison& c) {
-  std::string text;
+  constexpr std::size_t kMost = 20;
+  std::vector<std::string> lines;
   for (const std::size_t run : c.failures) {
     const Record& record = *c.runs[run].record;
-    text += fmt::format("{}: {} / {} / seed {}: {}\n", name_of(record.status),
-                        printable(record.request.problem.spec),
-                        printable(record.request.optimizer.spec), record.request.seed,
-                        printable(record.message));
+    lines.push_back(fmt::format("{}: {} / {} / seed {}: {}", name_of(record.status),
+                                record.request.problem.spec, record.request.optimizer.spec,
+                                record.request.seed, record.message));
   }
   for (const Unreadable& file : c.study->unreadable)
-    text +=
-        fmt::format("unreadable: {}: {}\n", printable(file.file.string()), printable(file.reason));
+    lines.push_back(fmt::format("unreadable: {}: {}", file.file.string(), file.reason));
+  std::string text;
+  for (std::size_t i = 0; i < lines.size() && i < kMost; ++i) text += printable(lines[i]) + "\n";
+  if (lines.size() > kMost) text += fmt::format("and {} more\n", lines.size() - kMost);
   return text;
 }
 
@@ -90,8 +94,8 @@ std::string terminal_table(const Comparison& c) {
         text += line_of(c, p, s, name_width);
   }
   text +=
-      "\nMedians over seeds, work in forward solves; * least of its problem, ✗ not reached by half "
-      "of the runs";
+      "\nMedians over seeds, work in forward solves; reach: runs that reach 1e-6 of all runs.\n"
+      "* least of its problem, ✗ not reached by half of the runs";
   if (c.is_any_timed_together) text += ", ≈ timed beside other runs";
   return text + ", † sees what others do not.\n" + failure_lines(c);
 }

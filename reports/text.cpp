@@ -1,3 +1,4 @@
+// Writes figures, and escapes foreign text for each format.
 #include "reports/text.h"
 
 #include <fmt/format.h>
@@ -57,7 +58,7 @@ std::string escaped(std::string_view text, std::span<const Escape> escapes) {
   return out;
 }
 
-// "1.200e-05" -> "1.2e-5": no zeros that say nothing.
+// "1.2e-05" -> "1.2e-5".
 std::string without_idle_zeros(std::string text) {
   const std::size_t e = text.find('e');
   if (e == std::string::npos) return text;
@@ -67,13 +68,37 @@ std::string without_idle_zeros(std::string text) {
   return text;
 }
 
+// Four significant digits, "1.200e-04" without the zeros that say nothing: "1.2e-04".
+std::string scientific(Real value) {
+  std::string text = fmt::format("{:.3e}", value);
+  std::size_t end = text.find('e');
+  while (text[end - 1] == '0' || text[end - 1] == '.') {
+    const bool was_point = text[end - 1] == '.';
+    text.erase(--end, 1);
+    if (was_point) break;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string figure(Real value) {
   constexpr Real kInFull = 1e7;
   if (std::isfinite(value) && std::abs(value) < kInFull && value == std::round(value))
     return fmt::format("{:.0f}", std::abs(value) == 0 ? 0.0 : value);
-  return without_idle_zeros(fmt::format("{:.4g}", value));
+  constexpr Real kScientificBelow = 1e-3;  // 1.842e-4 is shorter than 0.0001842
+  const bool is_tiny = std::abs(value) < kScientificBelow;
+  std::string text = fmt::format("{:.4g}", value);
+  if (is_tiny && text.find('e') == std::string::npos) text = scientific(value);
+  return without_idle_zeros(std::move(text));
+}
+
+std::string milliseconds(Real seconds) {
+  constexpr Real kWhole = 1000;
+  const Real value = 1e3 * seconds;
+  if (value == kNever) return "✗";
+  return value < kWhole ? without_idle_zeros(fmt::format("{:.3g}", value))
+                        : fmt::format("{:.0f}", value);
 }
 
 std::string exact_figure(Real value) {
@@ -84,14 +109,14 @@ std::string exact_figure(Real value) {
 
 std::string reached_figure(Real value) { return value == kNever ? "✗" : figure(value); }
 
-std::string range_figure(const Spread& spread) {
+std::string range_figure(const Spread& spread, std::string (*written)(Real)) {
   if (spread.n <= 1 || spread.low == spread.high) return "";
-  return fmt::format("{}–{}", reached_figure(spread.low), reached_figure(spread.high));
+  return fmt::format("{}–{}", written(spread.low), written(spread.high));
 }
 
 std::string figure(const Spread& spread) {
   if (spread.n == 0) return "";
-  const std::string range = range_figure(spread);
+  const std::string range = range_figure(spread, reached_figure);
   return reached_figure(spread.median) + (range.empty() ? "" : fmt::format(" ({})", range));
 }
 

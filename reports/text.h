@@ -8,13 +8,15 @@
 
 namespace isoline {
 
-// The one way a table writes a number: whole numbers below ten million in full, all others with
-// four significant digits; "inf", "nan".
+// The one way a table writes a number, times apart: whole numbers below ten million in full, all
+// others with four significant digits; "inf", "nan".
 std::string figure(Real value);
 std::string exact_figure(Real value);      // the shortest text that reads back as the same number
+std::string milliseconds(Real seconds);    // three digits: a time deserves no more
 std::string reached_figure(Real value);    // ✗ where infinite
 std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for what was never reached
-std::string range_figure(const Spread& spread);  // "90–300"; empty where all agree
+// "90–300", each end as `written`; empty where all agree.
+std::string range_figure(const Spread& spread, std::string (*written)(Real));
 std::string percent(Real share);
 
 // Text from records, made safe for the place it goes to.

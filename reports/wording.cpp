@@ -1,3 +1,4 @@
+// Words headlines, remarks, counts and commands.
 #include "reports/wording.h"
 
 #include <fmt/format.h>

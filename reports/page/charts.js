@@ -175,7 +175,7 @@ function staircase(ratios, problems, end) {
 }
 
 function drawProfile(place, profile, visible) {
-  const farthest = Math.max(2, ...profile.ratios.flat().map((ratio) => Math.log2(ratio)));
+  const farthest = Math.max(2, ...[...visible].flatMap((s) => profile.ratios[s] ?? []).map(Math.log2));
   const end = Math.min(Math.ceil(farthest + 0.5), 14);
   const datasets = [...visible].map((s) => ({
     label: DATA.optimizers[s], data: staircase(profile.ratios[s] ?? [], profile.problems, end), ...lineStyle(s),

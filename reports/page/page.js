@@ -152,17 +152,23 @@ function offerThemes(button) {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
 }
 
+// A button in each cell that holds a command.
 function offerCopies() {
-  document.addEventListener('click', async (event) => {
-    const button = event.target.closest?.('.copy');
-    if (!button) return;
-    try {
-      await navigator.clipboard.writeText(button.dataset.text);
-      button.textContent = 'copied';
-    } catch {  // no clipboard from a file: the command is shown instead
-      window.prompt('Command', button.dataset.text);
-    }
-  });
+  for (const cell of document.querySelectorAll('[data-copy]')) {
+    const button = pressable('copy', undefined, () => copyFrom(cell, button));
+    button.className = 'copy';
+    button.title = 'Copy the command that repeats the first of these runs';
+    cell.append(button);
+  }
+}
+
+async function copyFrom(cell, button) {
+  try {
+    await navigator.clipboard.writeText(cell.dataset.copy);
+    button.textContent = 'copied';
+  } catch {  // no clipboard from a file: the command is shown instead
+    window.prompt('Command', cell.dataset.copy);
+  }
 }
 
 document.documentElement.classList.add('js');

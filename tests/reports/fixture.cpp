@@ -1,3 +1,4 @@
+// Result folders and plain records for the tests of reports.
 #include "tests/reports/fixture.h"
 
 #include <fmt/format.h>

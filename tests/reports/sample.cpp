@@ -2,14 +2,12 @@
 // elsewhere.
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <array>
 #include <cmath>
 #include <fstream>
-#include <functional>
 
 #include "core/json.h"
 #include "tests/reports/fixture.h"
+#include "tests/reports/sample_parts.h"
 
 namespace isoline {
 namespace {
@@ -19,100 +17,10 @@ namespace fs = std::filesystem;
 // Without the fsync of write_text(): thousands of them take minutes.
 void save(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
-struct Kind {
-  const char* name;
-  const char* family;
-  Real speed;  // decades of loss per iteration, about
-  int price;   // forwards per iteration
-  bool is_privileged = false;
-};
-constexpr std::array<Kind, 33> kKinds = {{{"gd", "First order", 0.004, 2},
-                                          {"momentum", "First order", 0.01, 2},
-                                          {"nesterov", "First order", 0.012, 2},
-                                          {"adam", "First order", 0.02, 2},
-                                          {"adamw", "First order", 0.018, 2},
-                                          {"rmsprop", "First order", 0.009, 2},
-                                          {"adagrad", "First order", 0.005, 2},
-                                          {"lion", "First order", 0.008, 2},
-                                          {"soap", "First order", 0.05, 3},
-                                          {"muon", "First order", 0.03, 3},
-                                          {"lbfgs", "Quasi-Newton", 0.3, 2},
-                                          {"bfgs", "Quasi-Newton", 0.35, 2},
-                                          {"ceres-lbfgs", "Quasi-Newton", 0.28, 3},
-                                          {"nlopt-slsqp", "Quasi-Newton", 0.4, 3},
-                                          {"nlopt-mma", "Quasi-Newton", 0.1, 2},
-                                          {"gauss-newton", "Least squares", 0.8, 9},
-                                          {"levenberg-marquardt", "Least squares", 0.7, 9},
-                                          {"ceres-lm", "Least squares", 0.75, 9},
-                                          {"ceres-dogleg", "Least squares", 0.7, 9},
-                                          {"hig", "Half-inverse", 0.25, 9},
-                                          {"hig[beta=0.2]", "Half-inverse", 0.2, 9},
-                                          {"newton", "Second order", 1.1, 14, true},
-                                          {"newton-cg", "Second order", 0.6, 20},
-                                          {"adahessian", "Second order", 0.05, 6},
-                                          {"sip", "Scale-invariant", 0.9, 3, true},
-                                          {"sip[step=0.3]", "Scale-invariant", 0.3, 3, true},
-                                          {"nelder-mead", "Derivative-free", 0.02, 2},
-                                          {"cma-es", "Derivative-free", 0.015, 12},
-                                          {"bobyqa", "Derivative-free", 0.05, 1},
-                                          {"cobyla", "Derivative-free", 0.03, 1},
-                                          {"subplex", "Derivative-free", 0.02, 2},
-                                          {"random-search", "Derivative-free", 0.001, 1},
-                                          {"broken", "First order", 0.01, 2}}};
-constexpr std::array kProblems = {
-    "square",        "sine[xi=32,phi=45]", "rosenbrock",     "poisson", "heat",
-    "oscillators",   "oscillators[n=2]",   "quantum-dipole", "chain",   "fluid",
-    "sine",          "rosenbrock[n=10]",   "wave[steps=64]", "lens",    "burgers",
-    "heat[grid=128]"};
-
 // Counter-based and platform-free: a number in [0, 1) from a text.
 Real chance(const std::string& text) {
   const std::string hex = digest(digest(text + "sample"));
   return static_cast<Real>(std::stoull(hex.substr(0, 8), nullptr, 16)) / 4294967296.0;
-}
-
-struct Surface {
-  std::function<Eigen::Vector2d(const Eigen::Vector2d&)> map;  // y = P(x), y* = 0
-  Landscape in_x, in_y;
-};
-
-Landscape grid(std::array<Real, 4> window, const std::function<Real(Real, Real)>& loss) {
-  constexpr int kGrid = 97;
-  Landscape landscape{window, Matrix(kGrid, kGrid)};
-  for (int j = 0; j < kGrid; ++j)
-    for (int i = 0; i < kGrid; ++i)
-      landscape.loss(i, j) = loss(window[0] + (window[1] - window[0]) * i / (kGrid - 1),
-                                  window[2] + (window[3] - window[2]) * j / (kGrid - 1));
-  return landscape;
-}
-
-Surface surface(bool is_sine) {
-  Surface s;
-  if (is_sine)
-    s.map = [](const Eigen::Vector2d& x) {
-      return Eigen::Vector2d(std::sin(x[0]) + 0.4 * x[1], 1.5 * x[1] + 0.3 * std::sin(3 * x[0]));
-    };
-  else
-    s.map = [](const Eigen::Vector2d& x) { return Eigen::Vector2d(x[0], x[1] * x[1]); };
-  s.in_x = grid({-0.5, 3.5, -0.5, 3.5},
-                [&](Real a, Real b) { return s.map(Eigen::Vector2d(a, b)).squaredNorm(); });
-  s.in_y = grid({-1, 4, -1, 10}, [](Real a, Real b) { return a * a + b * b; });
-  return s;
-}
-
-// One step of a descent whose direction is a blend of gradient and Newton, by the method's speed.
-void descend(const Surface& s, const Kind& kind, Eigen::Vector2d& x) {
-  constexpr Real kH = 1e-6;
-  Eigen::Matrix2d J;
-  for (int i = 0; i < 2; ++i)
-    J.col(i) =
-        (s.map(x + kH * Eigen::Vector2d::Unit(i)) - s.map(x - kH * Eigen::Vector2d::Unit(i))) /
-        (2 * kH);
-  const Eigen::Vector2d y = s.map(x), gradient = 2 * J.transpose() * y;
-  const Eigen::Matrix2d H = J.transpose() * J + 1e-9 * Eigen::Matrix2d::Identity();
-  const Eigen::Vector2d newton = H.inverse() * (J.transpose() * y);
-  const Real blend = std::min(1.0, kind.speed);
-  x -= blend * newton * 0.8 + (1 - blend) * std::min(0.01, 0.3 / gradient.norm()) * gradient;
 }
 
 void add_point(Record& r, std::int64_t iteration, Real loss, Real x_error, int price) {
@@ -259,49 +167,68 @@ void write(const fs::path& folder, const Sheet& sheet) {
   save(folder / "components" / sheet.file_name(), to_json(sheet).dump());
 }
 
-}  // namespace
+bool is_surface(const std::string& problem) {
+  return problem.starts_with("sq") || problem.starts_with("si");
+}
 
-void write_sample_study(const fs::path& folder, const Size& size) {
-  fs::create_directories(folder / "runs");
-  fs::create_directories(folder / "components");
-  Plan plan{.suites = {"inverse"}, .cells = {}};
+std::string problem_at(std::size_t p) {
+  return p < kProblems.size() ? kProblems[p] : fmt::format("invented[case={}]", p);
+}
+std::string optimizer_at(std::size_t s) {
+  return s < kKinds.size() ? kKinds[s].name : fmt::format("gd[rate={}]", s);
+}
+
+Record run_of(const std::string& problem, const Surface& shape, std::size_t s, std::size_t seed,
+              std::size_t points) {
+  const Kind& kind = kKinds[s % kKinds.size()];
+  Record r = record_of({.problem = problem, .optimizer = optimizer_at(s), .seed = seed});
+  r.curve = {};
+  r.hits.reset();
+  r.minimum.reset();
+  r.provenance = provenance();
+  if (is_surface(problem))
+    fill_surface(r, shape, kind, points);
+  else
+    fill_invented(r, kind, points);
+  finish(r, problem != "fluid" && problem != "burgers");
+  fail_some(r, kind);
+  return r;
+}
+
+void write_sheets(const fs::path& folder, const Size& size) {
   for (std::size_t s = 0; s < size.optimizers; ++s) {
-    Sheet sheet = sheet_of("optimizer", kKinds[s % kKinds.size()].name);
+    Sheet sheet = sheet_of("optimizer", optimizer_at(s));
     sheet.family = kKinds[s % kKinds.size()].family;
     write(folder, sheet);
   }
   for (std::size_t p = 0; p < size.problems; ++p) {
-    std::string problem = kProblems[p % kProblems.size()];
-    if (p >= kProblems.size()) problem = fmt::format("invented[case={}]", p);
-    Sheet sheet = sheet_of("problem", problem);
-    const Surface shape = surface(problem[0] == 's' && problem[1] == 'i');
-    const bool is_surface = problem.substr(0, 2) == "sq" || problem.substr(0, 2) == "si";
-    if (is_surface) {
+    Sheet sheet = sheet_of("problem", problem_at(p));
+    if (is_surface(sheet.name)) {
+      const Surface shape = surface(sheet.name == "sine");
       sheet.landscape_x = shape.in_x;
       sheet.landscape_y = shape.in_y;
       sheet.truth = sheet.target = {0, 0};
     }
     write(folder, sheet);
+  }
+}
+
+}  // namespace
+
+void write_sample_study(const fs::path& folder, const Size& size) {
+  fs::create_directories(folder / "runs");
+  fs::create_directories(folder / "components");
+  write_sheets(folder, size);
+  Plan plan{.suites = {"inverse"}, .cells = {}};
+  for (std::size_t p = 0; p < size.problems; ++p) {
+    const std::string problem = problem_at(p);
+    const Surface shape = surface(problem.starts_with("sine"));
     for (std::size_t s = 0; s < size.optimizers; ++s)
       for (std::size_t seed = 0; seed < size.seeds; ++seed) {
-        const Kind& kind = kKinds[s % kKinds.size()];
-        const bool is_known = s < kKinds.size();
-        Record r = record_of({.problem = problem,
-                              .optimizer = is_known ? kind.name : fmt::format("gd[rate={}]", s),
-                              .seed = seed});
-        r.curve = {};
-        r.hits.reset();
-        r.minimum.reset();
-        r.provenance = provenance();
-        if (is_surface)
-          fill_surface(r, shape, kind, size.points);
-        else
-          fill_invented(r, kind, size.points);
-        finish(r, problem != "fluid" && problem != "burgers");
-        fail_some(r, kind);
+        const Record r = run_of(problem, shape, s, seed, size.points);
         plan.cells.push_back({r.cell, problem, r.request.optimizer.spec, seed});
-        if (chance(r.cell + "lost") > 0.999) continue;
-        save(folder / "runs" / r.file_name(), to_json(r).dump());
+        const bool is_lost = chance(r.cell + "lost") > 0.999;
+        if (!is_lost) save(folder / "runs" / r.file_name(), to_json(r).dump());
       }
   }
   save(folder / "plan.json", to_json(plan).dump());

@@ -38,5 +38,10 @@ TEST(Sample, DISABLED_OfTenThousandRecords) {
                      {.problems = 20, .optimizers = 50, .seeds = 10, .points = 90});
 }
 
+TEST(Sample, DISABLED_OfTenThousandCells) {
+  write_sample_study(sample_folder(),
+                     {.problems = 25, .optimizers = 400, .seeds = 1, .points = 90});
+}
+
 }  // namespace
 }  // namespace isoline

@@ -1,0 +1,154 @@
+// What a comparison makes of result folders: denominators, missing cells, builds, broken files.
+#include "reports/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "core/json.h"
+#include "reports/reached.h"
+#include "reports/wording.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+TEST(Study, AnInvalidRecordIsListedAndNotFatal) {
+  const ResultFolder folder;
+  folder.add(record_of({}));
+  folder.add_file("runs/torn.json", R"({"schema": "isoline.run/1", "cell": "a)");
+  folder.add_file("runs/other.json", R"({"schema": "something else"})");
+  Json uneven = to_json(record_of({.seed = 1}));
+  uneven["curve"]["loss"].push_back(1.0);
+  folder.add_file("runs/uneven.json", uneven.dump());
+  folder.add_file("components/empty.json", "");
+  const Study study = read_study({folder.path()});
+  EXPECT_EQ(study.runs.size(), 1U);
+  ASSERT_EQ(study.unreadable.size(), 4U);
+  for (const Unreadable& file : study.unreadable) EXPECT_FALSE(file.reason.empty());
+}
+
+TEST(Study, AMissingFolderIsAUsageError) {
+  EXPECT_THROW(read_study({"/no/such/folder"}), UsageError);
+}
+
+TEST(Study, TheNewestBuildAnswersForACell) {
+  const ResultFolder one, other;
+  one.add(record_of({.work_per_hit = 4, .started = "2026-01-01T00:00:00Z", .build = "b0"}));
+  one.add(record_of({.work_per_hit = 2, .started = "2026-03-01T00:00:00Z", .build = "b1"}));
+  other.add(record_of({.work_per_hit = 8, .started = "2026-02-01T00:00:00Z", .build = "b2"}));
+  const Study study = read_study({one.path(), other.path()});
+  ASSERT_EQ(study.runs.size(), 1U);
+  EXPECT_EQ(study.runs[0].build, "b1");
+  EXPECT_EQ(study.superseded, 2U);
+  EXPECT_NE(remarks(compare_optimizers(study)).front().find("2 older results"), std::string::npos);
+}
+
+TEST(Study, FoldersAreUnited) {
+  const ResultFolder one, other;
+  const Record a = record_of({}), b = record_of({.seed = 1});
+  one.add(a);
+  one.add(plan_of({a, b}));
+  other.add(b);
+  other.add(plan_of({b}));
+  const Study study = read_study({one.path(), other.path()});
+  EXPECT_EQ(study.runs.size(), 2U);
+  EXPECT_EQ(study.plan.cells.size(), 2U);
+}
+
+TEST(Comparison, APartialPlanSaysWhatIsMissing) {
+  const ResultFolder folder;
+  const Record a = record_of({}), b = record_of({.optimizer = "adam", .seed = 3});
+  folder.add(a);
+  folder.add(plan_of({a, b}));
+  const Study study = read_study({folder.path()});
+  EXPECT_EQ(missing_text(compare_optimizers(study)),
+            "1 of 2 cells, missing: square / adam / seed 3");
+}
+
+// Work to 1e-6 is 30 · work_per_hit: 60, 120, 60 reached; two runs reach 1e-3 at most, one of them
+// crashed. Sorted: 60 60 120 ∞ ∞.
+TEST(Comparison, FailuresStayInTheDenominator) {
+  Study study;
+  study.runs = {record_of({.seed = 0}), record_of({.seed = 1, .work_per_hit = 4}),
+                record_of({.seed = 2}),
+                record_of({.seed = 3, .hits = 20, .status = Status::budget}),
+                record_of({.seed = 4, .hits = 3, .status = Status::crashed})};
+  const Comparison comparison = compare_optimizers(study);
+  const Cell& cell = comparison.cell(0, 0);
+  EXPECT_EQ(cell.work[kTightest].median, 120);
+  EXPECT_EQ(cell.work[1].unsolved, 1U);  // 1e-3 is index 15
+  EXPECT_EQ(cell.failed, 1U);
+  EXPECT_EQ(count_text(cell, kTightest), "3/5, 1 failed");
+  EXPECT_EQ(status_text(cell.statuses), "target 3, budget 1, crashed 1");
+}
+
+TEST(Comparison, TheLeastMedianWorkIsBestAndTiesAllAre) {
+  Study study;
+  study.runs = {record_of({.optimizer = "a"}), record_of({.optimizer = "b"}),
+                record_of({.optimizer = "c", .work_per_hit = 3})};
+  const Comparison comparison = compare_optimizers(study);
+  std::map<std::string, bool> best;
+  for (std::size_t s = 0; s < 3; ++s)
+    best[comparison.optimizers[s].label] = comparison.cell(0, s).is_best[kTightest];
+  EXPECT_EQ(best, (std::map<std::string, bool>{{"a", true}, {"b", true}, {"c", false}}));
+}
+
+TEST(Comparison, AnInapplicableCellIsNoFailure) {
+  Study study;
+  study.runs = {record_of({.optimizer = "a"}), record_of({.optimizer = "b",
+                                                          .hits = 0,
+                                                          .status = Status::inapplicable,
+                                                          .message = "needs a Hessian"})};
+  const Comparison comparison = compare_optimizers(study);
+  EXPECT_TRUE(comparison.failures.empty());
+  EXPECT_EQ(comparison.cell(0, 1).inapplicable, "needs a Hessian");
+  EXPECT_EQ(comparison.optimizers[1].applicable, 0U);
+  EXPECT_EQ(comparison.profiles[kTightest].share(1, 1e9), 0);
+}
+
+TEST(Comparison, RatesFromAFileDoNotSplitAMethod) {
+  Record tuned = record_of({.problem = "heat", .optimizer = "gd[rate=0.5]"});
+  Record other = record_of({.problem = "square", .optimizer = "gd[rate=0.1]"});
+  tuned.request.rates = other.request.rates = "benchmarks/rates/gd.json";
+  Study study;
+  study.runs = {tuned, other};
+  const Comparison comparison = compare_optimizers(study);
+  ASSERT_EQ(comparison.optimizers.size(), 1U);
+  EXPECT_EQ(comparison.optimizers[0].label, "gd");
+}
+
+// f_L = 0.01, the least of both runs; goal at 1e-1: 0.01 + 0.1 · (1 − 0.01) = 0.109, which the
+// curve 10^(−j/5) first meets at j = 5 (0.1), after 10 forwards.
+TEST(Comparison, WithoutADeclaredMinimumTheBestKnownIsOne) {
+  Record a = record_of({.optimizer = "a", .hits = 11}),
+         b = record_of({.optimizer = "b", .hits = 6});
+  for (Record* record : {&a, &b}) {
+    record->hits.reset();
+    record->minimum.reset();
+  }
+  Study study;
+  study.runs = {a, b};
+  const BestKnown best(study);
+  EXPECT_NEAR(best.minimum(b), 0.01, 1e-15);
+  isoline::Run run{.record = &study.runs[1]};
+  fill_reached(run, best);
+  EXPECT_EQ(run.work[0], 10);
+  EXPECT_EQ(run.work[1], kNever);
+  EXPECT_FALSE(compare_optimizers(study).problems[0].is_minimum_declared);
+}
+
+TEST(Comparison, TimesTakenBesideOtherRunsAreMarked) {
+  Record shared = record_of({});
+  shared.provenance["run"]["concurrent_jobs"] = 4;
+  Record alone = record_of({.optimizer = "adam"});
+  alone.provenance["run"]["concurrent_jobs"] = 4;
+  alone.provenance["run"]["exclusive"] = true;
+  Study study;
+  study.runs = {alone, shared};
+  const Comparison comparison = compare_optimizers(study);
+  EXPECT_TRUE(comparison.runs[0].is_timed_alone);
+  EXPECT_FALSE(comparison.runs[1].is_timed_alone);
+}
+
+}  // namespace
+}  // namespace isoline

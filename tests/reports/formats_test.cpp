@@ -1,0 +1,190 @@
+// The formats: foreign text is harmless in each, and all print the same figure.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/json.h"
+#include "reports/report.h"
+#include "reports/text.h"
+#include "reports/wording.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+constexpr const char* kHostile = "<b>&|\"x\"</script><!--@all `$\\evil_{1}%#~^\n=cmd,*[";
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+Study hostile_study() {
+  Study study;
+  study.runs = {record_of({.problem = kHostile,
+                           .optimizer = kHostile,
+                           .hits = 2,
+                           .status = Status::failed,
+                           .message = kHostile})};
+  return study;
+}
+
+std::size_t fields(const std::string& line) {
+  bool is_quoted = false;
+  std::size_t count = 1;
+  for (const char letter : line) {
+    if (letter == '"') is_quoted = !is_quoted;
+    if (letter == ',' && !is_quoted) ++count;
+  }
+  return count;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Figure, IsShortAndReadable) {
+  EXPECT_EQ(figure(12345), "12345");
+  EXPECT_EQ(figure(12.5), "12.5");
+  EXPECT_EQ(figure(1.23456e-8), "1.235e-8");
+  EXPECT_EQ(figure(0.00018), "1.8e-4");
+  EXPECT_EQ(figure(0.0002), "2e-4");
+  EXPECT_EQ(figure(0.0123456), "0.01235");
+  EXPECT_EQ(milliseconds(3.847e-5), "0.0385");
+  EXPECT_EQ(milliseconds(61.2), "61200");
+  EXPECT_EQ(figure(123456789.0), "1.235e8");
+  EXPECT_EQ(figure(1e100), "1e100");
+  EXPECT_EQ(figure(-0.0), "0");
+  EXPECT_EQ(figure(kNever), "inf");
+  EXPECT_EQ(figure(NAN), "nan");
+  EXPECT_EQ(std::stod(exact_figure(0.1 + 0.2)), 0.1 + 0.2);
+  EXPECT_EQ(figure(spread_of({3, 1, kNever})), "3 (1–✗)");
+}
+
+TEST(Escape, EachFormatHasItsOwn) {
+  EXPECT_EQ(html_text("<b>&|\"'"), "&lt;b&gt;&amp;|&quot;&#39;");
+  EXPECT_EQ(markdown_text("a|b\n@x_*"), "a\\|b &#64;x\\_\\*");
+  EXPECT_EQ(latex_text("50 % & x_1 \\ é"), "50 \\% \\& x\\_1 \\textbackslash{} ?");
+  EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
+  EXPECT_EQ(csv_field("=1+1"), "\"'=1+1\"");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+}
+
+TEST(Html, HostileNamesStayText) {
+  const Study study = hostile_study();
+  const std::string page = html_report(compare_optimizers(study));
+  EXPECT_FALSE(has(page, "<b>&|"));
+  EXPECT_FALSE(has(page, "</script><!--@all"));
+  EXPECT_TRUE(has(page, "&lt;b&gt;&amp;|&quot;x&quot;"));
+  EXPECT_TRUE(has(page, "\\u003c/script>\\u003c!--@all"));
+}
+
+TEST(Html, AsksNothingOfTheNetwork) {
+  const Study study = hostile_study();
+  const std::string page = html_report(compare_optimizers(study));
+  for (const char* asking : {"src=", "@import", "url(", "fetch(", "XMLHttpRequest", "href=\"http"})
+    EXPECT_FALSE(has(page, asking)) << asking;
+}
+
+TEST(Markdown, HostileNamesBreakNoRow) {
+  const Study study = hostile_study();
+  for (const std::string& line : lines_of(markdown_report(compare_optimizers(study)))) {
+    if (!line.starts_with("|")) continue;
+    std::size_t bars = 0;
+    for (std::size_t i = 0; i < line.size(); ++i)
+      bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
+    EXPECT_EQ(bars, 4U) << line;  // three columns
+  }
+}
+
+TEST(Latex, HostileNamesKeepTheTableWhole) {
+  const Study study = hostile_study();
+  const std::string tex = latex_report(compare_optimizers(study));
+  int depth = 0;
+  for (std::size_t i = 0; i < tex.size(); ++i) {
+    if (tex[i] == '\\') {
+      ++i;
+      continue;
+    }
+    depth += tex[i] == '{' ? 1 : tex[i] == '}' ? -1 : 0;
+    EXPECT_GE(depth, 0);
+    EXPECT_LT(static_cast<unsigned char>(tex[i]), 0x80);
+  }
+  EXPECT_EQ(depth, 0);
+  EXPECT_FALSE(has(tex, "$\\evil"));
+}
+
+TEST(Csv, EveryRowHasAllFields) {
+  Study study = hostile_study();
+  study.plan.cells.push_back({"missing-cell", "square", "gd,x", 3});
+  const auto lines = lines_of(csv_report(compare_optimizers(study)));
+  ASSERT_EQ(lines.size(), 3U);
+  for (const std::string& line : lines) EXPECT_EQ(fields(line), fields(lines[0])) << line;
+  EXPECT_TRUE(has(lines[2], "missing-cell"));
+}
+
+TEST(Terminal, NoEscapeSequencePasses) {
+  Study study;
+  study.runs = {record_of({.optimizer = "gd\x1b[31m",
+                           .hits = 1,
+                           .status = Status::failed,
+                           .message = "\x1b]0;owned\x07"})};
+  EXPECT_FALSE(has(terminal_table(compare_optimizers(study)), "\x1b"));
+}
+
+// Work to 1e-6 is index 30 · 4567 = 137010; the median of one run is itself.
+TEST(Formats, AllPrintTheSameFigure) {
+  Study study;
+  study.runs = {record_of({.work_per_hit = 4567})};
+  const Comparison comparison = compare_optimizers(study);
+  for (const std::string& text :
+       {html_report(comparison), markdown_report(comparison), latex_report(comparison),
+        csv_report(comparison), terminal_table(comparison)})
+    EXPECT_TRUE(has(text, "137010"));
+  const Json json = parse_json(json_report(comparison), "report");
+  EXPECT_EQ(json["schema"], "isoline.report/1");
+  EXPECT_EQ(json["cells"][0]["figures"]["work"]["1e-6"]["median"], 137010);
+}
+
+TEST(Formats, APartialStudySaysSoInAll) {
+  Study study;
+  study.runs = {record_of({})};
+  study.plan = plan_of({study.runs[0], record_of({.seed = 1})});
+  const Comparison comparison = compare_optimizers(study);
+  for (const std::string& text :
+       {html_report(comparison), markdown_report(comparison), terminal_table(comparison)})
+    EXPECT_TRUE(has(text, "1 of 2 cells, missing"));
+  EXPECT_TRUE(has(latex_report(comparison), "1 of 2 cells"));
+  EXPECT_TRUE(has(csv_report(comparison), ",missing,"));
+}
+
+TEST(Formats, AnEmptyFolderIsReported) {
+  const ResultFolder folder;
+  const Study study = read_study({folder.path()});
+  write_report(study, folder.path() / "report");
+  for (const char* name : {"index.html", "report.md", "report.tex", "report.csv", "report.json"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "report" / name)) << name;
+}
+
+TEST(Formats, TheSameStudyGivesTheSameBytes) {
+  const ResultFolder folder;
+  write_sample_study(folder.path(), {.problems = 3, .optimizers = 12, .seeds = 2, .points = 20});
+  const Study first = read_study({folder.path()}), second = read_study({folder.path()});
+  EXPECT_EQ(html_report(compare_optimizers(first)), html_report(compare_optimizers(second)));
+  EXPECT_EQ(json_report(compare_optimizers(first)), json_report(compare_optimizers(second)));
+}
+
+TEST(Rerun, TheCommandAsksForTheCell) {
+  Request request = record_of({.problem = "sine[xi=32]", .seed = 7}).request;
+  EXPECT_EQ(rerun_command(request),
+            "./isoline run --problem 'sine[xi=32]' --optimizer 'gd' --seeds =7 --iterations 1000");
+  request.budget.work = 500;
+  EXPECT_TRUE(has(rerun_command(request), " --work 500"));
+}
+
+}  // namespace
+}  // namespace isoline
