@@ -76,7 +76,6 @@ void tune_and_write(const TuneArguments& given, Session& session) {
   if (given.table.empty()) return;
   if (std::filesystem::exists(given.table)) rows = joined(read_json(given.table).at("rows"), rows);
   const Json grid{
-      {"command", "isoline tune"},
       {"points", plan.grid.values.size()},
       {"seeds", given.seeds},
       {"budget", {{"iterations", given.budget.iterations}, {"work", given.budget.work}}},
