@@ -26,7 +26,8 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
 // A file half written by a process that was killed: its name ends in ".PID.tmp".
 bool is_abandoned(const fs::path& path) {
   if (path.extension() != ".tmp") return false;
-  const int writer = std::atoi(path.stem().extension().string().substr(1).c_str());
+  const std::string pid = path.stem().extension().string();  // ".PID", or empty
+  const int writer = pid.empty() ? 0 : std::atoi(pid.c_str() + 1);
   return writer <= 0 || (kill(writer, 0) != 0 && errno == ESRCH);
 }
 
