@@ -1,3 +1,4 @@
+// Clocks: monotonic, processor time, and the time-stamp counter with its calibration.
 #include "core/clock.h"
 
 #include <ctime>

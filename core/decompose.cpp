@@ -1,3 +1,4 @@
+// Factorizations by LAPACKE, the only door to it.
 #include "core/decompose.h"
 
 #include <fmt/format.h>

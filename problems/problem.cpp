@@ -1,3 +1,4 @@
+// The inverse problem: network, physics and loss chained, forward and back.
 #include "problems/problem.h"
 
 #include <algorithm>
