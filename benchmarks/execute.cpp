@@ -2,10 +2,11 @@
 #include "benchmarks/execute.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
-#include <cstring>
 #include <new>
+#include <sstream>
 
 #include "core/provenance.h"
 
@@ -14,9 +15,14 @@ namespace {
 
 void conclude(Trace& trace, Status status, std::string_view message) {
   trace.status = status;
-  const std::size_t size = std::min(message.size(), std::size_t{Trace::kText - 1});
-  std::memcpy(trace.message, message.data(), size);
-  trace.message[size] = '\0';
+  set_text(trace.message, message);
+}
+
+std::vector<std::string> lines_of(const char* text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
 }
 
 void run(const Catalog& catalog, const Request& request, Trace& trace) {
@@ -26,6 +32,8 @@ void run(const Catalog& catalog, const Request& request, Trace& trace) {
   if (!reason.empty()) throw NotApplicable(reason);
   const auto method = entry.make(request.optimizer.options, catalog.optimizers);
   const OracleSet granted = needs_of(entry, request.optimizer.options, problem);
+  set_text(trace.privileges,
+           fmt::format("{}", fmt::join(privileges_of(granted, problem.inverse_kind()), "\n")));
   Meter meter(problem, request.budget, granted, trace);
   drive(*method, meter, problem.start());
 }
@@ -128,7 +136,7 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace) {
   }
 }
 
-Record record_of(const Catalog& catalog, const Request& request, const Trace& trace) {
+Record record_of(const Request& request, const Trace& trace) {
   Record record;
   record.request = request;
   record.cell = cell_digest(request);
@@ -144,7 +152,7 @@ Record record_of(const Catalog& catalog, const Request& request, const Trace& tr
   record.curve = curve_of(trace);
   if (record.minimum) record.hits = hits_of(trace);
   if (trace.path_inputs > 0) record.trajectory = trajectory_of(trace);
-  record.privileges = catalog.optimizers.at(request.optimizer.name).privileges;
+  record.privileges = lines_of(trace.privileges);
   record.is_nondeterministic = trace.stopped_by_clock || trace.status == Status::timeout ||
                                trace.status == Status::interrupted ||
                                trace.status == Status::memory;

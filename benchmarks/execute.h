@@ -15,6 +15,6 @@ void drive(Optimizer& method, Meter& meter, Vector theta);
 void execute(const Catalog& catalog, const Request& request, Trace& trace);
 
 // The record of a run from what it left behind.
-Record record_of(const Catalog& catalog, const Request& request, const Trace& trace);
+Record record_of(const Request& request, const Trace& trace);
 
 }  // namespace isoline

@@ -60,10 +60,6 @@ void confine(pid_t parent, std::int64_t memory_bytes) {
   std::set_new_handler([] { throw std::bad_alloc(); });
 }
 
-void set_text(char (&out)[Trace::kText], const std::string& text) {
-  std::strncpy(out, text.c_str(), Trace::kText - 1);
-}
-
 }  // namespace
 
 Worker::Worker() {

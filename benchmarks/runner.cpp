@@ -157,7 +157,7 @@ class Runner {
   }
 
   void keep(Task& task, const Trace& trace) {
-    Record record = record_of(catalog_, *task.pending.request, trace);
+    Record record = record_of(*task.pending.request, trace);
     record.provenance["run"] = task.run;
     std::optional<Record> earlier = store_.find(record.request);
     if (options_.force && !repeated(record)) earlier.reset();

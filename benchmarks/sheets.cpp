@@ -86,7 +86,7 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
           .note = entry.note,
           .options_text = describe_options(entry.options).dump(),
           .oracles = names_of(entry.needs),
-          .privileges = entry.privileges,
+          .privileges = privileges_of(entry.needs, Inverse::none),
           .family = std::string(name_of(entry.family))};
 }
 

@@ -64,12 +64,12 @@ Score score_of(const Store& store, const std::vector<Request>& runs) {
   std::vector<Real> work, loss;
   for (const Request& request : runs) {
     const auto record = store.find(request);
-    const bool is_sound = record && !is_failure(record->status) &&
-                          record->status != Status::diverged &&
-                          record->status != Status::inapplicable;
-    const bool is_hit = is_sound && record->hits && record->hits->work.at(kHitAtMillionth) >= 0;
+    if (!record || is_failure(record->status) || record->status == Status::diverged ||
+        record->status == Status::inapplicable)
+      return {};
+    const bool is_hit = record->hits && record->hits->work.at(kHitAtMillionth) >= 0;
     work.push_back(is_hit ? static_cast<Real>(record->hits->work[kHitAtMillionth]) : INFINITY);
-    loss.push_back(is_sound ? record->summary.loss : INFINITY);
+    loss.push_back(record->summary.loss);
   }
   return {median(work), median(loss)};
 }

@@ -33,7 +33,8 @@ struct TuningResult {
   Outcome outcome;
 };
 
-// The score of a value: the median work to τ = 1e-6, then the median final loss; less is better.
+// The score of a value: the median work to τ = 1e-6, then the median final loss; less is better. A
+// value with which any seed diverges or fails has neither.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan, Store& store,
                   const RunOptions& options);
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 
 #include "core/oracle.h"
 #include "core/status.h"
@@ -56,7 +57,13 @@ struct Trace {
   Status status = Status::running;
   bool stopped_by_clock = false;  // the soft time limit ended it: not reproducible
   char message[kText] = "";
-  char claimed[kText] = "";  // what the method says of its own success, in its words
+  char privileges[kText] = "";  // what the method saw that others do not, a line each
+  char claimed[kText] = "";     // what the method says of its own success, in its words
 };
+
+// Truncated to what fits.
+inline void set_text(char (&out)[Trace::kText], std::string_view text) {
+  out[text.copy(out, Trace::kText - 1)] = '\0';
+}
 
 }  // namespace isoline

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace isoline {
 namespace {
@@ -25,12 +24,6 @@ std::int64_t next_kept_after(std::int64_t iteration) {
   for (Real step = passed; next <= iteration; ++step)
     next = std::llround(std::pow(10.0, step / kPerDecade));
   return next;
-}
-
-void copy_text(std::string_view text, char (&out)[Trace::kText]) {
-  const std::size_t size = std::min(text.size(), std::size_t{Trace::kText - 1});
-  std::memcpy(out, text.data(), size);
-  out[size] = '\0';
 }
 
 }  // namespace
@@ -80,7 +73,7 @@ void Meter::refuse(Oracle oracle) const {
                   name_of(oracle)));
 }
 
-void Meter::claim(std::string_view words) { copy_text(words, trace_.claimed); }
+void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
 
 bool Meter::is_spent() const {
   if (work_ >= budget_.work || iteration_ >= budget_.iterations) return true;

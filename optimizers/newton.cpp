@@ -40,7 +40,6 @@ void register_newton(OptimizerRegistry& registry) {
        .source = "Nocedal, Wright (2006), eq. 3.30",
        .note = "Without safeguards: saddles and maxima attract it as minima do.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
-       .privileges = {"exact Hessian"},
        .is_input_scale_invariant = true,
        .most_unknowns = 2048}));
 }

@@ -31,6 +31,19 @@ OracleSet needs_of(const OptimizerEntry& entry, const Json& options, const Probl
   return entry.needs_for ? entry.needs_for(options, problem) : entry.needs;
 }
 
+std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse) {
+  std::vector<std::string> words;
+  if (granted.contains(Oracle::hessian) || granted.contains(Oracle::curvature))
+    words.emplace_back("exact Hessian");
+  if (granted.contains(Oracle::inverse)) {
+    if (inverse == Inverse::exact) words.emplace_back("exact inverse of the physics");
+    if (inverse == Inverse::damped) words.emplace_back("damped inverse of the physics");
+    if (inverse == Inverse::estimate) words.emplace_back("estimate by how the data were made");
+  }
+  if (granted.contains(Oracle::truth)) words.emplace_back("ground truth");
+  return words;
+}
+
 std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
                              const Problem& problem) {
   const OracleSet offered = problem.offers(), needs = needs_of(entry, options, problem);

@@ -60,7 +60,6 @@ struct OptimizerEntry {
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know
   OracleSet needs = {};
-  std::vector<std::string> privileges = {};  // what it sees that others do not, in words
   // The path in y does not change when x is rescaled, componentwise and linearly.
   bool is_input_scale_invariant = false;
   // Above these the cell is inapplicable: n, and min(n, m·B) where J is factorized whole.
@@ -79,6 +78,9 @@ struct OptimizerEntry {
 
 // What this optimizer asks of this problem: what the meter is to grant.
 OracleSet needs_of(const OptimizerEntry& entry, const Json& options, const Problem& problem);
+
+// What a method with these oracles sees that others do not, in words.
+std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse);
 
 // Why this optimizer cannot treat this problem, in words; empty if it can.
 std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,

@@ -121,9 +121,9 @@ void register_sip(OptimizerRegistry& registry) {
                 .source = "Holl, Koltun, Thuerey (2022), algorithm 1",
                 .note =
                     "The inverse is the problem's own or found by L-BFGS; where it is damped or "
-                    "an estimate, x̃ = x + η (P⁻¹(y*; x) − x).",
+                    "an estimate, x̃ = x + η (P⁻¹(y*; x) − x). The problem's own inverse is a "
+                    "privilege; the numerical one is not.",
                 .needs = {Oracle::forward, Oracle::network},
-                .privileges = {"local inverse of the physics (where not inverse=lbfgs)"},
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
                 .needs_for = needs_for,

@@ -1,0 +1,23 @@
+# `cmake --install` exports Isoline::core, Isoline::problems, …: components can live in a tree of
+# their own, found by find_package(Isoline).
+include(CMakePackageConfigHelpers)
+
+set(libraries core networks problems optimizers reports benchmarks)
+foreach(library IN LISTS libraries)
+  set_target_properties(isoline_${library} PROPERTIES EXPORT_NAME ${library})
+  install(TARGETS isoline_${library} EXPORT IsolineTargets)
+  install(DIRECTORY ${library} DESTINATION include/isoline FILES_MATCHING PATTERN "*.h")
+endforeach()
+install(TARGETS isoline)
+
+set(package lib/cmake/Isoline)
+install(EXPORT IsolineTargets NAMESPACE Isoline:: DESTINATION ${package})
+install(FILES cmake/Dependencies.cmake DESTINATION ${package})
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/IsolineConfig.cmake @ONLY CONTENT [[
+include("${CMAKE_CURRENT_LIST_DIR}/Dependencies.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/IsolineTargets.cmake")
+]])
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/IsolineConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/IsolineConfig.cmake
+              ${PROJECT_BINARY_DIR}/IsolineConfigVersion.cmake DESTINATION ${package})
