@@ -1,3 +1,4 @@
+// The built-in catalog, and components completed from their names and options.
 #include "benchmarks/catalog.h"
 
 namespace isoline {

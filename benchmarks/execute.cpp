@@ -1,3 +1,4 @@
+// The run loop, the verdict on it, and the record made from its trace.
 #include "benchmarks/execute.h"
 
 #include <fmt/format.h>

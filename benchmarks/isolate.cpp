@@ -1,3 +1,4 @@
+// Worker processes: fork, shared trace, limits, collection.
 #include "benchmarks/isolate.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// What a plan would do: looked up in the store, probed and estimated.
 #include "benchmarks/preview.h"
 
 #include <algorithm>

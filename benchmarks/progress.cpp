@@ -1,3 +1,4 @@
+// The progress line, its rate and its time left.
 #include "benchmarks/progress.h"
 
 #include <fmt/format.h>

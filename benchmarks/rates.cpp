@@ -1,3 +1,4 @@
+// Tables of rates: reading, looking up, joining.
 #include "benchmarks/rates.h"
 
 #include <fmt/format.h>

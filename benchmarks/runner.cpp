@@ -1,3 +1,4 @@
+// The run of a whole plan: workers filled, watched, collected and stored.
 #include "benchmarks/runner.h"
 
 #include <fmt/chrono.h>

@@ -1,3 +1,4 @@
+// Sheets of problems and optimizers, landscapes included.
 #include "benchmarks/sheets.h"
 
 #include <algorithm>

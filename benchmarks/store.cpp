@@ -1,3 +1,4 @@
+// The result folder on disk.
 #include "benchmarks/store.h"
 
 #include <fcntl.h>

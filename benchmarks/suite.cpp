@@ -1,3 +1,4 @@
+// Suites read from JSON and expanded into requests.
 #include "benchmarks/suite.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The choice of rates over a recorded grid.
 #include "benchmarks/tune.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// JSON with numbers that survive, files written whole, and the digest.
 #include "core/json.h"
 
 #include <fcntl.h>

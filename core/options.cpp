@@ -1,3 +1,4 @@
+// Options: checked, completed, described and written in short.
 #include "core/options.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// What answered: version, commit, compiler, processor, libraries.
 #include "core/provenance.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Counter-based random streams by Random123, the only door to it.
 #include "core/random.h"
 
 #include <Random123/philox.h>

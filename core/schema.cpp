@@ -1,3 +1,4 @@
+// JSON Schema by valijson, the only door to it.
 #include "core/schema.h"
 
 #include <fmt/format.h>

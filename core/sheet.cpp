@@ -1,3 +1,4 @@
+// Sheets and plans to JSON and back.
 #include "core/sheet.h"
 
 #include <fmt/format.h>

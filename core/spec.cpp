@@ -1,3 +1,4 @@
+// The parser of specs, seeds and durations.
 #include "core/spec.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Edit distance, and the sentence about an unknown name.
 #include "core/suggest.h"
 
 #include <fmt/format.h>

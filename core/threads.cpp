@@ -1,3 +1,4 @@
+// Threads of the libraries: one before main, more where a request says so.
 #include "core/threads.h"
 
 #include <unistd.h>

@@ -1,6 +1,7 @@
 // What a run leaves behind while it runs: plain data of fixed size, so that it can live in memory
 // shared between processes and be read after a crash. `points` and `hits` grow; what they already
-// hold never changes.
+// hold never changes, but for the last point, which the returned one replaces at the same
+// iteration.
 #pragma once
 
 #include <atomic>

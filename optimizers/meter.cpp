@@ -1,3 +1,4 @@
+// The meter: counting, budgets, the trace and the verdict on a run.
 #include "optimizers/meter.h"
 
 #include <fmt/format.h>
@@ -26,63 +27,6 @@ std::int64_t next_kept_after(std::int64_t iteration) {
 }
 
 }  // namespace
-
-void Linearization::cotangent(Matrix& g) const {
-  g.resize(point_.y.rows(), point_.y.cols());
-  meter_->problem_.cotangent(point_, g);
-}
-
-void Linearization::residual(Vector& r) const {
-  r.resize(point_.y.size());
-  meter_->problem_.residual(point_, r);
-}
-
-void Linearization::gradient(Vector& out) {
-  cotangent(g_);
-  out.resize(point_.theta.size());
-  pullback(g_, out);
-}
-
-void Linearization::pullback(BatchRef w, VectorOut out) {
-  meter_->charge(Oracle::pullback);
-  meter_->problem_.pullback(w, out, point_);
-}
-
-void Linearization::pushforward(VectorRef v, BatchOut out) {
-  meter_->charge(Oracle::pushforward);
-  meter_->problem_.pushforward(v, out, point_);
-}
-
-const Matrix& Linearization::jacobian() {
-  if (has_jacobian_) return J_;
-  meter_->charge(Oracle::jacobian);
-  meter_->problem_.jacobian(J_, point_);
-  has_jacobian_ = true;
-  return J_;
-}
-
-const Matrix& Linearization::hessian() {
-  if (has_hessian_) return H_;
-  meter_->charge(Oracle::hessian);
-  meter_->problem_.hessian(H_, point_);
-  has_hessian_ = true;
-  return H_;
-}
-
-void Linearization::curvature(BatchRef w, BatchOut out) {
-  meter_->charge(Oracle::curvature);
-  meter_->problem_.curvature(w, out, point_);
-}
-
-Success Linearization::local_inverse(BatchRef y, BatchOut x) {
-  meter_->charge(Oracle::inverse);
-  return meter_->problem_.local_inverse(y, x, point_);
-}
-
-void Linearization::network_pullback(BatchRef w, VectorOut out) {
-  meter_->charge(Oracle::network);
-  meter_->problem_.network_pullback(w, out, point_);
-}
 
 Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Trace& trace)
     : problem_(problem),
@@ -131,15 +75,10 @@ void Meter::refuse(Oracle oracle) const {
 
 void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
 
-bool Meter::is_spent() const {
-  if (work_ >= budget_.work || iteration_ >= budget_.iterations) return true;
-  if (!std::isfinite(budget_.seconds)) return false;
-  return watch_.seconds() >= budget_.seconds;
-}
-
 Status Meter::begin(VectorRef theta) {
   trace_.first_oracle_nanoseconds = monotonic_nanoseconds();
-  seconds_per_tick();  // calibrated off the clock
+  const double limit = budget_.seconds / seconds_per_tick();  // calibrated off the clock
+  if (limit < static_cast<double>(kNoLimit)) most_ticks_ = static_cast<std::uint64_t>(limit);
   previous_ = theta;
   measure(theta);
   trace_.start_loss = judged_.loss;
@@ -178,8 +117,9 @@ void Meter::finish(VectorRef theta, Status verdict) {
   trace_.last.work = work_;
   trace_.last.wall_seconds = watch_.seconds();
   trace_.last.processor_seconds = watch_.processor_seconds();
-  const int points = trace_.points;
-  if (points == 0 || trace_.point[points - 1].iteration != iteration_) keep_point();
+  const int points = trace_.points;  // the curve ends at the returned point
+  if (points > 0 && trace_.point[points - 1].iteration == iteration_) trace_.points = points - 1;
+  keep_point();
   if (verdict == Status::running) verdict = Status::converged;
   if (judged_.loss <= target_loss_) verdict = Status::target;
   if (!std::isfinite(judged_.loss)) verdict = Status::diverged;
@@ -196,12 +136,12 @@ void Meter::measure(VectorRef theta) {
   last.wall_seconds = watch_.seconds();
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
-  last.x_error = problem_.x_error(judged_.x);
-  Matrix g(problem_.outputs(), problem_.samples());
-  Vector gradient(problem_.unknowns());
-  problem_.cotangent(judged_, g);
-  problem_.pullback(g, gradient, judged_);
-  last.gradient_norm = gradient.norm();
+  last.x_error = problem_.x_error(judged_.x());
+  judged_g_.resize(problem_.outputs(), problem_.samples());
+  judged_gradient_.resize(problem_.unknowns());
+  problem_.cotangent(judged_, judged_g_);
+  problem_.pullback(judged_g_, judged_gradient_, judged_);
+  last.gradient_norm = judged_gradient_.norm();
   last.step_norm = (theta - previous_).norm();
 }
 
@@ -210,7 +150,7 @@ void Meter::keep_point() {
   if (index >= Trace::kPoints) return;
   trace_.point[index] = trace_.last;
   if (trace_.path_inputs > 0) {
-    std::copy_n(judged_.x.data(), judged_.x.size(), trace_.path_x[index]);
+    std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
   trace_.points = index + 1;
@@ -244,12 +184,12 @@ bool Meter::has_stalled() {
 // `judged_` holds the loss at the last kept iteration, which is this one for the first hundred.
 Status Meter::judge(VectorRef theta) {
   const Real loss = judged_.loss;
-  if (!theta.allFinite() || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
+  if (!is_finite(theta) || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
     return Status::diverged;
   if (loss <= target_loss_) return Status::target;
   if (has_stalled()) return Status::stalled;
   if (work_ >= budget_.work || iteration_ >= budget_.iterations) return Status::budget;
-  if (std::isfinite(budget_.seconds) && watch_.seconds() >= budget_.seconds) {
+  if (is_out_of_time()) {
     trace_.stopped_by_clock = true;
     return Status::budget;
   }

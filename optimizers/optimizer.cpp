@@ -1,3 +1,4 @@
+// Which optimizer can treat which problem, and gradient rules by name.
 #include "optimizers/optimizer.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Small physics, one sample at a time, from value and derivative.
 #include "problems/dense_physics.h"
 
 namespace isoline {

@@ -1,3 +1,4 @@
+// What a physics offers unless it says otherwise.
 #include "problems/physics.h"
 
 namespace isoline {

@@ -1,3 +1,4 @@
+// Factorizations give back what was factorized.
 #include "core/decompose.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Fourier and sine transforms against their definitions.
 #include "core/fourier.h"
 
 #include <gtest/gtest.h>

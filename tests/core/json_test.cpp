@@ -1,3 +1,4 @@
+// Numbers and files survive.
 #include "core/json.h"
 
 #include <gtest/gtest.h>

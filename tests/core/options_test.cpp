@@ -1,3 +1,4 @@
+// Options are completed, checked and described as declared.
 #include "core/options.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Random streams are named, reproducible and well spread.
 #include "core/random.h"
 
 #include <gtest/gtest.h>

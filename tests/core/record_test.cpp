@@ -1,3 +1,4 @@
+// A record survives the round trip, and its digest names the request.
 #include "core/record.h"
 
 #include <gtest/gtest.h>

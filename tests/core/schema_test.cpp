@@ -1,3 +1,4 @@
+// Violations of a schema are found and said in words.
 #include "core/schema.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Specs, sweeps, seeds and durations are read as the command line says.
 #include "core/spec.h"
 
 #include <gtest/gtest.h>

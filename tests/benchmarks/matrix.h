@@ -1,0 +1,34 @@
+// A matrix run into a folder of its own, for tests that read what it leaves behind.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "benchmarks/runner.h"
+#include "benchmarks/suite.h"
+#include "tests/benchmarks/temporary_folder.h"
+
+namespace isoline {
+
+struct FinishedMatrix {
+  FinishedMatrix(const Catalog& catalog, const Suite& suite, const Rates& rates)
+      : requests(expand(catalog, suite, rates)), store(folder.path()) {
+    outcome = run_all(catalog, requests, store, {.jobs = 2});
+    for (const Request& request : requests) {
+      const auto record = store.find(request);
+      EXPECT_TRUE(record.has_value()) << request.problem.spec << " × " << request.optimizer.spec;
+      if (record) records.push_back(*record);
+    }
+  }
+
+  TemporaryFolder folder;
+  std::vector<Request> requests;
+  Store store;
+  Outcome outcome;
+  std::vector<Record> records;  // one a request, in order
+};
+
+inline std::string title_of(const Record& record) {
+  return record.request.problem.spec + " × " + record.request.optimizer.spec;
+}
+
+}  // namespace isoline

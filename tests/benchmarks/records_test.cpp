@@ -1,0 +1,141 @@
+// What every record must hold, over every problem with every optimizer.
+#include <cmath>
+#include <numeric>
+
+#include "benchmarks/resources.h"
+#include "core/json.h"
+#include "core/schema.h"
+#include "tests/benchmarks/matrix.h"
+
+namespace isoline {
+namespace {
+
+constexpr std::int64_t kIterations = 300, kWork = 1500;
+
+const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+// Every problem, grids small, with every optimizer at the rates of the tree.
+const FinishedMatrix& matrix() {
+  static const FinishedMatrix all = [] {
+    std::vector<std::string> problems;
+    for (const auto& [name, entry] : catalog().problems)
+      problems.push_back(complete_problem(catalog(), name, Json::object()).options.contains("N")
+                             ? name + "[N=8]"
+                             : name);
+    const Suite suite{.name = "all",
+                      .title = "",
+                      .blocks = {{.problems = problems,
+                                  .optimizers = {"*"},
+                                  .seeds = {1},
+                                  .budget = {.iterations = kIterations, .work = kWork}}}};
+    return FinishedMatrix(catalog(), suite, Rates::builtin());
+  }();
+  return all;
+}
+
+bool has_run(const Record& record) { return record.status != Status::inapplicable; }
+
+TEST(Records, OfTheWholeRegistryConformToTheSchemaAndSurviveTheRoundTrip) {
+  const Json schema = parse_json(std::string(builtin_schemas().at("run")), "run");
+  for (const Record& record : matrix().records) {
+    const Json json = to_json(record);
+    EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>{}) << title_of(record);
+    EXPECT_EQ(to_json(record_from_json(json)), json) << title_of(record);
+  }
+}
+
+TEST(Records, NoPairOfTheRegistryFailsCrashesOrHangs) {
+  EXPECT_EQ(matrix().outcome.failures, std::vector<std::string>{});
+  EXPECT_EQ(matrix().records.size(), catalog().problems.size() * catalog().optimizers.size());
+}
+
+TEST(Records, CellsThatCannotExistSayWhy) {
+  std::size_t count = 0;
+  for (const Record& record : matrix().records) {
+    const Problem problem = make_problem(catalog(), record.request.problem, 1);
+    const Component& optimizer = record.request.optimizer;
+    const std::string reason =
+        why_inapplicable(catalog().optimizers.at(optimizer.name), optimizer.options, problem);
+    EXPECT_EQ(record.status == Status::inapplicable, !reason.empty()) << title_of(record);
+    if (has_run(record)) continue;
+    EXPECT_EQ(record.message, reason) << title_of(record);
+    EXPECT_TRUE(record.curve.iteration.empty()) << title_of(record);
+    EXPECT_EQ(record.summary.work, 0) << title_of(record);
+    ++count;
+  }
+  EXPECT_GT(count, 0U);
+}
+
+TEST(Records, CurvesKeepIterations0To100And32ADecadeAfter) {
+  std::set<std::int64_t> grid;
+  for (int j = 64; j <= 96; ++j) grid.insert(std::llround(std::pow(10.0, j / 32.0)));
+  for (const Record& record : matrix().records) {
+    const auto& iteration = record.curve.iteration;
+    for (std::size_t i = 0; i + 1 < iteration.size(); ++i) {  // the last is kept wherever it falls
+      if (i <= 100)
+        EXPECT_EQ(iteration[i], static_cast<std::int64_t>(i)) << title_of(record);
+      else
+        EXPECT_TRUE(grid.contains(iteration[i])) << title_of(record) << ": " << iteration[i];
+    }
+    if (!has_run(record)) continue;
+    EXPECT_EQ(iteration.back(), record.summary.iterations) << title_of(record);
+  }
+}
+
+TEST(Records, CurvesHaveColumnsOfOneLengthThatEndAtTheSummary) {
+  for (const Record& record : matrix().records) {
+    const Curve& curve = record.curve;
+    const std::size_t points = curve.iteration.size();
+    EXPECT_EQ(curve.work.size(), points) << title_of(record);
+    for (const auto* column : {&curve.wall_seconds, &curve.processor_seconds, &curve.loss,
+                               &curve.x_error, &curve.gradient_norm, &curve.step_norm})
+      EXPECT_EQ(column->size(), points) << title_of(record);
+    for (const auto& [oracle, counts] : curve.counts)
+      EXPECT_EQ(counts.size(), points) << title_of(record) << ": " << oracle;
+    if (!has_run(record)) continue;
+    EXPECT_EQ(curve.loss.front(), record.summary.start_loss) << title_of(record);
+    EXPECT_EQ(curve.work.back(), record.summary.work) << title_of(record);
+    if (std::isnan(record.summary.loss)) continue;  // equal to nothing
+    EXPECT_EQ(curve.loss.back(), record.summary.loss) << title_of(record);
+  }
+}
+
+std::int64_t priced(const OracleCounts& counts, const OracleCounts& prices) {
+  return std::inner_product(counts.begin(), counts.end(), prices.begin(), std::int64_t{0});
+}
+
+TEST(Records, WorkIsCountsTimesPricesThroughout) {
+  for (const Record& record : matrix().records) {
+    EXPECT_EQ(record.summary.work, priced(record.counts, record.prices)) << title_of(record);
+    for (std::size_t i = 0; i < record.curve.work.size(); ++i) {
+      OracleCounts counts{};
+      for (std::size_t kind = 0; kind < kOracles; ++kind) {
+        const auto column = record.curve.counts.find(std::string(kOracleNames[kind]));
+        if (column != record.curve.counts.end()) counts[kind] = column->second[i];
+      }
+      EXPECT_EQ(record.curve.work[i], priced(counts, record.prices)) << title_of(record) << i;
+    }
+  }
+}
+
+TEST(Records, BudgetsAreObeyed) {
+  for (const Record& record : matrix().records) {
+    EXPECT_LE(record.summary.iterations, kIterations) << title_of(record);
+    // Whoever asks once more than allowed has begun an iteration within the budget; none costs more
+    // than two of every oracle and the evaluations of one line search.
+    constexpr std::int64_t kLineSearch = 60;
+    const std::int64_t all = std::accumulate(record.prices.begin(), record.prices.end(), 0L);
+    EXPECT_LE(record.summary.work, kWork + 2 * all + kLineSearch) << title_of(record);
+    for (std::size_t i = 0; i + 1 < record.curve.work.size(); ++i)
+      EXPECT_LT(record.curve.work[i], kWork) << title_of(record) << ", point " << i;
+    if (record.status != Status::budget) continue;
+    EXPECT_TRUE(record.summary.iterations == kIterations || record.summary.work >= kWork)
+        << title_of(record) << " used " << record.summary.work;
+  }
+}
+
+}  // namespace
+}  // namespace isoline

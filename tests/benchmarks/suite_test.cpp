@@ -1,0 +1,158 @@
+// The suites and rates of the tree: what they promise of themselves.
+#include "benchmarks/suite.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "benchmarks/resources.h"
+#include "core/json.h"
+#include "core/schema.h"
+#include "core/spec.h"
+
+namespace isoline {
+namespace {
+
+const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+std::vector<Request> cells_of(const std::string& suite) {
+  return expand(catalog(), read_suite(suite), Rates::builtin());
+}
+
+Json schema(const std::string& name) {
+  return parse_json(std::string(builtin_schemas().at(name)), name);
+}
+
+TEST(Suites, OfTheTreeAreWellFormedAndNamedAsTheirFiles) {
+  EXPECT_GE(builtin_suites().size(), 3U);
+  for (const auto& [name, text] : builtin_suites()) {
+    const Json suite = parse_json(std::string(text), name);
+    EXPECT_EQ(schema_violations(suite, schema("suite")), std::vector<std::string>{}) << name;
+    EXPECT_EQ(suite.at("name"), name);
+    EXPECT_FALSE(read_suite(name).title.empty()) << name;
+  }
+}
+
+TEST(Suites, OfTheTreeNameWhatExistsAndPlanEachCellOnce) {
+  for (const auto& [name, text] : builtin_suites()) {
+    std::set<std::string> digests;
+    const std::vector<Request> cells = cells_of(name);
+    EXPECT_FALSE(cells.empty()) << name;
+    for (const Request& cell : cells)
+      EXPECT_TRUE(digests.insert(cell_digest(cell)).second) << name << ": " << cell.problem.spec;
+  }
+}
+
+TEST(Suites, OfTheTreeBudgetByWorkAndIterationsNeverByTime) {
+  for (const auto& [name, text] : builtin_suites())
+    for (const Request& cell : cells_of(name))
+      EXPECT_TRUE(std::isinf(cell.budget.seconds)) << name << ": " << cell.problem.spec;
+}
+
+TEST(Quick, MeetsEveryProblemWithEveryOptimizerOnThreeSeeds) {
+  std::map<std::pair<std::string, std::string>, std::set<std::uint64_t>> seeds;
+  const std::vector<Request> cells = cells_of("quick");
+  for (const Request& cell : cells)
+    seeds[{cell.problem.name, cell.optimizer.name}].insert(cell.seed);
+  for (const std::string& problem : catalog().problems.names())
+    for (const std::string& optimizer : catalog().optimizers.names())
+      EXPECT_EQ((seeds[{problem, optimizer}]), (std::set<std::uint64_t>{0, 1, 2}))
+          << problem << " × " << optimizer;
+  EXPECT_GE(cells.size(), 1500U);
+}
+
+TEST(Quick, GivesNoCellMoreThan2000UnitsOfWork) {
+  for (const Request& cell : cells_of("quick"))
+    EXPECT_LE(cell.budget.work, 2000) << cell.problem.spec << " × " << cell.optimizer.spec;
+}
+
+TEST(Quick, GivesEachMethodAGridThatItCanTreat) {
+  for (const Request& cell : cells_of("quick")) {
+    if (cell.seed != 0 || !cell.problem.options.contains("N")) continue;
+    const OptimizerEntry& entry = catalog().optimizers.at(cell.optimizer.name);
+    const auto side = cell.problem.options.at("N").get<Index>();
+    if (entry.family == Family::nlopt_derivative_free)
+      EXPECT_EQ(side, 8) << entry.name;
+    else
+      EXPECT_TRUE(side == 16 || side == 64) << entry.name;
+  }
+}
+
+TEST(Suites, AMisspeltNameIsAnErrorWithASuggestion) {
+  try {
+    read_suite("quik");
+    FAIL() << "no such suite";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("'quick'"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Suites, AUnknownKeyOrAnEmptySelectionIsAnError) {
+  const Json good{{"schema", "isoline.suite/1"},
+                  {"name", "mine"},
+                  {"matrix", {{{"problems", {"square"}}, {"optimizers", {"gd"}}}}}};
+  EXPECT_NO_THROW(suite_from_json(good, "here"));
+  Json unknown = good, empty = good;
+  unknown["matrix"][0]["sedes"] = "3";
+  EXPECT_THROW(suite_from_json(unknown, "here"), UsageError);
+  empty["matrix"][0]["optimizers"] = {"@no-such-family"};
+  EXPECT_THROW(expand(catalog(), suite_from_json(empty, "here"), {}), UsageError);
+}
+
+// --- rates
+
+void expect_row_is_sound(const Json& row) {
+  const std::string text =
+      row.at("problem").get<std::string>() + " × " + row.at("optimizer").get<std::string>();
+  const Spec problem = parse_spec(row.at("problem").get<std::string>());
+  // The planner looks a problem up by its short form.
+  EXPECT_EQ(complete_problem(catalog(), problem.name, options_of(problem)).spec, row.at("problem"))
+      << text;
+  EXPECT_NO_THROW(complete_optimizer(catalog(), row.at("optimizer"), row.at("options"))) << text;
+  const Json& source = row.at("source");
+  EXPECT_TRUE(source.contains("paper") || source.contains("grid")) << text;
+  if (!source.contains("grid")) return;
+  for (const auto& [option, values] : source.at("grid").items()) {
+    EXPECT_EQ(values.size(), 7U) << text;
+    EXPECT_EQ(source.at("score").size(), values.size()) << text;
+    EXPECT_NE(std::ranges::find(values, row.at("options").at(option)), values.end()) << text;
+  }
+}
+
+TEST(Rates, OfTheTreeNameWhatExistsWithinItsRangesAndSaysWhereEachValueIsFrom) {
+  for (const auto& [name, text] : builtin_rates()) {
+    const Json table = parse_json(std::string(text), name);
+    EXPECT_EQ(schema_violations(table, schema("rates")), std::vector<std::string>{}) << name;
+    EXPECT_EQ(table.at("grid").at("points"), 7);
+    EXPECT_EQ(table.at("grid").at("seeds"), "100..102");  // apart from those that judge
+    for (const Json& row : table.at("rows")) expect_row_is_sound(row);
+  }
+}
+
+TEST(Rates, CoverEveryFirstOrderCellOfQuick) {
+  const Rates rates = Rates::builtin();
+  for (const Request& cell : cells_of("quick")) {
+    const OptimizerEntry& entry = catalog().optimizers.at(cell.optimizer.name);
+    if (entry.family != Family::first_order) continue;
+    EXPECT_NE(rates.find(cell.problem.spec, entry.name), nullptr)
+        << cell.problem.spec << " × " << entry.name;
+    EXPECT_FALSE(cell.rates.empty()) << cell.problem.spec << " × " << entry.name;
+  }
+}
+
+TEST(Rates, GiveWayToExplicitOptions) {
+  const Suite suite{.name = "mine",
+                    .title = "",
+                    .blocks = {{.problems = {"beale"}, .optimizers = {"gd", "gd[lr=0.5]"}}}};
+  const std::vector<Request> cells = expand(catalog(), suite, Rates::builtin());
+  ASSERT_EQ(cells.size(), 2U);
+  EXPECT_NE(cells[0].optimizer.options.at("rate"), 0.5);
+  EXPECT_EQ(cells[1].optimizer.options.at("rate"), 0.5);
+}
+
+}  // namespace
+}  // namespace isoline

@@ -1,0 +1,123 @@
+// The verdict on a run is the harness's own: what is verified, what was hit, and what a method
+// claims beside it.
+#include <cmath>
+
+#include "tests/benchmarks/matrix.h"
+
+namespace isoline {
+namespace {
+
+const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+// Problems that are solved, crawled at and never solved, with every optimizer.
+const FinishedMatrix& matrix() {
+  static const FinishedMatrix all(
+      catalog(),
+      {.name = "verdicts",
+       .title = "",
+       .blocks = {{.problems = {"square", "rosenbrock", "brown-dennis", "brown-dennis[m=10]",
+                                "sine", "helical-valley", "broyden-tridiagonal"},
+                   .optimizers = {"*"},
+                   .seeds = {0, 3},
+                   .budget = {.iterations = 1000, .work = 3000}}}},
+      Rates::builtin());
+  return all;
+}
+
+bool is_met(const Record& record, Real loss, Real tau) {
+  return loss <= *record.minimum + tau * (record.summary.start_loss - *record.minimum);
+}
+
+TEST(Verdicts, VerifiedIsWhatTheReturnedPointMeets) {
+  std::size_t met = 0, missed = 0;
+  for (const Record& record : matrix().records)
+    for (const auto& [name, tau] : kVerified) {
+      const std::optional<bool> verified = record.verified.at(name);
+      EXPECT_EQ(verified.has_value(), record.minimum.has_value()) << title_of(record);
+      if (!verified) continue;
+      EXPECT_EQ(*verified, is_met(record, record.summary.loss, tau)) << title_of(record) << name;
+      (*verified ? met : missed) += 1;
+    }
+  EXPECT_GT(met, 50U);
+  EXPECT_GT(missed, 20U);
+}
+
+TEST(Verdicts, TargetIsTheVerdictWhereverTheTargetIsMet) {
+  for (const Record& record : matrix().records) {
+    if (!record.minimum) {
+      EXPECT_NE(record.status, Status::target) << title_of(record);
+      continue;
+    }
+    EXPECT_EQ(record.status == Status::target,
+              is_met(record, record.summary.loss, record.request.budget.target))
+        << title_of(record) << " is " << name_of(record.status);
+  }
+}
+
+TEST(Verdicts, WithoutADeclaredMinimumNothingIsVerifiedAndNothingHit) {
+  std::size_t count = 0;
+  for (const Record& record : matrix().records) {
+    EXPECT_EQ(record.hits.has_value(), record.minimum.has_value()) << title_of(record);
+    count += !record.minimum.has_value();
+  }
+  EXPECT_GT(count, 0U);  // brown-dennis[m=10]
+}
+
+TEST(Verdicts, LibrariesClaimAndOurMethodsDoNot) {
+  for (const Record& record : matrix().records) {
+    if (record.status == Status::inapplicable) continue;
+    const Family family = catalog().optimizers.at(record.request.optimizer.name).family;
+    const bool is_library = family == Family::ceres || family == Family::nlopt ||
+                            family == Family::nlopt_derivative_free;
+    EXPECT_EQ(is_library, !record.claimed.empty()) << title_of(record);
+  }
+}
+
+TEST(Hits, ComeInOrderAndNeverAgainOnceMissed) {
+  for (const Record& record : matrix().records) {
+    if (!record.hits) continue;
+    const Hits& hits = *record.hits;
+    ASSERT_EQ(hits.target.size(), 51U) << title_of(record);
+    for (std::size_t j = 0; j < hits.target.size(); ++j) {
+      EXPECT_NEAR(std::log10(hits.target[j]), -static_cast<Real>(j) / 5, 1e-12);  // rounding
+      EXPECT_EQ(hits.iteration[j] < 0, hits.work[j] < 0) << title_of(record);
+      EXPECT_EQ(hits.iteration[j] < 0, hits.forwards[j] < 0) << title_of(record);
+      if (j == 0 || hits.iteration[j] < 0) continue;
+      EXPECT_GE(hits.iteration[j - 1], 0) << title_of(record);
+      EXPECT_GE(hits.iteration[j], hits.iteration[j - 1]) << title_of(record);
+      EXPECT_GE(hits.work[j], hits.work[j - 1]) << title_of(record);
+      EXPECT_GE(hits.forwards[j], hits.forwards[j - 1]) << title_of(record);
+      EXPECT_GE(hits.wall_seconds[j], hits.wall_seconds[j - 1]) << title_of(record);
+    }
+  }
+}
+
+TEST(Hits, AreMetExactlyAsFarAsTheBestLossGoes) {
+  for (const Record& record : matrix().records) {
+    if (!record.hits) continue;
+    for (std::size_t j = 0; j < record.hits->target.size(); ++j)
+      EXPECT_EQ(record.hits->iteration[j] >= 0,
+                is_met(record, record.summary.best_loss, record.hits->target[j]))
+          << title_of(record) << ", target " << j << ", best " << record.summary.best_loss;
+  }
+}
+
+TEST(Hits, AreNoLaterThanTheCurveShowsThem) {
+  for (const Record& record : matrix().records) {
+    if (!record.hits) continue;
+    for (std::size_t j = 0; j < record.hits->target.size(); ++j)
+      for (std::size_t i = 0; i < record.curve.loss.size(); ++i) {
+        if (!is_met(record, record.curve.loss[i], record.hits->target[j])) continue;
+        EXPECT_GE(record.hits->iteration[j], 0) << title_of(record);
+        EXPECT_LE(record.hits->iteration[j], record.curve.iteration[i]) << title_of(record);
+        EXPECT_LE(record.hits->work[j], record.curve.work[i]) << title_of(record);
+        break;
+      }
+  }
+}
+
+}  // namespace
+}  // namespace isoline

@@ -1,0 +1,131 @@
+// Every registered component says what it is, where the tree says it lives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "benchmarks/catalog.h"
+#include "tests/structure/sources.h"
+
+namespace isoline {
+namespace {
+
+const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+// Stems of the files of a room that register something, underscores as hyphens.
+std::vector<std::string> component_files(const std::string& room) {
+  std::vector<std::string> names;
+  for (const Source& source : sources()) {
+    if (source.room() != room || source.is_header()) continue;
+    if (source.text.find("void register_" + source.stem() + "(") == std::string::npos) continue;
+    std::string name = source.stem();
+    std::ranges::replace(name, '_', '-');
+    names.push_back(name);
+  }
+  return names;
+}
+
+// A file is named after its entry; where it adds a family, its entries begin with its name.
+bool belongs(const std::string& entry, const std::string& file) {
+  return entry == file || entry.starts_with(file + "-");
+}
+
+template <class Entries>
+void expect_files_and_entries_agree(const std::string& room, const Entries& entries) {
+  const std::vector<std::string> files = component_files(room);
+  EXPECT_GE(files.size(), 10U) << room << ": the components were not found";
+  for (const auto& [name, entry] : entries)
+    EXPECT_TRUE(std::ranges::any_of(files, [&](const auto& file) { return belongs(name, file); }))
+        << name << " is in no file of its name in " << room;
+  for (const std::string& file : files)
+    EXPECT_TRUE(std::ranges::any_of(entries, [&](const auto& e) { return belongs(e.first, file); }))
+        << room << "/" << file << " adds nothing of its name";
+}
+
+TEST(Components, AreNamedAfterTheirFiles) {
+  expect_files_and_entries_agree("problems", catalog().problems);
+  expect_files_and_entries_agree("optimizers", catalog().optimizers);
+}
+
+template <class Entry>
+void expect_described(const Entry& entry) {
+  EXPECT_FALSE(entry.title.empty()) << entry.name;
+  EXPECT_FALSE(entry.formula.empty()) << entry.name;
+  EXPECT_FALSE(entry.source.empty()) << entry.name;
+  EXPECT_GE(entry.revision, 1) << entry.name;
+  std::set<std::string> options;
+  for (const OptionField& option : entry.options) {
+    EXPECT_FALSE(option.doc.empty()) << entry.name << ": " << option.name;
+    EXPECT_TRUE(options.insert(option.name).second) << entry.name << ": " << option.name;
+    EXPECT_NE(option.name, "lr") << entry.name << ": the option is `rate` everywhere";
+  }
+}
+
+TEST(Components, HaveATitleAFormulaASourceAndDocumentedOptions) {
+  for (const auto& [name, entry] : catalog().problems) expect_described(entry);
+  for (const auto& [name, entry] : catalog().optimizers) expect_described(entry);
+}
+
+TEST(Components, DefaultsAreWithinTheirOwnRanges) {
+  for (const auto& [name, entry] : catalog().problems)
+    EXPECT_NO_THROW(complete_problem(catalog(), name, Json::object())) << name;
+  for (const auto& [name, entry] : catalog().optimizers) {
+    const Json defaults = complete_optimizer(catalog(), name, Json::object()).options;
+    EXPECT_NO_THROW(complete_optimizer(catalog(), name, defaults)) << name;
+  }
+}
+
+// The registries of the issue that founded the house: a component that vanishes is missed here.
+TEST(Components, AllOfTheFoundingRegistriesAreThere) {
+  for (const char* name :
+       {"scaling", "square", "exponential", "sine", "poisson", "heat", "rosenbrock",
+        "powell-singular", "beale", "helical-valley", "brown-badly-scaled", "box3d", "wood",
+        "brown-dennis", "broyden-tridiagonal", "variably-dimensioned"})
+    EXPECT_TRUE(catalog().problems.contains(name)) << name;
+  for (const char* name : {"gd",
+                           "momentum",
+                           "nesterov",
+                           "adagrad",
+                           "adadelta",
+                           "rmsprop",
+                           "adam",
+                           "adamw",
+                           "newton",
+                           "saddle-free-newton",
+                           "gauss-newton",
+                           "levenberg-marquardt",
+                           "inverse-gradient",
+                           "sip",
+                           "hig",
+                           "ceres-gauss-newton",
+                           "ceres-lm",
+                           "ceres-dogleg",
+                           "ceres-subspace-dogleg",
+                           "ceres-bfgs",
+                           "ceres-lbfgs",
+                           "ceres-ncg",
+                           "ceres-steepest-descent",
+                           "nlopt-lbfgs",
+                           "nlopt-var2",
+                           "nlopt-tnewton",
+                           "nlopt-slsqp",
+                           "nlopt-mma",
+                           "nlopt-ccsaq",
+                           "nlopt-bobyqa",
+                           "nlopt-cobyla",
+                           "nlopt-neldermead",
+                           "nlopt-sbplx"})
+    EXPECT_TRUE(catalog().optimizers.contains(name)) << name;
+}
+
+TEST(Components, ANameRegisteredTwiceIsAnError) {
+  Catalog twice = builtin_catalog();
+  EXPECT_THROW(register_problems(twice.problems), UsageError);
+  EXPECT_THROW(register_optimizers(twice.optimizers), UsageError);
+}
+
+}  // namespace
+}  // namespace isoline

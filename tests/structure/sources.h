@@ -1,0 +1,56 @@
+// Our own source files, as text, for tests that read them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/json.h"
+
+namespace isoline {
+
+struct Source {
+  std::string path;  // from the root of the tree: "core/array.h"
+  std::string text;
+  std::vector<std::string> lines;
+
+  bool is_header() const { return path.ends_with(".h"); }
+  std::string room() const { return path.substr(0, path.find('/')); }
+  std::string stem() const { return std::filesystem::path(path).stem(); }
+};
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+inline const std::filesystem::path& root() {
+  static const std::filesystem::path path = ISOLINE_SOURCE_DIR;
+  return path;
+}
+
+// Every .h and .cpp of every room.
+inline const std::vector<Source>& sources() {
+  static const std::vector<Source> all = [] {
+    std::vector<Source> found;
+    for (const char* room :
+         {"core", "networks", "problems", "optimizers", "benchmarks", "reports", "tests"})
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(root() / room)) {
+        const std::string extension = entry.path().extension();
+        if (extension != ".h" && extension != ".cpp") continue;
+        const std::string text = read_text(entry.path());
+        found.push_back(
+            {std::filesystem::relative(entry.path(), root()).string(), text, lines_of(text)});
+      }
+    return found;
+  }();
+  return all;
+}
+
+}  // namespace isoline
