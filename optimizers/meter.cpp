@@ -46,7 +46,7 @@ void Linearization::residual(Vector& r) const {
 
 void Linearization::gradient(Vector& out) {
   cotangent(g_);
-  out.resize(point_.theta.size());
+  out.resize(meter_->unknowns());
   pullback(g_, out);
 }
 
@@ -172,7 +172,7 @@ Status Meter::iterate(VectorRef theta) {
 
 void Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
-  if (trace_.last.iteration != iteration_ || judged_.theta != theta) {
+  if (trace_.last.iteration != iteration_ || judged_theta_ != theta) {
     measure(theta);
     see(judged_.loss);
   }
@@ -190,6 +190,7 @@ void Meter::finish(VectorRef theta, Status verdict) {
 
 // The loss and what surrounds it at θ, by the harness itself, charged to nobody.
 void Meter::measure(VectorRef theta) {
+  judged_theta_ = theta;
   problem_.forward(theta, judged_);
   TracePoint& last = trace_.last;
   last.iteration = iteration_;
