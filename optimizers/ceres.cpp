@@ -20,9 +20,9 @@ using Eigen::Map;
 // it is kept and thrown again after the solve.
 struct Evaluation {
   Meter& f;
-  Vector theta;  // (n)
+  Vector theta;             // (n)
+  Vector point_theta = {};  // (n), where `point` is; empty: nowhere yet
   Linearization point = {};
-  bool has_point = false;
   std::exception_ptr error = nullptr;
 
   // Runs `read` on the linearization at θ; false where the run is over or something is not finite.
@@ -32,8 +32,7 @@ struct Evaluation {
     theta = Map<const Vector>(parameters, theta.size());  // aligned, whatever Ceres' array is
     if (!is_finite(theta)) return false;
     try {
-      if (!has_point || theta != point.theta()) f.linearize(theta, point);
-      has_point = true;
+      if (point_theta.size() == 0 || point_theta != theta) f.linearize(point_theta = theta, point);
       read(point);
     } catch (...) {
       error = std::current_exception();
@@ -59,7 +58,7 @@ struct ResidualBlock final : ceres::CostFunction {
       Map<Vector>(r, residual.size()) = residual;
       if (!J || !J[0]) return;
       const Real scale = 1 / std::sqrt(static_cast<Real>(evaluation.f.samples()));
-      Map<RowMajor>(J[0], residual.size(), at.theta().size()) = scale * at.jacobian();
+      Map<RowMajor>(J[0], residual.size(), evaluation.theta.size()) = scale * at.jacobian();
     });
   }
 };

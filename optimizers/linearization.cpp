@@ -15,7 +15,7 @@ void Linearization::residual(Vector& r) const {
 
 void Linearization::gradient(Vector& out) {
   cotangent(g_);
-  out.resize(point_.theta.size());
+  out.resize(meter_->unknowns());
   pullback(g_, out);
 }
 

@@ -109,7 +109,7 @@ Status Meter::iterate(VectorRef theta) {
 
 void Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
-  if (trace_.last.iteration != iteration_ || judged_.theta != theta) {
+  if (trace_.last.iteration != iteration_ || judged_theta_ != theta) {
     measure(theta);
     see(judged_.loss);
   }
@@ -128,6 +128,7 @@ void Meter::finish(VectorRef theta, Status verdict) {
 
 // The loss and what surrounds it at θ, by the harness itself, charged to nobody.
 void Meter::measure(VectorRef theta) {
+  judged_theta_ = theta;
   problem_.forward(theta, judged_);
   TracePoint& last = trace_.last;
   last.iteration = iteration_;

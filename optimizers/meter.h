@@ -16,9 +16,8 @@ class Meter;
 // One forward pass and everything asked of it, which never repeats it. Owned by the method, reused.
 class Linearization {
  public:
-  const Vector& theta() const { return point_.theta; }  // (n)
-  const Matrix& x() const { return point_.x(); }        // (k, B)
-  const Matrix& y() const { return point_.y; }          // (m, B)
+  const Matrix& x() const { return point_.x(); }  // (k, B)
+  const Matrix& y() const { return point_.y; }    // (m, B)
   Real loss() const { return point_.loss; }
 
   void cotangent(Matrix& g) const;  // g = ∂L/∂y, (m, B)
@@ -112,7 +111,7 @@ class Meter {
   Point point_;   // for Meter::loss
   Point judged_;  // for the harness's own evaluations, and their ∂L/∂y (m, B) and ∇L (n)
   Matrix judged_g_;
-  Vector judged_gradient_, previous_;
+  Vector judged_gradient_, judged_theta_, previous_;
 };
 
 }  // namespace isoline

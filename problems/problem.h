@@ -18,8 +18,7 @@ namespace isoline {
 
 // The forward pass at θ and what its products need. Owned by the caller and reused.
 struct Point {
-  Vector theta;  // (n)
-  Matrix y;      // (m, B)
+  Matrix y;  // (m, B)
   Real loss = 0;
   Workspace physics, network;
   Matrix scratch_x;  // (k, B)

@@ -29,6 +29,7 @@ struct Metered {
   Vector theta;
   Linearization at;
   Point point;
+  std::uint64_t seen = 0;
 };
 
 // A little better each time, or the run would have stalled.
@@ -55,6 +56,10 @@ void register_metering() {
   add("loss-clock", with_clock(), with_counter, [](Metered& f) {
     f.meter.loss(f.theta);
     f.meter.is_spent();
+  });
+  add("bare-counter", endless(), {}, [](Metered& f) {  // what is_spent() cannot go below
+    f.problem.forward(f.theta, f.point);
+    f.seen += ticks();
   });
   add("loss-iterate", endless(), {}, [](Metered& f) {
     f.meter.loss(f.theta);
