@@ -56,16 +56,6 @@ TEST(Readme, EveryOtherCommandRunsInTheOrderOfThePage) {
   EXPECT_GE(count, 5U);
 }
 
-TEST(Readme, LinksToFilesOfTheTreeThatExist) {
-  const std::string text = readme();
-  for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
-    const std::string target = text.substr(at + 2, text.find_first_of(")#", at) - at - 2);
-    if (target.empty() || target.find("://") != std::string::npos) continue;
-    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(ISOLINE_SOURCE_DIR) / target))
-        << target;
-  }
-}
-
 // --- its worked examples, cut from the page when the build is configured
 
 TEST(ReadmeExamples, AreOneProblemAndOneOptimizer) {

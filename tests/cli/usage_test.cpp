@@ -43,7 +43,7 @@ TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
            {"run --problem square --optimizer 'adam[beta3=1]'", "did you mean 'beta"},
            {"run --problem 'sine[xi=-3]' --optimizer gd", "sine: xi must be in"},
            {"run --problem 'sine[xi=two]' --optimizer gd", "xi"},
-           {"run --problem 'sine[xi=1' --optimizer gd", "]"},
+           {"run --problem 'sine[xi=1' --optimizer gd", "leaves a bracket open"},
            {"run --problem square --optimizer gd --seeds 5..3", "5..3"},
            {"run --problem square --optimizer gd --seeds many", "many"},
            {"run --problem square --optimizer gd --time soon", "soon"},
@@ -84,7 +84,7 @@ TEST(Describe, TellsEveryComponentInWordsAndInJson) {
   for (const std::string name : {"sine", "hig", "ceres-gauss-newton", "poisson[N=8]"}) {
     const Finished words = shell("./isoline describe '" + name + "'");
     EXPECT_EQ(words.exit_code, 0) << words.err;
-    for (const char* part : {"Source", "Options"}) EXPECT_TRUE(contains(words.out, part)) << name;
+    for (const char* part : {"Source", "ption"}) EXPECT_TRUE(contains(words.out, part)) << name;
     const Finished json = shell("./isoline describe '" + name + "' --json");
     EXPECT_EQ(parse_json(json.out, name).at("schema"), "isoline.component/1") << name;
     EXPECT_EQ(json.err, "") << name;
