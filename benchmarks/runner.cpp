@@ -98,8 +98,9 @@ class Runner {
       if (done && (have >= wanted || is_failure(done->status))) {
         ++outcome_.reused;
         count(*done);
+        const Json& origin = done->provenance;
         outcome_.reused_from_other_commits +=
-            done->provenance.value("commit", "") != provenance().at("commit");
+            origin.value("dirty", true) || origin.value("commit", "") != provenance()["commit"];
         continue;
       }
       for (std::size_t i = have; i < wanted; ++i) pending.push_back({&request, done});

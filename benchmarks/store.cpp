@@ -1,9 +1,15 @@
 // The result folder on disk.
 #include "benchmarks/store.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
 
 #include "core/errors.h"
 #include "core/json.h"
@@ -18,6 +24,29 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
   return folder / "runs" / file_name;
 }
 
+// A file half written by a process that was killed: its name ends in ".PID.tmp".
+bool is_abandoned(const fs::path& path) {
+  if (path.extension() != ".tmp") return false;
+  const std::string pid = path.stem().extension().string();  // ".PID", or empty
+  const int writer = pid.empty() ? 0 : std::atoi(pid.c_str() + 1);
+  return writer <= 0 || (kill(writer, 0) != 0 && errno == ESRCH);
+}
+
+// Held while the plan is read and written: two runs may share a folder.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    flock(descriptor_, LOCK_EX);
+  }
+  ~FolderLock() { close(descriptor_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 }  // namespace
 
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
@@ -28,10 +57,11 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) {
             fmt::format("cannot create {}: {}", (folder_ / part).string(), error.message()));
   }
   for (const auto& entry : fs::recursive_directory_iterator(folder_))
-    if (entry.path().extension() == ".tmp") fs::remove(entry.path());  // left by a kill
+    if (is_abandoned(entry.path())) fs::remove(entry.path());
 }
 
 void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells) {
+  const FolderLock lock(folder_);
   Plan plan;
   const fs::path path = folder_ / "plan.json";
   if (fs::exists(path)) plan = plan_from_json(read_json(path));

@@ -3,10 +3,6 @@
 
 #include <ctime>
 
-#if defined(__x86_64__)
-#include <x86intrin.h>
-#endif
-
 namespace isoline {
 namespace {
 
@@ -35,14 +31,6 @@ double processor_seconds() {
   return 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID));
 }
 
-std::uint64_t ticks() {
-#if defined(__x86_64__)
-  return __rdtsc();
-#else
-  return static_cast<std::uint64_t>(monotonic_nanoseconds());
-#endif
-}
-
 double seconds_per_tick() {
   static const double measured = calibrate();
   return measured;
@@ -60,9 +48,6 @@ void Stopwatch::pause() {
   is_running_ = false;
 }
 
-double Stopwatch::seconds() const {
-  const std::uint64_t total = is_running_ ? elapsed_ + ticks() - resumed_ : elapsed_;
-  return static_cast<double>(total) * seconds_per_tick();
-}
+double Stopwatch::seconds() const { return static_cast<double>(elapsed()) * seconds_per_tick(); }
 
 }  // namespace isoline

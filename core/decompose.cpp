@@ -24,7 +24,7 @@ std::string lapack_library() {
 
 bool thin_svd(const Matrix& A, Svd& out) {
   const Index m = A.rows(), n = A.cols(), r = std::min(m, n);
-  if (r == 0 || !A.allFinite()) return false;
+  if (r == 0 || !is_finite(A)) return false;
   out.U.resize(m, r);
   out.sigma.resize(r);
   out.Vt.resize(r, n);
@@ -40,7 +40,7 @@ bool thin_svd(const Matrix& A, Svd& out) {
 }
 
 bool symmetric_eigen(const Matrix& A, SymmetricEigen& out) {
-  if (!A.allFinite()) return false;
+  if (!is_finite(A)) return false;
   out.V = A;
   out.lambda.resize(A.rows());
   return LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', as_int(A.rows()), out.V.data(),
@@ -48,7 +48,7 @@ bool symmetric_eigen(const Matrix& A, SymmetricEigen& out) {
 }
 
 bool solve_square(const Matrix& A, const Vector& b, Vector& x) {
-  if (!A.allFinite() || !b.allFinite()) return false;
+  if (!is_finite(A) || !is_finite(b)) return false;
   Matrix lu = A;
   Eigen::Matrix<lapack_int, Eigen::Dynamic, 1> pivots(A.rows());
   x = b;
@@ -57,7 +57,7 @@ bool solve_square(const Matrix& A, const Vector& b, Vector& x) {
 }
 
 bool least_squares(const Matrix& A, const Vector& b, Real relative_rank, Vector& x) {
-  if (!A.allFinite() || !b.allFinite()) return false;
+  if (!is_finite(A) || !is_finite(b)) return false;
   const Index m = A.rows(), n = A.cols(), rows = std::max(m, n);
   Matrix factored = A;
   Vector right = Vector::Zero(rows);

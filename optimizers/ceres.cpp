@@ -30,7 +30,7 @@ struct Evaluation {
   bool at(const double* parameters, Read read) {
     if (error || f.is_spent() || f.status() != Status::running) return false;
     theta = Map<const Vector>(parameters, theta.size());  // aligned, whatever Ceres' array is
-    if (!theta.allFinite()) return false;
+    if (!is_finite(theta)) return false;
     try {
       if (!has_point || theta != point.theta()) f.linearize(theta, point);
       has_point = true;

@@ -75,15 +75,10 @@ void Meter::refuse(Oracle oracle) const {
 
 void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
 
-bool Meter::is_spent() const {
-  if (work_ >= budget_.work || iteration_ >= budget_.iterations) return true;
-  if (!std::isfinite(budget_.seconds)) return false;
-  return watch_.seconds() >= budget_.seconds;
-}
-
 Status Meter::begin(VectorRef theta) {
   trace_.first_oracle_nanoseconds = monotonic_nanoseconds();
-  seconds_per_tick();  // calibrated off the clock
+  const double limit = budget_.seconds / seconds_per_tick();  // calibrated off the clock
+  if (limit < static_cast<double>(kNoLimit)) most_ticks_ = static_cast<std::uint64_t>(limit);
   previous_ = theta;
   measure(theta);
   trace_.start_loss = judged_.loss;
@@ -141,12 +136,12 @@ void Meter::measure(VectorRef theta) {
   last.wall_seconds = watch_.seconds();
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
-  last.x_error = problem_.x_error(judged_.x);
-  Matrix g(problem_.outputs(), problem_.samples());
-  Vector gradient(problem_.unknowns());
-  problem_.cotangent(judged_, g);
-  problem_.pullback(g, gradient, judged_);
-  last.gradient_norm = gradient.norm();
+  last.x_error = problem_.x_error(judged_.x());
+  judged_g_.resize(problem_.outputs(), problem_.samples());
+  judged_gradient_.resize(problem_.unknowns());
+  problem_.cotangent(judged_, judged_g_);
+  problem_.pullback(judged_g_, judged_gradient_, judged_);
+  last.gradient_norm = judged_gradient_.norm();
   last.step_norm = (theta - previous_).norm();
 }
 
@@ -155,7 +150,7 @@ void Meter::keep_point() {
   if (index >= Trace::kPoints) return;
   trace_.point[index] = trace_.last;
   if (trace_.path_inputs > 0) {
-    std::copy_n(judged_.x.data(), judged_.x.size(), trace_.path_x[index]);
+    std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
   trace_.points = index + 1;
@@ -189,12 +184,12 @@ bool Meter::has_stalled() {
 // `judged_` holds the loss at the last kept iteration, which is this one for the first hundred.
 Status Meter::judge(VectorRef theta) {
   const Real loss = judged_.loss;
-  if (!theta.allFinite() || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
+  if (!is_finite(theta) || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
     return Status::diverged;
   if (loss <= target_loss_) return Status::target;
   if (has_stalled()) return Status::stalled;
   if (work_ >= budget_.work || iteration_ >= budget_.iterations) return Status::budget;
-  if (std::isfinite(budget_.seconds) && watch_.seconds() >= budget_.seconds) {
+  if (is_out_of_time()) {
     trace_.stopped_by_clock = true;
     return Status::budget;
   }

@@ -17,7 +17,7 @@ class Meter;
 class Linearization {
  public:
   const Vector& theta() const { return point_.theta; }  // (n)
-  const Matrix& x() const { return point_.x; }          // (k, B)
+  const Matrix& x() const { return point_.x(); }        // (k, B)
   const Matrix& y() const { return point_.y; }          // (m, B)
   Real loss() const { return point_.loss; }
 
@@ -61,7 +61,9 @@ class Meter {
   // A library's solver reports each iteration here and stops unless told `running`.
   Status iterate(VectorRef theta);
   // Work or time are spent: inner loops and library callbacks ask, the loop of the harness knows.
-  bool is_spent() const;
+  bool is_spent() const {
+    return work_ >= budget_.work || iteration_ >= budget_.iterations || is_out_of_time();
+  }
   Status status() const { return status_; }
   void reject_step() { ++trace_.rejected_steps; }
   void claim(std::string_view words);  // what a library says of its own success
@@ -89,6 +91,8 @@ class Meter {
   void keep_point();
   Status judge(VectorRef theta);
   bool has_stalled();
+  bool is_out_of_time() const { return most_ticks_ != kNoLimit && watch_.elapsed() >= most_ticks_; }
+  static constexpr auto kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
   const Problem& problem_;
   Budget budget_;
@@ -103,10 +107,12 @@ class Meter {
   Real stall_loss_;
   std::int64_t stall_iteration_ = 0;
   Stopwatch watch_;
+  std::uint64_t most_ticks_ = kNoLimit;  // budget_.seconds on the stopwatch
   Status status_ = Status::running;
   Point point_;   // for Meter::loss
-  Point judged_;  // for the harness's own evaluations
-  Vector previous_;
+  Point judged_;  // for the harness's own evaluations, and their ∂L/∂y (m, B) and ∇L (n)
+  Matrix judged_g_;
+  Vector judged_gradient_, previous_;
 };
 
 }  // namespace isoline

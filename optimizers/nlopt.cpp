@@ -1,8 +1,7 @@
 // The door to NLopt (Johnson, github.com/stevengj/nlopt), on L. NLopt keeps its own loop; each new
-// best evaluation is an iteration, and the best point is the result. Its tolerances are off but for
-// steps below the rounding of θ, and a search without a new best in a long time is stopped: some of
-// its methods would shrink their simplex for ever. What NLopt says of its success is recorded, not
-// believed: it reports success on plateaus.
+// best evaluation is an iteration, the best point the result. Its tolerances are off but for steps
+// below the rounding of θ; a search long without a new best is stopped: some would shrink a simplex
+// for ever. Its word on its success is recorded, not believed: it reports success on plateaus.
 #include <nlopt.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "optimizers/lbfgs.h"
 #include "optimizers/optimizer.h"
@@ -23,9 +23,39 @@ using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
 constexpr Real kRounding = 1e-15;  // relative step below which θ no longer changes
 constexpr Index kPatience = 100;   // evaluations an unknown without a new best
 constexpr Real kWall = 1e20;       // what a loss that is not finite is told as: inf hangs COBYLA
+// Steps that Luksan's methods remember. NLopt's own choice fills 10 MB, which takes 7 ms at n = 2.
+constexpr Index kMemory = 10;
 
-Handle make_handle(nlopt_algorithm algorithm, Index n) {
-  return Handle(nlopt_create(algorithm, static_cast<unsigned>(n)), &nlopt_destroy);
+Handle make_handle(nlopt_algorithm algorithm, Index n, Index memory = kMemory) {
+  Handle handle(nlopt_create(algorithm, static_cast<unsigned>(n)), &nlopt_destroy);
+  nlopt_set_vector_storage(handle.get(), static_cast<unsigned>(memory));
+  return handle;
+}
+
+// One evaluation for NLopt: nothing is thrown across it, and what is not finite is told as a wall.
+template <class Solve>
+double evaluate(unsigned, const double* at, double* out, void* self) {
+  Solve& solve = *static_cast<Solve*>(self);
+  try {
+    if (!solve.error && !solve.is_over()) {
+      const Real loss = solve.evaluate(at, out);
+      return std::isfinite(loss) ? loss : kWall;
+    }
+  } catch (...) {
+    solve.error = std::current_exception();
+  }
+  nlopt_force_stop(solve.handle);
+  return kWall;
+}
+
+template <class Solve>
+nlopt_result minimize(Solve& solve, Vector& theta) {
+  nlopt_set_min_objective(solve.handle, &evaluate<Solve>, &solve);
+  nlopt_set_xtol_rel(solve.handle, kRounding);
+  Real loss = 0;
+  const nlopt_result result = nlopt_optimize(solve.handle, theta.data(), &loss);
+  if (solve.error) std::rethrow_exception(solve.error);
+  return result;
 }
 
 // One solve, as seen from NLopt's calls back.
@@ -36,62 +66,40 @@ struct Search {
   Vector theta, gradient, best;  // (n)
   Real best_loss = std::numeric_limits<Real>::infinity();
   Index since_best = 0;
-  std::exception_ptr error;  // none crosses NLopt: thrown again after the solve
+  std::exception_ptr error;
 
-  Real ask(double* out) {
-    if (!out) return f.loss(theta);
+  bool is_over() const { return f.is_spent() || f.status() != Status::running; }
+  Real evaluate(const double* at_theta, double* out) {
+    theta = Map<const Vector>(at_theta, theta.size());  // aligned, whatever NLopt's array is
+    if (!out) return take(f.loss(theta));
     f.linearize(theta, at);
     at.gradient(gradient);
     Map<Vector>(out, gradient.size()) = gradient;
-    return at.loss();
+    return take(at.loss());
   }
 
-  void take(Real loss) {
-    if (!(loss < best_loss)) {
-      if (++since_best > kPatience * (theta.size() + 1)) nlopt_force_stop(handle);
-      return;
-    }
-    const bool is_start = !std::isfinite(best_loss);
-    best_loss = loss;
-    best = theta;
-    since_best = 0;
-    if (!is_start && f.iterate(best) != Status::running) nlopt_force_stop(handle);
-  }
-
-  Real evaluate(const double* at_theta, double* out) {
-    if (error || f.is_spent() || f.status() != Status::running) {
+  Real take(Real loss) {
+    if (loss < best_loss) {
+      const bool is_start = !std::isfinite(std::exchange(best_loss, loss));
+      best = theta;
+      since_best = 0;
+      if (!is_start && f.iterate(best) != Status::running) nlopt_force_stop(handle);
+    } else if (++since_best > kPatience * (theta.size() + 1)) {
       nlopt_force_stop(handle);
-      return kWall;
     }
-    theta = Map<const Vector>(at_theta, theta.size());  // aligned, whatever NLopt's array is
-    try {
-      const Real loss = ask(out);
-      take(loss);
-      return std::isfinite(loss) ? loss : kWall;
-    } catch (...) {
-      error = std::current_exception();
-      nlopt_force_stop(handle);
-      return kWall;
-    }
+    return loss;
   }
 };
 
 class Nlopt final : public Optimizer {
  public:
-  explicit Nlopt(nlopt_algorithm algorithm) : algorithm_(algorithm) {}
+  Nlopt(nlopt_algorithm algorithm, Index memory) : algorithm_(algorithm), memory_(memory) {}
   void start(Meter&, const Vector&) override {}
   bool reports_iterations() const override { return true; }
   Status step(Meter& f, Vector& theta) override {
-    const Handle handle = make_handle(algorithm_, theta.size());
+    const Handle handle = make_handle(algorithm_, theta.size(), memory_);
     Search search{f, handle.get(), {}, theta, Vector(theta.size()), theta};
-    const auto evaluate = [](unsigned, const double* at, double* out, void* self) {
-      return static_cast<Search*>(self)->evaluate(at, out);
-    };
-    nlopt_set_min_objective(handle.get(), evaluate, &search);
-    nlopt_set_xtol_rel(handle.get(), kRounding);
-    Real loss = 0;
-    const nlopt_result result = nlopt_optimize(handle.get(), theta.data(), &loss);
-    if (search.error) std::rethrow_exception(search.error);
+    const nlopt_result result = minimize(search, theta);
     f.claim(nlopt_result_to_string(result));
     theta = search.best;
     if (f.status() != Status::running) return f.status();
@@ -101,6 +109,7 @@ class Nlopt final : public Optimizer {
 
  private:
   nlopt_algorithm algorithm_;
+  Index memory_;
 };
 
 struct Method {
@@ -109,6 +118,10 @@ struct Method {
   const char* note = "";
   bool is_input_scale_invariant = false;
   Index most_unknowns = std::numeric_limits<Index>::max();
+  bool is_luksans() const {
+    return algorithm == NLOPT_LD_LBFGS || algorithm == NLOPT_LD_VAR2 ||
+           algorithm == NLOPT_LD_TNEWTON_PRECOND_RESTART;
+  }
 };
 
 constexpr const char* kFirstStepNote =
@@ -141,16 +154,18 @@ constexpr const char* kStartNote =
 const Method kWithoutGradient[] = {
     {NLOPT_LN_BOBYQA, "nlopt-bobyqa", "BOBYQA (NLopt)",
      "min of a quadratic through 2n+1 points, ‖d‖ ≤ Δ", "NLopt 2.7; Powell (2009)", kStartNote,
-     true, kMostWithoutGradient},
+     true},
     {NLOPT_LN_COBYLA, "nlopt-cobyla", "COBYLA (NLopt)",
-     "min of a linear model through n+1 points, ‖d‖ ≤ Δ", "NLopt 2.7; Powell (1994)", "", false,
-     kMostWithoutGradient},
+     "min of a linear model through n+1 points, ‖d‖ ≤ Δ", "NLopt 2.7; Powell (1994)"},
     {NLOPT_LN_NELDERMEAD, "nlopt-neldermead", "Nelder-Mead simplex (NLopt)",
      "reflect, expand, contract or shrink n+1 points", "NLopt 2.7; Nelder, Mead (1965)", kStartNote,
-     true, kMostWithoutGradient},
+     true},
     {NLOPT_LN_SBPLX, "nlopt-sbplx", "Subplex (NLopt)", "Nelder-Mead on a sequence of subspaces",
-     "NLopt 2.7; Rowan (1990)", "", false, kMostWithoutGradient},
+     "NLopt 2.7; Rowan (1990)"},
 };
+
+const OptionField kRemembered{
+    "memory", kMemory, between(0, 1000), {}, "steps remembered; 0: as many as fit into 10 MB"};
 
 OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
   return {.name = m.name,
@@ -161,9 +176,11 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .note = m.note,
           .needs = needs,
           .is_input_scale_invariant = m.is_input_scale_invariant,
-          .most_unknowns = m.most_unknowns,
-          .make = [algorithm = m.algorithm](const Json&, const OptimizerRegistry&) {
-            return std::make_unique<Nlopt>(algorithm);
+          .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
+          .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
+          .revision = m.is_luksans() ? 2 : 1,
+          .make = [algorithm = m.algorithm](const Json& options, const OptimizerRegistry&) {
+            return std::make_unique<Nlopt>(algorithm, options.value("memory", kMemory));
           }};
 }
 
@@ -180,33 +197,23 @@ struct Minimization {
   std::exception_ptr error = nullptr;
 
   bool is_over() const {
-    return error || result.value <= limits.enough || result.evaluations >= limits.evaluations ||
+    return result.value <= limits.enough || result.evaluations >= limits.evaluations ||
            (limits.is_over && limits.is_over());
-  }
-  Real stop() {
-    nlopt_force_stop(handle);
-    return kWall;
   }
 
   Real evaluate(const double* z, double* out) {  // at x = origin + length z
-    if (is_over()) return stop();
     x = origin + length * Map<const Vector>(z, origin.size());
     ++result.evaluations;
-    try {
-      const Real value = f(x, gradient);
-      if (value < result.value) best = x;
-      result.value = std::min(result.value, value);
-      if (length == 0) {
-        unit = value;
-        length = value / gradient.norm();
-        if (!std::isfinite(length)) return stop();
-      }
-      if (out) Map<Vector>(out, gradient.size()) = (length / unit) * gradient;
-      return std::isfinite(value) ? value / unit : kWall;
-    } catch (...) {
-      error = std::current_exception();
-      return stop();
+    const Real value = f(x, gradient);
+    if (value < result.value) best = x;
+    result.value = std::min(result.value, value);
+    if (length == 0) {
+      unit = value;
+      length = value / gradient.norm();
+      if (!std::isfinite(length)) return nlopt_force_stop(handle), kWall;
     }
+    if (out) Map<Vector>(out, gradient.size()) = (length / unit) * gradient;
+    return value / unit;
   }
 
   void descend() {
@@ -215,14 +222,7 @@ struct Minimization {
     origin = best;
     length = 0;
     Vector z = Vector::Zero(origin.size());
-    const auto evaluate_this = [](unsigned, const double* at, double* out, void* self) {
-      return static_cast<Minimization*>(self)->evaluate(at, out);
-    };
-    nlopt_set_min_objective(handle, evaluate_this, this);
-    nlopt_set_xtol_rel(handle, kRounding);
-    Real value = 0;
-    nlopt_optimize(handle, z.data(), &value);  // its verdict adds nothing to the value reached
-    if (error) std::rethrow_exception(error);
+    minimize(*this, z);  // its verdict adds nothing to the value reached
   }
 };
 

@@ -126,6 +126,7 @@ void register_sip(OptimizerRegistry& registry) {
                 .needs = {Oracle::forward, Oracle::network},
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
+                .revision = 2,
                 .needs_for = needs_for,
                 .make = [](const Json& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {

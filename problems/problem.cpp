@@ -55,8 +55,7 @@ void Problem::forward(VectorRef theta, Point& at) const {
   at.physics.context = parts_.context;
   at.physics.saved_is_current = at.network.saved_is_current = false;
   parts_.network->forward(theta, parts_.input, at.physics.x, at.network);
-  at.x = at.physics.x;
-  parts_.physics->forward(at.x, parts_.context, at.y, at.physics);
+  parts_.physics->forward(at.x(), parts_.context, at.y, at.physics);
   at.loss = parts_.loss->value(at.y, parts_.target);
 }
 
@@ -127,7 +126,7 @@ void Problem::curvature(BatchRef w, BatchOut out, Point& at) const {
 }
 
 Success Problem::local_inverse(BatchRef y, BatchOut x, Point& at) const {
-  return parts_.physics->local_inverse(y, at.x, parts_.context, x);
+  return parts_.physics->local_inverse(y, at.x(), parts_.context, x);
 }
 
 Vector Draw::start(const Vector& standard) const {

@@ -19,11 +19,12 @@ namespace isoline {
 // The forward pass at θ and what its products need. Owned by the caller and reused.
 struct Point {
   Vector theta;  // (n)
-  Matrix x;      // (k, B)
   Matrix y;      // (m, B)
   Real loss = 0;
   Workspace physics, network;
   Matrix scratch_x;  // (k, B)
+
+  const Matrix& x() const { return physics.x; }  // (k, B)
 };
 
 // What a problem is made of. A direct problem leaves network and input empty.

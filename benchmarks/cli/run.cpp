@@ -115,8 +115,11 @@ void print_outcome(const Outcome& outcome, bool quiet) {
   for (const std::string& name : outcome.conflicts)
     fmt::print(stderr, "{}: its repetition gave another result\n", name);
   if (outcome.reused_from_other_commits > 0)
-    fmt::print(stderr, "{} of the reused cells were run by another commit; --force repeats them\n",
-               outcome.reused_from_other_commits);
+    fmt::print(
+        stderr,
+        "{} of the reused cells were run by another commit or a changed tree; --force repeats "
+        "them\n",
+        outcome.reused_from_other_commits);
   if (quiet) return;
   std::vector<std::string> counts;
   for (const auto& [status, count] : outcome.statuses)

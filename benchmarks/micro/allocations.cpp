@@ -1,0 +1,26 @@
+// Counts what is allocated: Eigen, the C++ library and LAPACKE all come to malloc, which a program
+// may define for itself and its shared libraries. The sanitizers define it too, so not with them.
+#include <cstddef>
+
+#include "benchmarks/micro/pairs.h"
+
+namespace {
+std::int64_t calls = 0;  // plain: the program has one thread
+}
+
+#ifndef ISOLINE_SANITIZE
+extern "C" {
+void* __libc_malloc(std::size_t size);  // glibc's own, under a second name
+
+__attribute__((visibility("default"))) void* malloc(std::size_t size) noexcept {
+  ++calls;
+  return __libc_malloc(size);
+}
+}
+#endif
+
+namespace isoline::micro {
+
+std::int64_t allocations() { return calls; }
+
+}  // namespace isoline::micro

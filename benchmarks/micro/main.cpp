@@ -1,0 +1,20 @@
+// Micro-benchmarks: what we add to the bare library or to the physical limit, as ratios measured in
+// one run. Choose by --benchmark_filter=metering.
+#include <benchmark/benchmark.h>
+
+#include "benchmarks/micro/pairs.h"
+#include "core/threads.h"
+
+int main(int count, char** arguments) {
+  isoline::start_single_threaded(arguments);
+  isoline::micro::register_metering();
+  isoline::micro::register_steps();
+  isoline::micro::register_libraries();
+  isoline::micro::register_transforms();
+  isoline::micro::register_isolation();
+  benchmark::Initialize(&count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}

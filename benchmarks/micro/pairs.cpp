@@ -1,0 +1,68 @@
+// Runs pairs and reports them through Google Benchmark.
+#include "benchmarks/micro/pairs.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace isoline::micro {
+namespace {
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Readings {
+  std::vector<double> ours, bare, ratio, extra;  // ns, but for the ratio
+  double allocations = 0;
+
+  void add(const Cost& a, const Cost& b) {
+    ours.push_back(1e9 * a.seconds);
+    bare.push_back(1e9 * b.seconds);
+    ratio.push_back(a.seconds / b.seconds);
+    extra.push_back(1e9 * (a.seconds - b.seconds));
+    allocations = a.allocations;
+  }
+
+  void report(benchmark::State& state, const Goal& goal) const {
+    state.counters["ns"] = median(ours);
+    state.counters["bare_ns"] = median(bare);
+    state.counters["ratio"] = median(ratio);
+    state.counters["extra_ns"] = median(extra);
+    state.counters["allocations"] = allocations;
+    if (goal.ratio > 0) state.counters["goal_ratio"] = goal.ratio;
+    if (goal.extra_ns > 0) state.counters["goal_extra_ns"] = goal.extra_ns;
+  }
+};
+
+void compare(benchmark::State& state, const Pair& pair, const Goal& goal) {
+  Readings readings;
+  pair.ours(), pair.bare();  // warm
+  bool ours_first = true;
+  for (auto _ : state) {
+    Cost a, b;
+    if (ours_first) a = pair.ours();
+    b = pair.bare();
+    if (!ours_first) a = pair.ours();
+    ours_first = !ours_first;
+    state.SetIterationTime(a.seconds);
+    readings.add(a, b);
+  }
+  readings.report(state, goal);
+}
+
+}  // namespace
+
+void register_pair(const std::string& name, int pairs, const Goal& goal,
+                   const std::function<Pair()>& make) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) { compare(state, make(), goal); })
+      ->Iterations(pairs)
+      ->UseManualTime();
+}
+
+}  // namespace isoline::micro

@@ -1,0 +1,52 @@
+// Ours against the bare thing it stands for, timed in turn, so that the noise of the machine falls
+// on both. A benchmark's figures are medians over pairs: `ns` a call of ours, `bare_ns`, their
+// `ratio` and difference `extra_ns`, and the `allocations` of a call of ours.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "core/clock.h"
+
+namespace isoline::micro {
+
+std::int64_t allocations();  // calls of malloc so far, by this program and its libraries
+
+// What one call takes.
+struct Cost {
+  double seconds = 0, allocations = 0;
+};
+
+// The mean over `calls` of `work`.
+template <class Work>
+Cost cost_of(int calls, Work&& work) {
+  const std::int64_t allocated = allocations();
+  const std::uint64_t begin = ticks();
+  for (int i = 0; i < calls; ++i) work();
+  const auto elapsed = static_cast<double>(ticks() - begin);
+  return {elapsed * seconds_per_tick() / calls,
+          static_cast<double>(allocations() - allocated) / calls};
+}
+
+struct Pair {
+  std::function<Cost()> ours, bare;
+};
+
+// What is promised; 0 where nothing is.
+struct Goal {
+  double ratio = 0, extra_ns = 0;
+};
+
+// `make` prepares a pair when its benchmark is chosen; it is then run `pairs` times.
+void register_pair(const std::string& name, int pairs, const Goal& goal,
+                   const std::function<Pair()>& make);
+
+// One call a file.
+void register_metering();
+void register_steps();
+void register_libraries();
+void register_transforms();
+void register_isolation();
+
+}  // namespace isoline::micro

@@ -1,0 +1,50 @@
+// A problem by its spec, and a metered run of a method on it.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "benchmarks/catalog.h"
+#include "core/spec.h"
+
+namespace isoline::micro {
+
+inline const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+inline Problem make_problem(const std::string& text) {
+  const Spec spec = parse_spec(text);
+  return isoline::make_problem(catalog(), complete_problem(catalog(), spec.name, options_of(spec)),
+                               0);
+}
+
+// Iterations without end, so that nothing but the method decides.
+inline Budget endless() {
+  return {.iterations = std::numeric_limits<std::int64_t>::max(), .target = 0};
+}
+
+inline std::unique_ptr<Optimizer> make_method(const std::string& name) {
+  const Component method = complete_optimizer(catalog(), name, Json::object());
+  return catalog().optimizers.at(name).make(method.options, catalog().optimizers);
+}
+
+inline OracleSet needs(const std::string& name, const Problem& problem) {
+  const Component method = complete_optimizer(catalog(), name, Json::object());
+  return needs_of(catalog().optimizers.at(name), method.options, problem);
+}
+
+// A method under way on a problem that outlives it.
+struct Trial {
+  Trial(const Problem& f, const std::string& name, const Budget& budget)
+      : problem(f), method(make_method(name)), meter(f, budget, needs(name, f), trace) {}
+
+  const Problem& problem;
+  Trace trace;
+  std::unique_ptr<Optimizer> method;
+  Meter meter;
+};
+
+}  // namespace isoline::micro
