@@ -20,6 +20,19 @@ inline const OptimizerRegistry& optimizers() {
   return all;
 }
 
+// A problem of the registry from its spec, as published: seed 0.
+inline Problem published(const std::string& text) {
+  static const ProblemRegistry all = [] {
+    ProblemRegistry registry("problem");
+    register_problems(registry);
+    return registry;
+  }();
+  const Spec spec = parse_spec(text);
+  const ProblemEntry& entry = all.at(spec.name);
+  return entry.make(complete_options(entry.options, entry.name, options_of(spec)),
+                    Draw(0, entry.name));
+}
+
 struct Outcome {
   Vector theta;                                              // (n), final
   std::vector<Vector> path;                                  // θ after each step of ours

@@ -44,30 +44,6 @@ inline Problem easy() {
   return linear(easy_matrix(), Eigen::Vector2d(1, 2), Eigen::Vector2d(0.5, -0.3));
 }
 
-// Broyden's tridiagonal function, Moré, Garbow, Hillstrom (1981), problem 30.
-class Tridiagonal final : public DensePhysics {
- public:
-  explicit Tridiagonal(Index n) : DensePhysics(n, n) {}
-  void value(VectorRef x, VectorOut y) const override {
-    const Index n = x.size();
-    for (Index i = 0; i < n; ++i)
-      y[i] = (3 - 2 * x[i]) * x[i] - (i > 0 ? x[i - 1] : 0) - (i + 1 < n ? 2 * x[i + 1] : 0) + 1;
-  }
-  void derivative(VectorRef x, BatchOut J) const override {
-    J.diagonal() = (3 - 4 * x.array()).matrix();
-    J.diagonal(-1).setConstant(-1);
-    J.diagonal(1).setConstant(-2);
-  }
-};
-
-inline Problem tridiagonal() {
-  constexpr Index kSize = 10;
-  return Problem({.physics = std::make_unique<Tridiagonal>(kSize),
-                  .start = Vector::Constant(kSize, -1),
-                  .target = Vector::Zero(kSize),
-                  .minimum = 0});
-}
-
 // y = x², one sample at a time, invertible for y ≥ 0 alone.
 class Squares final : public DensePhysics {
  public:

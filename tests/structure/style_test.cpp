@@ -98,7 +98,8 @@ TEST(Style, NoNameHasABannedWord) {
 // Lines of each function, found by clang-format's indentation: a body opens at the end of a line
 // and closes at a brace of the same depth.
 TEST(Style, FunctionsHaveAtMost45Lines) {
-  static const std::regex opening(R"re(^( {0,4})[A-Za-z~\[].*\).*\{$)re");
+  static const std::regex opening(
+      R"re(^( {0,4})[A-Za-z~].*\)( const)?( override| final| noexcept)*( -> [^{]*)? \{$)re");
   static const std::regex other(
       R"re(^\s*(namespace|class|struct|enum|union|for|if|while|switch)\b)re");
   std::size_t count = 0;

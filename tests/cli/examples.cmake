@@ -1,0 +1,53 @@
+# readme_examples(out): cuts the ```cpp blocks out of README.md, each into the file its first line
+# names, and writes the catalog that holds them all. `out` receives the sources to compile.
+function(readme_examples out)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/README.md)
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/readme)
+  file(READ ${PROJECT_SOURCE_DIR}/README.md text)
+  set(sources ${folder}/catalog.cpp)
+  set(fence "```cpp\n")
+  string(LENGTH "${fence}" fence_length)
+  while(TRUE)
+    string(FIND "${text}" "${fence}" begin)
+    if(begin EQUAL -1)
+      break()
+    endif()
+    math(EXPR begin "${begin} + ${fence_length}")
+    string(SUBSTRING "${text}" ${begin} -1 text)
+    string(FIND "${text}" "\n```" end)
+    math(EXPR end "${end} + 1")
+    string(SUBSTRING "${text}" 0 ${end} block)
+    string(SUBSTRING "${text}" ${end} -1 text)
+    if(NOT block MATCHES "^// ((problems|optimizers)/([a-z0-9_]+)\\.cpp)")
+      message(FATAL_ERROR "README.md: line one of a cpp block must be // problems/NAME.cpp or "
+                          "// optimizers/NAME.cpp")
+    endif()
+    set(room ${CMAKE_MATCH_2})
+    set(file ${folder}/${CMAKE_MATCH_1})
+    set(name ${CMAKE_MATCH_3})
+    file(CONFIGURE OUTPUT ${file} CONTENT "${block}" @ONLY)
+    list(APPEND sources ${file})
+    string(APPEND ${room}_declarations "void register_${name}(decltype(Catalog::${room})&);\n")
+    string(APPEND ${room}_calls "  register_${name}(catalog.${room});\n")
+    string(REPLACE "_" "-" entry ${name})
+    string(APPEND ${room}_names "\"${entry}\", ")
+  endwhile()
+  file(CONFIGURE OUTPUT ${folder}/catalog.cpp CONTENT
+"// Generated from the cpp blocks of README.md.
+#include \"tests/cli/readme_examples.h\"
+
+namespace isoline {
+
+@problems_declarations@@optimizers_declarations@
+Catalog catalog_with_readme_examples() {
+  Catalog catalog = builtin_catalog();
+@problems_calls@@optimizers_calls@  return catalog;
+}
+
+std::vector<std::string> readme_problems() { return {@problems_names@}; }
+std::vector<std::string> readme_optimizers() { return {@optimizers_names@}; }
+
+}  // namespace isoline
+" @ONLY)
+  set(${out} ${sources} PARENT_SCOPE)
+endfunction()

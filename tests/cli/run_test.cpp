@@ -1,0 +1,177 @@
+// The verbs that work on a result folder: run, report and validate.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+
+#include "tests/cli/shell.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Two applicable optimizers and one that is not (an inverse gradient needs a square Jacobian).
+const std::string kMatrix =
+    "./isoline run --problem brown-dennis --optimizer gd,newton,inverse-gradient "
+    "--iterations 20 --out out ";
+
+class Run : public testing::Test {
+ protected:
+  Shell shell;
+  fs::path out = shell.folder() / "out";
+};
+
+TEST_F(Run, WritesRecordsAPlanSheetsAndAReportAndSaysWhere) {
+  const Finished result = shell(kMatrix);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "3 cells: 3 run, 0 reused")) << result.out;
+  EXPECT_TRUE(contains(result.out, "1 inapplicable")) << result.out;
+  EXPECT_TRUE(contains(result.out, "out/report/index.html")) << result.out;
+  EXPECT_EQ(count_records(out), 3U);
+  EXPECT_TRUE(fs::exists(out / "plan.json"));
+  for (const char* format : {"index.html", "report.md", "report.csv", "report.tex", "report.json"})
+    EXPECT_TRUE(fs::exists(out / "report" / format)) << format;
+  const Finished validated = shell("./isoline validate out");
+  EXPECT_EQ(validated.exit_code, 0) << validated.out;
+}
+
+TEST_F(Run, DoneCellsAreNotRepeatedUnlessForced) {
+  shell(kMatrix + "--no-report");
+  EXPECT_FALSE(fs::exists(out / "report"));
+  EXPECT_TRUE(contains(shell(kMatrix).out, "3 cells: 0 run, 3 reused"));
+  EXPECT_TRUE(contains(shell(kMatrix + "--force").out, "3 cells: 3 run, 0 reused"));
+}
+
+TEST_F(Run, AFlagAfterTheMatrixTakesEffect) {
+  EXPECT_TRUE(contains(shell(kMatrix + "--seeds 2..4 --jobs 2").out, "9 cells: 9 run"));
+  EXPECT_TRUE(contains(shell(kMatrix + "--seeds =9 --jobs 1").out, "3 cells: 3 run"));
+  EXPECT_TRUE(contains(shell(kMatrix + "--seeds 2 --exclusive").out, "6 cells: 6 run"));
+}
+
+TEST_F(Run, QuietSaysNothingWhereNothingIsWrong) {
+  const Finished result = shell(kMatrix + "--quiet");
+  EXPECT_EQ(result.out + result.err, "");
+  EXPECT_EQ(result.exit_code, 0);
+}
+
+TEST_F(Run, RepetitionsAppendTimings) {
+  EXPECT_EQ(shell(kMatrix + "--repeat 3").exit_code, 0);
+  EXPECT_TRUE(contains(shell(kMatrix + "--repeat 3").out, "3 cells: 0 run, 3 reused"));
+  for (const auto& entry : fs::directory_iterator(out / "runs")) {
+    const Json record = read_json(entry.path());
+    if (record.at("status") == "inapplicable") continue;
+    EXPECT_EQ(record.at("repeat_wall_seconds").size(), 3U) << record.at("request").dump();
+  }
+}
+
+TEST_F(Run, DryRunPrintsThePlanAndTouchesNothing) {
+  const Finished before = shell(kMatrix + "--dry-run");
+  EXPECT_EQ(before.exit_code, 0);
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_TRUE(contains(before.out, "inapplicable: the Jacobian has no inverse")) << before.out;
+  EXPECT_TRUE(contains(before.out, "3 cells: 0 cached, 1 inapplicable, 2 to run")) << before.out;
+  EXPECT_TRUE(contains(before.out, "at most about")) << before.out;
+  shell(kMatrix);
+  const Finished after = shell(kMatrix + "--seeds 2 --dry-run");
+  EXPECT_TRUE(contains(after.out, "6 cells: 3 cached, 1 inapplicable, 2 to run")) << after.out;
+}
+
+TEST_F(Run, ProgressInAPipeIsPlainLinesOnStandardError) {
+  const Finished result = shell(kMatrix);
+  EXPECT_TRUE(contains(result.err, "cells 3/3")) << result.err;
+  EXPECT_FALSE(contains(result.err, "\r")) << result.err;
+  EXPECT_FALSE(contains(result.out, "cells 3/3")) << result.out;
+}
+
+TEST_F(Run, AnExplicitRateWinsOverTheTable) {
+  shell("./isoline run --problem square --optimizer 'gd[lr=0.01]' --iterations 3 --out out");
+  for (const auto& entry : fs::directory_iterator(out / "runs")) {
+    const Json optimizer = read_json(entry.path()).at("request").at("optimizer");
+    EXPECT_EQ(optimizer.at("options").at("rate"), 0.01);
+  }
+}
+
+TEST_F(Run, AReportOfAPartialPlanSaysHowMuchIsThere) {
+  shell(kMatrix + "--no-report");
+  fs::remove(fs::directory_iterator(out / "runs")->path());
+  EXPECT_EQ(shell("./isoline report out").exit_code, 0);
+  EXPECT_TRUE(contains(read_text(out / "report" / "report.md"), "2 of 3 cells"));
+  EXPECT_TRUE(contains(read_text(out / "report" / "index.html"), "2 of 3 cells"));
+}
+
+TEST_F(Run, ValidateFindsWhatIsWrongAndExitsTwo) {
+  shell(kMatrix + "--no-report");
+  const fs::path victim = fs::directory_iterator(out / "runs")->path();
+  Json record = read_json(victim);
+  record["status"] = "splendid";
+  write_text(victim, record.dump());
+  const Finished result = shell("./isoline validate out");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(contains(result.out, victim.filename())) << result.out;
+  EXPECT_TRUE(contains(result.out, ", 1 wrong")) << result.out;
+}
+
+// --- a run that takes long: gradient descent so slow that it neither arrives nor stalls
+
+class LongRun : public Run {
+ protected:
+  void SetUp() override {
+    child_ = fork();
+    if (child_ != 0) return;
+    fs::current_path(shell.folder());
+    const int nowhere = open("/dev/null", O_RDWR);
+    for (const int descriptor : {0, 1, 2}) dup2(nowhere, descriptor);
+    execl("./isoline", "isoline", "run", "--problem", "square,rosenbrock", "--optimizer",
+          "newton,gd[rate=1e-9]", "--iterations", "1000000000", "--target", "0", "--rates", "none",
+          "--out", "out", "--jobs", "1", nullptr);
+    _exit(1);
+  }
+  void TearDown() override {
+    if (child_ > 0) kill(child_, SIGKILL);
+  }
+  bool wait_for_records(std::size_t count) const {
+    while (count_records(out) < count) {
+      if (kill(child_, 0) != 0) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return true;
+  }
+  int exit_code_after(int signal) {
+    kill(child_, signal);
+    int status = 0;
+    waitpid(child_, &status, 0);
+    child_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t child_ = 0;
+
+ protected:
+  pid_t child() const { return child_; }
+};
+
+TEST_F(LongRun, TheParentHasOneThread) {
+  ASSERT_TRUE(wait_for_records(1));
+  const std::string status = read_text("/proc/" + std::to_string(child()) + "/status");
+  EXPECT_TRUE(contains(status, "\nThreads:\t1\n")) << status;
+}
+
+TEST_F(LongRun, AnInterruptedRunExitsWith130AndGoesOn) {
+  ASSERT_TRUE(wait_for_records(1));
+  EXPECT_EQ(exit_code_after(SIGINT), 130);
+  const std::size_t kept = count_records(out);
+  EXPECT_LT(kept, 4U);
+  const Finished rest = shell(
+      "./isoline run --problem square --optimizer newton --iterations 1000000000 --target 0 "
+      "--rates none --out out --no-report");
+  EXPECT_TRUE(contains(rest.out, "1 cells: 0 run, 1 reused")) << rest.out;
+  EXPECT_TRUE(
+      contains(shell("./isoline report out && cat out/report/report.md").out, "of 4 cells"));
+}
+
+}  // namespace
+}  // namespace isoline

@@ -1,0 +1,135 @@
+// Help, versions, and what the command line says to a user who is wrong.
+#include <gtest/gtest.h>
+
+#include "tests/cli/shell.h"
+
+namespace isoline {
+namespace {
+
+TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
+  const Shell shell;
+  const Finished program = shell("./isoline --help");
+  EXPECT_EQ(program.exit_code, 0);
+  EXPECT_EQ(program.err, "");
+  for (const std::string verb :
+       {"run", "report", "list", "describe", "check", "validate", "tune", "completion"}) {
+    EXPECT_TRUE(contains(program.out, verb)) << verb;
+    const Finished help = shell("./isoline " + verb + " --help");
+    EXPECT_EQ(help.exit_code, 0) << verb;
+    EXPECT_EQ(help.err, "") << verb;
+    EXPECT_GE(count_lines(help.out), 4U) << verb;
+  }
+}
+
+TEST(Help, VersionIsOneLine) {
+  const Finished version = Shell()("./isoline --version");
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_TRUE(version.out.starts_with("isoline ")) << version.out;
+  EXPECT_EQ(count_lines(version.out), 1U);
+}
+
+// A command that is wrong, and what the one sentence about it must contain.
+struct Mistake {
+  std::string command, sentence;
+};
+
+TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
+  const Shell shell;
+  for (const auto& [command, sentence] : std::vector<Mistake>{
+           {"rnu", "did you mean 'run'"},
+           {"run quik", "did you mean 'quick'"},
+           {"run --problem rosenbrok", "did you mean 'rosenbrock'"},
+           {"run --optimizer ceres-ml", "did you mean 'ceres-lm'"},
+           {"run --problem square --optimizer 'adam[beta3=1]'", "did you mean 'beta"},
+           {"run --problem 'sine[xi=-3]' --optimizer gd", "sine: xi must be in"},
+           {"run --problem 'sine[xi=two]' --optimizer gd", "xi"},
+           {"run --problem 'sine[xi=1' --optimizer gd", "leaves a bracket open"},
+           {"run --problem square --optimizer gd --seeds 5..3", "5..3"},
+           {"run --problem square --optimizer gd --seeds many", "many"},
+           {"run --problem square --optimizer gd --time soon", "soon"},
+           {"run --problem square --optimizer gd --memory lots", "lots"},
+           {"run --problem square --optimizer gd --jobs 0", "--jobs"},
+           {"run --problem square --optimizer gd --target 2", "--target"},
+           {"run --problem square --optimizer gd --iterations -1", "--iterations"},
+           {"run --problem square --optimizer gd --itertions 5", "--itertions"},
+           {"run quick --problem square", "not both"},
+           {"run --rates nowhere.json", "nowhere.json"},
+           {"describe nwton", "did you mean 'newton'"},
+           {"check rosenbrok", "did you mean 'rosenbrock'"},
+           {"validate nowhere", "nowhere"},
+           {"report nowhere", "nowhere"},
+           {"completion fish", "fish"},
+           {"list problms", "problms"}}) {
+    const Finished result = shell("./isoline " + command);
+    EXPECT_EQ(result.exit_code, 1) << command << ": " << result.err;
+    EXPECT_EQ(result.out, "") << command;
+    EXPECT_TRUE(contains(result.err, sentence)) << command << ": " << result.err;
+    EXPECT_TRUE(result.err.starts_with("isoline: ")) << command << ": " << result.err;
+    EXPECT_EQ(count_lines(result.err), 1U) << command << ": " << result.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(shell.folder() / "results")) << "a mistake left a folder";
+}
+
+TEST(Usage, AFolderThatCannotBeMadeIsAClearError) {
+  const Shell shell;
+  const Finished result =
+      shell("touch file; ./isoline run --problem square --optimizer gd --out file/deep");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "file/deep")) << result.err;
+  EXPECT_EQ(count_lines(result.err), 1U) << result.err;
+}
+
+TEST(Describe, TellsEveryComponentInWordsAndInJson) {
+  const Shell shell;
+  for (const std::string name : {"sine", "hig", "ceres-gauss-newton", "poisson[N=8]"}) {
+    const Finished words = shell("./isoline describe '" + name + "'");
+    EXPECT_EQ(words.exit_code, 0) << words.err;
+    for (const char* part : {"Source", "ption"}) EXPECT_TRUE(contains(words.out, part)) << name;
+    const Finished json = shell("./isoline describe '" + name + "' --json");
+    EXPECT_EQ(parse_json(json.out, name).at("schema"), "isoline.component/1") << name;
+    EXPECT_EQ(json.err, "") << name;
+  }
+}
+
+TEST(List, NamesEverythingInWordsAndInJson) {
+  const Shell shell;
+  const Finished words = shell("./isoline list"), json = shell("./isoline list --json");
+  const Json all = parse_json(json.out, "list");
+  EXPECT_GE(all.at("problems").size(), 16U);
+  EXPECT_GE(all.at("optimizers").size(), 33U);
+  EXPECT_GE(all.at("suites").size(), 3U);
+  for (const auto& [kind, entries] : all.items())
+    for (const Json& entry : entries)
+      EXPECT_TRUE(contains(words.out, entry.at("name").get<std::string>()));
+  EXPECT_EQ(json.err, "");
+}
+
+TEST(Check, OfASoundProblemPassesWithFigures) {
+  const Shell shell;
+  const Finished result = shell("./isoline check 'rosenbrock,poisson[N=8]'");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_TRUE(contains(result.out, "pass")) << result.out;
+  EXPECT_TRUE(contains(result.out, " 0 failed")) << result.out;
+  const Json json = parse_json(shell("./isoline check rosenbrock --json").out, "check");
+  EXPECT_GE(json.at("rosenbrock").size(), 3U);
+}
+
+TEST(Completion, IsValidBashAndCompletesNames) {
+  const Shell shell;
+  EXPECT_EQ(shell("./isoline completion bash > c.bash && bash -n c.bash").exit_code, 0);
+  const auto complete = [&](const std::string& words) {
+    return shell("bash -c 'source c.bash; COMP_WORDS=(./isoline " + words +
+                 "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _isoline; echo ${COMPREPLY[@]}'")
+        .out;
+  };
+  EXPECT_EQ(complete("run --problem rosen"), "rosenbrock\n");
+  EXPECT_EQ(complete("run --optimizer levenberg"), "levenberg-marquardt\n");
+  EXPECT_EQ(complete("run --optimizer gd,gauss"), "gd,gauss-newton\n");
+  EXPECT_EQ(complete("run note"), "notebook\n");
+  EXPECT_EQ(complete("describe saddle"), "saddle-free-newton\n");
+  EXPECT_EQ(complete("val"), "validate\n");
+  EXPECT_EQ(complete("run --dry"), "--dry-run\n");
+}
+
+}  // namespace
+}  // namespace isoline
