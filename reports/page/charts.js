@@ -1,6 +1,7 @@
 // Charts over the page's data: learning curves, paths over contours, performance profiles.
 'use strict';
 
+const DATA = JSON.parse(document.getElementById('data').textContent);
 const SHOWN_AT_FIRST = 8;
 const COLOURS = {  // Okabe and Ito (2008), told apart by colour-blind readers too
   light: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#5b4bb5', '#555555'],

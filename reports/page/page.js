@@ -1,7 +1,6 @@
 // What the page does: themes, switches, legends, copying, and charts built when first seen.
 'use strict';
 
-const DATA = JSON.parse(document.getElementById('data').textContent);
 const TOLERANCES = ['1e-1', '1e-3', '1e-6'];
 let tolerance = TOLERANCES.length - 1;
 const redraws = [];  // one for each chart group already seen

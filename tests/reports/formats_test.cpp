@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/json.h"
+#include "core/schema.h"
 #include "reports/report.h"
 #include "reports/text.h"
 #include "reports/wording.h"
@@ -63,6 +64,13 @@ TEST(Figure, IsShortAndReadable) {
   EXPECT_EQ(figure(NAN), "nan");
   EXPECT_EQ(std::stod(exact_figure(0.1 + 0.2)), 0.1 + 0.2);
   EXPECT_EQ(figure(spread_of({3, 1, kNever})), "3 (1–✗)");
+}
+
+TEST(Spec, LongNumbersAreCutForReaders) {
+  EXPECT_EQ(shown_spec("newton[rate=0.3333333333333333]"), "newton[rate=0.3333]");
+  EXPECT_EQ(shown_spec("sip[step=0.05,inverse=lbfgs]"), "sip[step=0.05,inverse=lbfgs]");
+  EXPECT_EQ(shown_spec("adam[rate=0.001,rule=a-very-long-word]"),
+            "adam[rate=0.001,rule=a-very-long-word]");
 }
 
 TEST(Escape, EachFormatHasItsOwn) {
@@ -128,6 +136,18 @@ TEST(Csv, EveryRowHasAllFields) {
   EXPECT_TRUE(has(lines[2], "missing-cell"));
 }
 
+// 20 problems × 33 optimizers would be a thousand lines; the summary is one for each, and no wider
+// than a terminal.
+TEST(Terminal, ALargeStudyIsSummedUp) {
+  const ResultFolder folder;
+  write_sample_study(folder.path(), {.problems = 20, .optimizers = 33, .seeds = 2, .points = 20});
+  const Study study = read_study({folder.path()});
+  const auto lines = lines_of(terminal_table(compare_optimizers(study)));
+  EXPECT_LE(lines.size(), 90U);
+  for (const std::string& line : lines)
+    EXPECT_LE(std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; }), 100) << line;
+}
+
 TEST(Terminal, NoEscapeSequencePasses) {
   Study study;
   study.runs = {record_of({.optimizer = "gd\x1b[31m",
@@ -161,6 +181,17 @@ TEST(Formats, APartialStudySaysSoInAll) {
     EXPECT_TRUE(has(text, "1 of 2 cells, missing"));
   EXPECT_TRUE(has(latex_report(comparison), "1 of 2 cells"));
   EXPECT_TRUE(has(csv_report(comparison), ",missing,"));
+}
+
+TEST(Json, ConformsToItsSchema) {
+  const ResultFolder folder;
+  write_sample_study(folder.path(), {.problems = 5, .optimizers = 33, .seeds = 2, .points = 20});
+  const Json schema =
+      read_json(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas/report.json");
+  for (const Study& study : {read_study({folder.path()}), hostile_study(), Study{}}) {
+    const Json report = parse_json(json_report(compare_optimizers(study)), "report");
+    EXPECT_EQ(schema_violations(report, schema), std::vector<std::string>());
+  }
 }
 
 TEST(Formats, AnEmptyFolderIsReported) {
