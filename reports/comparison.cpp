@@ -5,18 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "reports/axes.h"
 #include "reports/reached.h"
+#include "reports/standings.h"
 #include "reports/text.h"
 
 namespace isoline {
 namespace {
-
-constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
 
 bool is_timed_alone(const Record& record) {
   const auto run = record.provenance.find("run");
@@ -26,11 +24,6 @@ bool is_timed_alone(const Record& record) {
       exclusive != run->end() && exclusive->is_boolean() && exclusive->get<bool>();
   const bool is_concurrent = jobs != run->end() && jobs->is_number() && jobs->get<Real>() > 1;
   return is_exclusive || !is_concurrent;
-}
-
-void add_missing(std::vector<std::string>& all, const std::vector<std::string>& some) {
-  for (const std::string& one : some)
-    if (std::ranges::find(all, one) == all.end()) all.push_back(one);
 }
 
 // Places of names on an axis.
@@ -115,47 +108,6 @@ void mark_best(std::vector<Cell>& row) {
   }
 }
 
-Profile profile_at(const Comparison& c, std::size_t tolerance) {
-  std::vector<std::vector<Real>> costs;
-  for (const auto& row : c.cells) {
-    std::vector<Real>& cost = costs.emplace_back();
-    for (const Cell& cell : row) cost.push_back(cell.work[tolerance].median);
-  }
-  return performance_profile(costs);
-}
-
-void count_per_optimizer(Comparison& c) {
-  for (const auto& row : c.cells)
-    for (std::size_t s = 0; s < row.size(); ++s) {
-      OptimizerAxis& optimizer = c.optimizers[s];
-      optimizer.applicable += row[s].inapplicable.empty();
-      for (std::size_t t = 0; t < kTolerances.size(); ++t)
-        optimizer.solved[t] += row[s].work[t].is_solved();
-      add_missing(optimizer.privileges, row[s].privileges);
-    }
-}
-
-// Sorts the optimizers, best first, with all that is stored by their index.
-void rank_optimizers(Comparison& c) {
-  const Profile profile = profile_at(c, kTightest);
-  std::vector<std::size_t> order(c.optimizers.size()), place(order.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-    if (profile.problems == 0) return false;
-    const Real area_a = profile.area(a, kProfileEnd), area_b = profile.area(b, kProfileEnd);
-    return area_a != area_b ? area_a > area_b : c.optimizers[a].solved > c.optimizers[b].solved;
-  });
-  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-  const auto sorted = [&](const auto& values) {
-    auto out = values;
-    for (std::size_t i = 0; i < order.size(); ++i) out[i] = values[order[i]];
-    return out;
-  };
-  c.optimizers = sorted(c.optimizers);
-  for (auto& row : c.cells) row = sorted(row);
-  for (Run& run : c.runs) run.optimizer = place[run.optimizer];
-}
-
 void summarize_runs(Comparison& c) {
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
     const Record& record = *c.runs[i].record;
@@ -193,9 +145,7 @@ Comparison compare_optimizers(const Study& study) {
     for (Cell& cell : row) aggregate(c, cell);
     mark_best(row);
   }
-  count_per_optimizer(c);
-  rank_optimizers(c);
-  for (std::size_t t = 0; t < kTolerances.size(); ++t) c.profiles[t] = profile_at(c, t);
+  fill_standings(c);
   summarize_runs(c);
   return c;
 }

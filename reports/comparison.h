@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,12 +22,14 @@ struct Tolerance {
 inline constexpr std::array<Tolerance, 3> kTolerances = {
     {{"1e-1", 1e-1, 5}, {"1e-3", 1e-3, 15}, {"1e-6", 1e-6, 30}}};
 inline constexpr std::size_t kTightest = kTolerances.size() - 1;
+inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
 
 // One run: its record and what it took to each tolerance, infinite where never reached.
 struct Run {
   const Record* record = nullptr;
   std::size_t problem = 0, optimizer = 0;  // indices
   std::array<Real, kTolerances.size()> work, seconds;
+  Real minimum = 0;            // f_L: declared, else the best known
   bool is_timed_alone = true;  // no other run beside it: its times mean something
 };
 
@@ -48,18 +51,36 @@ struct Cell {
 
 struct ProblemAxis {
   std::string spec;
+  std::string name() const { return spec.substr(0, spec.find('[')); }
   const Sheet* sheet = nullptr;     // none where the folder has none
   bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
+};
+
+// How an optimizer did on all that was asked of it.
+struct Standing {
+  std::size_t solved = 0;   // problems whose median work is finite
+  std::size_t wins = 0;     // problems on which its median work is the least, ties counted for all
+  std::size_t reached = 0;  // runs that reach the tolerance
+  Real typical = kNever;    // the median over its problems of its work over the least, ✗ included
+  Real score = 0;           // area of its profile up to kProfileEnd times the least work
 };
 
 struct OptimizerAxis {
   std::string label;  // its spec; its name alone where a file of rates chose the options
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
-  std::size_t applicable = 0;                            // problems it can treat
-  std::array<std::size_t, kTolerances.size()> solved{};  // problems whose median is finite
+  std::size_t planned = 0, applicable = 0;               // problems asked of it; that it can treat
+  std::size_t runs = 0, failed = 0;                      // inapplicable ones left out
+  std::array<Standing, kTolerances.size()> standings{};  // by tolerance
 
+  const Standing& tightest() const { return standings[kTightest]; }
   std::string family() const { return sheet == nullptr ? "" : sheet->family; }
+};
+
+// Who has the greatest score, and in what share of 1,000 resamplings of the problems it still does.
+struct Leader {
+  std::size_t optimizer = 0;
+  Real stays_first = 0;
 };
 
 struct Comparison {
@@ -69,11 +90,14 @@ struct Comparison {
   std::vector<Run> runs;
   std::vector<std::vector<Cell>> cells;  // [problem][optimizer]
   std::array<Profile, kTolerances.size()> profiles;
+  std::optional<Leader> leader;       // at the tightest tolerance; none where nothing is solved
+  std::optional<Leader> open_leader;  // among those without privileges, compared among themselves
   std::size_t planned = 0, answered = 0;
   std::vector<PlannedCell> missing;
   std::map<Status, std::size_t> statuses;
   std::vector<std::size_t> failures;  // runs
   std::vector<std::uint64_t> seeds;
+  std::size_t names = 0;  // of problems, options apart
   bool is_any_timed_together = false;
 
   const Cell& cell(std::size_t problem, std::size_t optimizer) const {

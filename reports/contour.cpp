@@ -98,6 +98,43 @@ std::vector<std::vector<Edge>> joined(const std::vector<Segment>& segments) {
   return lines;
 }
 
+// Between the two in the middle of four values; exact for quadratics. Catmull, Rom (1974).
+Real between(const std::array<Real, 4>& p, Real t) {
+  const Real a = p[3] - p[0] + 3 * (p[1] - p[2]), b = 2 * p[0] - 5 * p[1] + 4 * p[2] - p[3];
+  return p[1] + t * (p[2] - p[0] + t * (b + t * a)) / 2;
+}
+
+// (n) values to ((n − 1) times + 1); a parabola continues them past the ends.
+Vector refined(const Vector& values, Index times) {
+  const Index n = values.size();
+  const auto at = [&](Index i) {
+    if (i < 0) return 3 * (values[0] - values[1]) + values[2];
+    return i < n ? values[i] : 3 * (values[n - 1] - values[n - 2]) + values[n - 3];
+  };
+  Vector fine((n - 1) * times + 1);
+  for (Index k = 0; k + 1 < fine.size(); ++k) {
+    const Index i = k / times;
+    fine[k] = between({at(i - 1), at(i), at(i + 1), at(i + 2)},
+                      static_cast<Real>(k % times) / static_cast<Real>(times));
+  }
+  fine[fine.size() - 1] = values[n - 1];
+  return fine;
+}
+
+// Small closed isolines of a coarse grid would be polygons.
+Landscape refined(const Landscape& coarse) {
+  constexpr Index kTimes = 3, kLeast = 3;
+  const Matrix& loss = coarse.loss;
+  if (std::min(loss.rows(), loss.cols()) < kLeast || !loss.allFinite()) return coarse;
+  Matrix half((loss.rows() - 1) * kTimes + 1, loss.cols());
+  for (Index j = 0; j < loss.cols(); ++j) half.col(j) = refined(Vector(loss.col(j)), kTimes);
+  Landscape fine{.window = coarse.window,
+                 .loss = Matrix(half.rows(), (loss.cols() - 1) * kTimes + 1)};
+  for (Index i = 0; i < half.rows(); ++i)
+    fine.loss.row(i) = refined(Vector(half.row(i)), kTimes).transpose();
+  return fine;
+}
+
 std::vector<Real> even_steps(Real low, Real high, int count, Real (*from)(Real)) {
   std::vector<Real> levels;
   for (int i = 1; i <= count; ++i) levels.push_back(from(low + (high - low) * i / (count + 1)));
@@ -133,10 +170,24 @@ std::vector<Real> contour_levels(const std::string& problem, const Landscape& la
                     [](Real v) { return std::exp(v); });
 }
 
+std::string contour_wording(const std::string& problem) {
+  if (problem == "square") return "at 2^i for i = −5 … 7, as in Fig. 1 of Holl et al. (2022)";
+  if (problem == "sine")
+    return "in even steps of its fifth root, as in Fig. 5a of Holl et al. (2022)";
+  return "in even steps of its logarithm";
+}
+
+std::array<Real, 4> view_window(const std::string& problem, const Landscape& landscape,
+                                bool is_in_y) {
+  if (problem == "square" && is_in_y) return {-0.3, 3.2, -0.1, 9.5};  // Fig. 1, right
+  return landscape.window;
+}
+
 std::vector<Contour> contours(const std::string& problem, const Landscape& landscape) {
+  const Landscape fine = refined(landscape);
   std::vector<Contour> all;
   for (const Real level : contour_levels(problem, landscape))
-    all.push_back({level, isolines(landscape, level)});
+    all.push_back({level, isolines(fine, level)});
   return all;
 }
 

@@ -16,23 +16,45 @@ std::size_t point_at(const Curve& curve, std::int64_t iteration) {
              : static_cast<std::size_t>(after - curve.iteration.begin()) - 1;
 }
 
-std::vector<std::int64_t> iterations_of(const std::vector<const Curve*>& curves,
-                                        std::size_t points) {
+// A run's curve with what is taken off its losses.
+struct Traced {
+  const Curve* curve;
+  Real minimum, start;
+};
+
+std::vector<std::int64_t> iterations_of(const std::vector<Traced>& curves, std::size_t points) {
   std::set<std::int64_t> all;
-  for (const Curve* curve : curves) all.insert(curve->iteration.begin(), curve->iteration.end());
+  for (const Traced& traced : curves)
+    all.insert(traced.curve->iteration.begin(), traced.curve->iteration.end());
   const std::vector<std::int64_t> sorted(all.begin(), all.end());
   std::vector<std::int64_t> kept;
   for (const std::size_t i : thinned(sorted.size(), points)) kept.push_back(sorted[i]);
   return kept;
 }
 
-template <class Column>
-Real median_at(const std::vector<const Curve*>& curves, const std::vector<std::size_t>& at,
-               std::size_t without_curve, Column Curve::*column) {
+// value(traced, point) of every run.
+template <class Value>
+Real median_at(const std::vector<Traced>& curves, const std::vector<std::size_t>& at,
+               std::size_t without_curve, Value value) {
   std::vector<Real> values(without_curve, kNever);
   for (std::size_t i = 0; i < curves.size(); ++i)
-    values.push_back(static_cast<Real>((curves[i]->*column)[at[i]]));
+    values.push_back(static_cast<Real>(value(curves[i], at[i])));
   return median_of(std::move(values));
+}
+
+Real gap_of(const Traced& traced, std::size_t point) {
+  const Real descent = traced.start - traced.minimum;
+  return descent > 0 ? std::max(traced.curve->loss[point] - traced.minimum, 0.0) / descent : kNever;
+}
+
+std::vector<Traced> curves_of(const Comparison& comparison, const Cell& cell) {
+  std::vector<Traced> curves;
+  for (const std::size_t index : cell.runs) {
+    const Run& run = comparison.runs[index];
+    if (!run.record->curve.iteration.empty())
+      curves.push_back({&run.record->curve, run.minimum, run.record->summary.start_loss});
+  }
+  return curves;
 }
 
 }  // namespace
@@ -53,22 +75,24 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
 }
 
 MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::size_t points) {
-  std::vector<const Curve*> curves;
-  for (const std::size_t run : cell.runs) {
-    const Curve& curve = comparison.runs[run].record->curve;
-    if (!curve.iteration.empty()) curves.push_back(&curve);
-  }
+  const std::vector<Traced> curves = curves_of(comparison, cell);
   MedianCurve median;
   const std::size_t without_curve = cell.runs.size() - curves.size();
   if (curves.empty() || !cell.is_measured()) return median;
+  using At = std::size_t;
   for (const std::int64_t iteration : iterations_of(curves, points)) {
     std::vector<std::size_t> at;
-    for (const Curve* curve : curves) at.push_back(point_at(*curve, iteration));
+    for (const Traced& one : curves) at.push_back(point_at(*one.curve, iteration));
+    const auto median_of_all = [&](std::size_t lost, auto value) {
+      return median_at(curves, at, lost, value);
+    };
     median.iteration.push_back(static_cast<Real>(iteration));
-    median.work.push_back(median_at(curves, at, 0, &Curve::work));
-    median.seconds.push_back(median_at(curves, at, 0, &Curve::wall_seconds));
-    median.loss.push_back(median_at(curves, at, without_curve, &Curve::loss));
-    median.x_error.push_back(median_at(curves, at, without_curve, &Curve::x_error));
+    median.work.push_back(median_of_all(0, [](const Traced& t, At i) { return t.curve->work[i]; }));
+    median.seconds.push_back(
+        median_of_all(0, [](const Traced& t, At i) { return t.curve->wall_seconds[i]; }));
+    median.gap.push_back(median_of_all(without_curve, gap_of));
+    median.x_error.push_back(
+        median_of_all(without_curve, [](const Traced& t, At i) { return t.curve->x_error[i]; }));
   }
   return median;
 }

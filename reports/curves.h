@@ -9,9 +9,10 @@
 namespace isoline {
 
 // Columns of equal length. At each iteration the median over seeds of every column; a run that has
-// ended keeps its last values, a run without a curve counts as infinite loss.
+// ended keeps its last values, a run without a curve counts as infinite. The gap is what is left of
+// the loss, (f − f_L) / (f₀ − f_L): the τ of the tables is a height in its plot.
 struct MedianCurve {
-  std::vector<Real> iteration, work, seconds, loss, x_error;
+  std::vector<Real> iteration, work, seconds, gap, x_error;
 };
 MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::size_t points);
 

@@ -1,12 +1,14 @@
 // The page: template, style, scripts and Chart.js from reports/page, filled with tables and data.
 // One file that asks nothing of the network.
+#include "reports/html.h"
+
 #include <fmt/format.h>
 
 #include <map>
 #include <string_view>
 
+#include "reports/contour.h"
 #include "reports/curves.h"
-#include "reports/page.h"
 #include "reports/readings.h"
 #include "reports/report.h"
 #include "reports/text.h"
@@ -51,11 +53,19 @@ std::string alerts_html(const Comparison& c) {
 }
 
 std::string tiles_html(const Comparison& c) {
-  std::string html =
-      fmt::format("<li><b>{}<small>/{}</small></b>cells</li>", c.answered, c.planned);
+  std::string html = fmt::format("<li><b>{}<small>/{}</small></b>planned runs are here</li>",
+                                 c.answered, c.planned);
   for (const auto& [status, count] : c.statuses)
-    html += fmt::format("<li class=\"{}\"><b>{}</b>{}</li>", is_failure(status) ? "bad" : "", count,
+    html += fmt::format("<li class=\"{}\"><b>{}</b>{}<small>{}</small></li>",
+                        is_failure(status) ? "bad" : "", count, status_meaning(status),
                         name_of(status));
+  return html;
+}
+
+std::string verdict_html(const Comparison& c) {
+  std::string html;
+  for (const std::string& sentence : verdict(c))
+    html += fmt::format("<p>{}</p>\n", html_text(sentence));
   return html;
 }
 
@@ -66,28 +76,52 @@ std::string remarks_html(const Comparison& c) {
   return html.empty() ? "" : "<ul class=remarks>" + html + "</ul>";
 }
 
-std::string matrices_html(const Comparison& c) {
+// One pane a tolerance, of which the page shows one.
+std::string panes_html(const Comparison& c, const char* label,
+                       std::string (*table)(const Comparison&, std::size_t)) {
   std::string html;
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     html += fmt::format(
         "<div class=\"scroll pane\" data-tau={} tabindex=0 role=region "
-        "aria-label=\"Work\">{}</div>\n",
-        t, matrix_html(c, t));
+        "aria-label=\"{}\">{}</div>\n",
+        t, label, table(c, t));
   return html;
 }
 
-std::string profile_readings_html(const Comparison& c) {
-  std::string html;
+// Empty where problems are too few to say anything: then there is no chart either.
+std::string profile_html(const Comparison& c) {
+  if (c.problems.size() < kFewProblems)
+    return fmt::format(
+        "<p class=reading>With {} problem{} a profile says no more than the table "
+        "above; none is drawn.</p>",
+        c.problems.size(), c.problems.size() == 1 ? "" : "s");
+  std::string html = "<div class=\"switch tau\" role=group aria-label=Tolerance hidden></div>\n";
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     html += fmt::format("<p class=\"reading pane\" data-tau={}>{}</p>\n", t,
                         html_text(profile_reading(c, t)));
-  return html;
+  return html + "<div class=\"chart profile\"></div>";
 }
 
-std::string plane_html(const char* space, const char* title) {
+std::string plane_html(const char* space, const std::string& title, const std::string& reading) {
   return fmt::format(
-      "<figure><figcaption>{}</figcaption><div class=plane data-space={}></div></figure>", title,
-      space);
+      "<figure><figcaption><b>{}</b> {}</figcaption><div class=plane data-space={}></div></figure>",
+      title, html_text(reading), space);
+}
+
+// Paths as the paper draws them: short runs with a marker a step, long ones as lines.
+std::string planes_html(const Comparison& c, std::size_t p) {
+  const Sheet* sheet = c.problems[p].sheet;
+  const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
+  if (!has_planes || paths(c, p).empty()) return "";
+  std::string html = "<div class=planes>";
+  if (sheet->landscape_x)
+    html += plane_html("x", "Paths in x, over the loss.", path_reading(c, p, &Path::x));
+  if (sheet->landscape_y)
+    html += plane_html("y", "The same paths in y.", path_reading(c, p, &Path::y));
+  return html + fmt::format(
+                    "</div><p class=legend>Thin lines: equal loss, {}. Paths of the lowest "
+                    "seed; markers are steps, drawn for runs of few steps. ○ start, ✳ {}.</p>",
+                    contour_wording(sheet->name), "solution in x, target in y");
 }
 
 std::string problem_html(const Comparison& c, std::size_t p) {
@@ -95,27 +129,24 @@ std::string problem_html(const Comparison& c, std::size_t p) {
   const Sheet* sheet = problem.sheet;
   std::string html =
       fmt::format("<article class=problem id=problem-{0} data-problem={0}><h3>{1}</h3>", p,
-                  html_text(problem.spec));
+                  html_text(shown_spec(problem.spec)));
   if (sheet != nullptr)
     html +=
         fmt::format("<p class=about>{} <span class=formula>{}</span> <cite>{}</cite></p>",
                     html_text(sheet->title), html_text(sheet->formula), html_text(sheet->source));
   html += fmt::format("<p class=reading>{}</p><div class=curves></div>",
                       html_text(curve_reading(c, p)));
-  const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
-  if (has_planes && !paths(c, p).empty()) {
-    html += fmt::format("<p class=reading>{}</p><div class=planes>", html_text(path_reading(c, p)));
-    if (sheet->landscape_x) html += plane_html("x", "Paths in x, over the loss");
-    if (sheet->landscape_y) html += plane_html("y", "The same paths in y");
-    html += "</div>";
-  }
-  return html + "</article>\n";
+  return html + planes_html(c, p) + "</article>\n";
 }
 
 std::string problems_html(const Comparison& c) {
-  std::string html;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) html += problem_html(c, p);
-  return html;
+  std::string index, html;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    index += fmt::format("<a href=\"#problem-{}\">{}</a>\n", p,
+                         html_text(shown_spec(c.problems[p].spec)));
+    html += problem_html(c, p);
+  }
+  return "<p class=index>" + index + "</p>" + html;
 }
 
 }  // namespace
@@ -126,8 +157,10 @@ std::string html_report(const Comparison& c) {
                                        {"alerts", alerts_html(c)},
                                        {"tiles", tiles_html(c)},
                                        {"remarks", remarks_html(c)},
-                                       {"matrices", matrices_html(c)},
-                                       {"profile-readings", profile_readings_html(c)},
+                                       {"verdict", verdict_html(c)},
+                                       {"standings", panes_html(c, "Standings", standings_html)},
+                                       {"matrices", panes_html(c, "Work", matrix_html)},
+                                       {"profile", profile_html(c)},
                                        {"details", details_html(c)},
                                        {"problems", problems_html(c)},
                                        {"families", families_html(c)},

@@ -5,22 +5,34 @@
 #include <set>
 
 #include "core/json.h"
-#include "reports/page.h"
+#include "reports/html.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 
 namespace isoline {
 namespace {
 
-std::string optimizer_item(const Comparison& c, const OptimizerAxis& optimizer) {
-  std::string html = fmt::format("<li><b>{}</b>", html_text(optimizer.label));
+std::string family_title(const std::string& family) {
+  static const std::map<std::string, std::string> kTitles = {
+      {"first-order", "First order"},
+      {"curvature", "Curvature"},
+      {"inversion", "Inversion of the physics"},
+      {"ceres", "Ceres"},
+      {"nlopt", "NLopt, with gradients"},
+      {"nlopt-derivative-free", "NLopt, without derivatives"}};
+  const auto at = kTitles.find(family);
+  return at == kTitles.end() ? family : at->second;
+}
+
+std::string optimizer_item(const OptimizerAxis& optimizer) {
+  std::string html = fmt::format("<li><b>{}</b>", html_text(shown_spec(optimizer.label)));
   if (const Sheet* sheet = optimizer.sheet; sheet != nullptr)
     html +=
         fmt::format(" {} <span class=formula>{}</span> <cite>{}</cite>", html_text(sheet->title),
                     html_text(sheet->formula), html_text(sheet->source));
-  html += fmt::format("<span class=count>solves {} of {} to 1e-6", optimizer.solved[kTightest],
-                      c.problems.size());
-  if (optimizer.applicable < c.problems.size())
+  html += fmt::format("<span class=count>solves {} of {} to 1e-6", optimizer.tightest().solved,
+                      optimizer.planned);
+  if (optimizer.applicable < optimizer.planned)
     html += fmt::format(" · applies to {}", optimizer.applicable);
   if (!optimizer.privileges.empty())
     html += fmt::format(" · <span class=privilege>† sees {}</span>",
@@ -76,12 +88,12 @@ std::string families_html(const Comparison& c) {
   std::map<std::string, std::string> families;
   for (const OptimizerAxis& optimizer : c.optimizers) {
     const std::string family = optimizer.family();
-    families[family.empty() ? "Others" : family] += optimizer_item(c, optimizer);
+    families[family.empty() ? "Others" : family] += optimizer_item(optimizer);
   }
   std::string html;
   for (const auto& [family, items] : families)
     html += fmt::format("<section class=family><h3>{}</h3>\n<ul>{}</ul></section>\n",
-                        html_text(family), items);
+                        html_text(family_title(family)), items);
   return html;
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/page.h"
+#include "reports/html.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 
@@ -24,32 +24,22 @@ std::string dagger(const std::vector<std::string>& privileges) {
                      html_text(fmt::format("{}", fmt::join(privileges, ", "))));
 }
 
-// "5/5, 1 failed" as one small line each.
-std::string small_lines(std::string_view text) {
-  std::string html;
-  while (!text.empty()) {
-    const std::size_t end = text.find(", ");
-    html += fmt::format("<small>{}</small>", text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
-  }
-  return html;
-}
+std::string shown_html(const std::string& spec) { return html_text(shown_spec(spec)); }
 
+// Cells and rows are left open, as HTML allows: with ten thousand of them it is a megabyte.
 std::string matrix_cell(const Cell& cell, std::size_t tolerance, Real least) {
   const std::string text = matrix_text(cell, tolerance);
-  if (cell.planned == 0) return "<td class=none></td>";
-  if (cell.runs.empty()) return "<td class=lost>missing</td>";
-  if (!cell.is_measured())
-    return fmt::format("<td class=na title=\"{}\">n/a</td>", html_text(cell.inapplicable));
+  if (cell.planned == 0) return "<td class=none>";
+  if (cell.runs.empty()) return "<td class=lost>missing";
+  if (!cell.is_measured()) return "<td class=na>n/a";
   const Spread& work = cell.work[tolerance];
+  const bool is_partial = work.unsolved > 0 && work.unsolved < work.n;
+  const bool is_told = is_partial || cell.failed > 0 || cell.planned > cell.runs.size();
   const std::string count =
-      is_complete(cell, tolerance) && work.n == 1 ? "" : small_lines(count_text(cell, tolerance));
-  const std::string title = html_text(status_text(cell.statuses));
-  if (!work.is_solved())
-    return fmt::format("<td class=no title=\"{}\">✗{}{}</td>", title, dagger(cell.privileges),
-                       count);
-  return fmt::format("<td class=\"{}{}\" title=\"{}\">{}{}{}</td>", heat(work.median, least),
-                     cell.is_best[tolerance] ? " best" : "", title, text, dagger(cell.privileges),
+      is_told ? fmt::format("<small>{}</small>", count_text(cell, tolerance)) : "";
+  if (!work.is_solved()) return "<td class=no>✗" + count;
+  return fmt::format("<td class={}>{}{}",
+                     cell.is_best[tolerance] ? "\"h0 best\"" : heat(work.median, least), text,
                      count);
 }
 
@@ -60,77 +50,101 @@ Real least_work(const Comparison& c, std::size_t problem, std::size_t tolerance)
 }
 
 std::string spread_cell(const Spread& spread, const char* kind = "") {
-  if (spread.n == 0) return "<td></td>";
+  if (spread.n == 0) return "<td>";
   const std::string range = range_figure(spread, reached_figure);
-  return fmt::format("<td{}>{}{}</td>", kind, reached_figure(spread.median),
+  return fmt::format("<td{}>{}{}", kind, reached_figure(spread.median),
                      range.empty() ? "" : "<small>" + range + "</small>");
 }
 
 std::string time_cell(const Spread& seconds, bool is_timed_alone) {
   const std::string range = range_figure(seconds, milliseconds);
-  return fmt::format("<td{}>{}{}{}</td>", is_timed_alone ? "" : " class=together",
-                     milliseconds(seconds.median),
+  return fmt::format("<td>{}{}{}", milliseconds(seconds.median),
                      is_timed_alone || !seconds.is_solved() ? "" : "≈",
                      range.empty() ? "" : "<small>" + range + "</small>");
 }
 
 std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
-  std::string row = fmt::format("<tr><th>{}</th><th>{}{}</th>", html_text(c.problems[p].spec),
-                                html_text(c.optimizers[s].label), dagger(cell.privileges));
-  if (!cell.is_measured())
-    return row + fmt::format("<td>{}</td><td colspan=8></td><td class=text>{}</td><td></td></tr>\n",
-                             cell.runs.size(),
-                             cell.runs.empty() ? "missing"
-                                               : "inapplicable: " + html_text(cell.inapplicable));
-  row += fmt::format("<td>{}</td>", count_text(cell, kTightest));
+  std::string row = fmt::format("<tr><th>{}<th>{}{}", shown_html(c.problems[p].spec),
+                                shown_html(c.optimizers[s].label), dagger(cell.privileges));
+  if (!cell.is_measured()) {
+    row += fmt::format("<td>{}", cell.runs.size());
+    for (int empty = 0; empty < 8; ++empty) row += "<td>";
+    return row + fmt::format("<td>{}<td>\n", cell.runs.empty()
+                                                 ? "missing"
+                                                 : "n/a: " + html_text(cell.inapplicable));
+  }
+  row += fmt::format("<td>{}", count_text(cell, kTightest));
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     row += spread_cell(cell.work[t], cell.is_best[t] ? " class=best" : "");
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     row += time_cell(cell.seconds[t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
   const Request& request = c.runs[cell.runs[0]].record->request;
-  return row + fmt::format("<td class=text>{}</td><td data-copy=\"{}\"></td></tr>\n",
-                           status_text(cell.statuses), html_text(rerun_command(request)));
+  return row + fmt::format("<td>{}<td data-copy=\"{}\">\n", status_text(cell.statuses),
+                           html_text(rerun_command(request)));
+}
+
+std::string standing_row(const Comparison& c, std::size_t s, std::size_t tolerance) {
+  const OptimizerAxis& optimizer = c.optimizers[s];
+  const Standing& standing = optimizer.standings[tolerance];
+  const Real share =
+      optimizer.planned == 0 ? 0 : 100 * Real(standing.solved) / Real(optimizer.planned);
+  return fmt::format(
+      "<tr><td>{}<th>{}{}<td class=bar><i style=--w:{:.0f}></i>{}<small>/{}</small>"
+      "<td>{}<td>{}<td>{}<small>/{}</small><td{}>{}\n",
+      s + 1, shown_html(optimizer.label), dagger(optimizer.privileges), share, standing.solved,
+      optimizer.planned, standing.wins == 0 ? "·" : std::to_string(standing.wins),
+      standing.typical == kNever ? "✗" : fmt::format("{:.3g}×", standing.typical), standing.reached,
+      optimizer.runs, optimizer.failed > 0 ? " class=lost" : "",
+      optimizer.failed == 0 ? "·" : std::to_string(optimizer.failed));
 }
 
 }  // namespace
 
+std::string standings_html(const Comparison& c, std::size_t tolerance) {
+  std::string html =
+      "<table class=\"standings sortable\"><thead><tr><th>#<th>optimizer<th>problems solved"
+      "<th>best on<th>× least work<th>runs<th>failed<tbody>\n";
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += standing_row(c, s, tolerance);
+  return html + "</table>";
+}
+
 std::string matrix_html(const Comparison& c, std::size_t tolerance) {
   std::string html = fmt::format(
       "<table class=matrix><caption>Median work to {}, in forward solves</caption>"
-      "<thead><tr><th>optimizer</th><th>solved</th>",
+      "<thead><tr><th>optimizer<th>solved",
       kTolerances[tolerance].name);
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    html += fmt::format("<th><a href=\"#problem-{}\"><span>{}</span></a></th>", p,
-                        html_text(c.problems[p].spec));
-  html += "</tr></thead><tbody>\n";
   std::vector<Real> least;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) least.push_back(least_work(c, p, tolerance));
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    html += fmt::format("<th><a href=\"#problem-{}\"><span>{}</span></a>", p,
+                        shown_html(c.problems[p].spec));
+    least.push_back(least_work(c, p, tolerance));
+  }
+  html += "<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     const OptimizerAxis& optimizer = c.optimizers[s];
-    html += fmt::format("<tr><th>{}{}</th><td class=solved>{}<small>/{}</small></td>",
-                        html_text(optimizer.label), dagger(optimizer.privileges),
-                        optimizer.solved[tolerance], c.problems.size());
+    html += fmt::format("<tr><th>{}{}<td class=solved>{}<small>/{}</small>",
+                        shown_html(optimizer.label), dagger(optimizer.privileges),
+                        optimizer.standings[tolerance].solved, optimizer.planned);
     for (std::size_t p = 0; p < c.problems.size(); ++p)
       html += matrix_cell(c.cell(p, s), tolerance, least[p]);
-    html += "</tr>\n";
+    html += "\n";
   }
-  return html + "</tbody></table>";
+  return html + "</table>";
 }
 
 std::string details_html(const Comparison& c) {
   std::string html =
-      "<table class=sortable id=detail-table><thead><tr><th>problem</th><th>optimizer</th>"
-      "<th title=\"runs that reach 1e-6 of all runs\">reach 1e-6</th>";
-  for (const char* what : {"work", "time, ms"})
+      "<table class=sortable id=detail-table><thead><tr><th>problem<th>optimizer<th>runs to 1e-6";
+  for (const char* what : {"work", "time, ms,"})
     for (const Tolerance& tolerance : kTolerances)
-      html += fmt::format("<th>{}<br>to {}</th>", what, tolerance.name);
-  html += "<th>final loss</th><th>x error</th><th>status</th><th>rerun</th></tr></thead><tbody>\n";
+      html += fmt::format("<th>{}<br>to {}", what, tolerance.name);
+  html += "<th>final loss<th>error in x<th>how the runs ended<th>again<tbody>\n";
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (c.cell(p, s).planned > 0) html += detail_row(c, p, s);
-  return html + "</tbody></table>";
+  return html + "</table>";
 }
 
 std::string failures_html(const Comparison& c) {

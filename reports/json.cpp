@@ -52,11 +52,41 @@ Json profiles_json(const Comparison& c) {
     const Profile& profile = c.profiles[t];
     Json lines = Json::object();
     for (std::size_t s = 0; s < profile.solvers.size(); ++s)
-      lines[c.optimizers[s].label] = profile.solvers[s].ratios;
-    json[std::string(kTolerances[t].name)] = {
-        {"problems", profile.problems}, {"ratios", lines}, {"reading", profile_reading(c, t)}};
+      lines[c.optimizers[s].label] = {{"problems", profile.solvers[s].problems},
+                                      {"ratios", profile.solvers[s].ratios}};
+    json[std::string(kTolerances[t].name)] = {{"optimizers", lines},
+                                              {"reading", profile_reading(c, t)}};
   }
   return json;
+}
+
+Json standing_json(const Standing& standing) {
+  return {{"solved", standing.solved},
+          {"wins", standing.wins},
+          {"reached", standing.reached},
+          {"typical", json_number(standing.typical)},
+          {"score", standing.score}};
+}
+
+// Best first.
+Json standings_json(const Comparison& c) {
+  Json list = Json::array();
+  for (const OptimizerAxis& optimizer : c.optimizers) {
+    Json json{{"optimizer", optimizer.label},       {"family", optimizer.family()},
+              {"privileges", optimizer.privileges}, {"planned", optimizer.planned},
+              {"applicable", optimizer.applicable}, {"runs", optimizer.runs},
+              {"failed", optimizer.failed}};
+    for (std::size_t t = 0; t < kTolerances.size(); ++t)
+      json["standings"][std::string(kTolerances[t].name)] = standing_json(optimizer.standings[t]);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json leader_json(const Comparison& c, const std::optional<Leader>& leader) {
+  if (!leader) return nullptr;
+  return {{"optimizer", c.optimizers[leader->optimizer].label},
+          {"stays_first", leader->stays_first}};
 }
 
 Json missing_json(const Comparison& c) {
@@ -100,6 +130,10 @@ std::string json_report(const Comparison& c) {
                   {"superseded", c.study->superseded},
                   {"unreadable", unreadable},
                   {"failures", failures_json(c)},
+                  {"verdict", verdict(c)},
+                  {"leader", leader_json(c, c.leader)},
+                  {"open_leader", leader_json(c, c.open_leader)},
+                  {"optimizers", standings_json(c)},
                   {"profiles", profiles_json(c)},
                   {"cells", cells}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

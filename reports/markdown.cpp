@@ -12,36 +12,68 @@ namespace isoline {
 namespace {
 
 constexpr std::size_t kMostRows = 60;  // of a matrix, so that a summary stays a summary
+constexpr std::size_t kMostColumns = 7;
 constexpr std::size_t kMostFailures = 50;
 
 std::string matrix_cell(const Cell& cell) {
   std::string text = matrix_text(cell, kTightest);
   if (cell.is_best[kTightest]) text = "**" + text + "**";
-  if (!cell.privileges.empty()) text += " †";
   if (cell.is_measured() && !is_complete(cell, kTightest))
     text += fmt::format(" ({})", count_text(cell, kTightest));
   return text;
 }
 
-std::string matrix(const Comparison& c) {
-  std::string text = "| optimizer | solved |", rule = "|---|---:|";
-  for (const ProblemAxis& problem : c.problems) {
-    text += fmt::format(" {} |", markdown_text(problem.spec));
+std::string label_of(const OptimizerAxis& optimizer) {
+  return markdown_text(shown_spec(optimizer.label)) + (optimizer.privileges.empty() ? "" : " †");
+}
+
+std::string standings(const Comparison& c) {
+  std::string text =
+      "|  | optimizer | solved | best on | × least work | runs | failed |\n"
+      "|---:|---|---:|---:|---:|---:|---:|\n";
+  for (std::size_t s = 0; s < std::min(c.optimizers.size(), kMostRows); ++s) {
+    const OptimizerAxis& optimizer = c.optimizers[s];
+    const Standing& standing = optimizer.tightest();
+    text += fmt::format("| {} | {} | {}/{} | {} | {} | {}/{} | {} |\n", s + 1, label_of(optimizer),
+                        standing.solved, optimizer.planned, standing.wins,
+                        standing.typical == kNever ? "✗" : fmt::format("{:.3g}", standing.typical),
+                        standing.reached, optimizer.runs, optimizer.failed);
+  }
+  if (kMostRows < c.optimizers.size())
+    text += fmt::format("\n{} more optimizers, none ranked higher, are in the page.\n",
+                        c.optimizers.size() - kMostRows);
+  return text +
+         "\nRanked by their performance profiles. Solved: problems whose median run gets there, of "
+         "those given to the optimizer. Best on: with the least work of all. × least work: median "
+         "over problems; ✗ if it solves fewer than half. Runs: that get there. Failed: errors, "
+         "crashes, time or memory limits. †: sees what others do not.\n";
+}
+
+// Problems [first, last) as columns: a table with all of them would be too wide to read.
+std::string matrix(const Comparison& c, std::size_t first, std::size_t last) {
+  std::string text = "\n| optimizer |", rule = "|---|";
+  for (std::size_t p = first; p < last; ++p) {
+    text += fmt::format(" {} |", markdown_text(shown_spec(c.problems[p].spec)));
     rule += "---:|";
   }
   text += "\n" + rule + "\n";
-  const std::size_t rows = std::min(c.optimizers.size(), kMostRows);
-  for (std::size_t s = 0; s < rows; ++s) {
-    text += fmt::format("| {} | {}/{} |", markdown_text(c.optimizers[s].label),
-                        c.optimizers[s].solved[kTightest], c.problems.size());
-    for (std::size_t p = 0; p < c.problems.size(); ++p)
+  for (std::size_t s = 0; s < std::min(c.optimizers.size(), kMostRows); ++s) {
+    text += fmt::format("| {} |", label_of(c.optimizers[s]));
+    for (std::size_t p = first; p < last; ++p)
       text += fmt::format(" {} |", matrix_cell(c.cell(p, s)));
     text += "\n";
   }
-  if (rows < c.optimizers.size())
-    text += fmt::format("\n{} more optimizers, none ranked higher, are in the page.\n",
-                        c.optimizers.size() - rows);
   return text;
+}
+
+std::string matrices(const Comparison& c) {
+  std::string text;
+  for (std::size_t p = 0; p < c.problems.size(); p += kMostColumns)
+    text += matrix(c, p, std::min(p + kMostColumns, c.problems.size()));
+  return text +
+         "\nMedian work to 1e-6, in forward solves. Bold: the least of its problem. ✗: not reached "
+         "by half of the runs. (k/n): k of n runs reached it. n/a: the pair makes no sense. Empty: "
+         "never planned.\n";
 }
 
 std::string failures(const Comparison& c) {
@@ -71,16 +103,17 @@ std::string markdown_report(const Comparison& c) {
   if (!c.missing.empty())
     text += fmt::format("> **Incomplete: {}**\n\n", markdown_text(missing_text(c)));
   for (const std::string& remark : remarks(c)) text += fmt::format("- {}\n", markdown_text(remark));
-  text += fmt::format("\n## Median work to {}, in forward solves\n\n", kTolerances[kTightest].name);
-  text += matrix(c);
-  text +=
-      "\nBold: the least of its problem. ✗: not reached by half of the runs. (k/n): k of n runs "
-      "reached it. n/a: the pair makes no sense. †: the method sees what others do not.\n";
-  text += "\n## What this data shows\n\n";
-  text += fmt::format("- {}\n", markdown_text(profile_reading(c, kTightest)));
+  text += "\n## Who solves the problems to 1e-6\n\n";
+  for (const std::string& sentence : verdict(c)) text += markdown_text(sentence) + "\n\n";
+  text += standings(c);
+  text += "\n## Problem by problem\n\n| problem | what this data shows |\n|---|---|\n";
   for (std::size_t p = 0; p < c.problems.size(); ++p)
-    text += fmt::format("- **{}** {}\n", markdown_text(c.problems[p].spec),
+    text += fmt::format("| {} | {} |\n", markdown_text(shown_spec(c.problems[p].spec)),
                         markdown_text(curve_reading(c, p)));
+  const bool is_large = c.problems.size() > kMostColumns;  // folded away, then
+  text += is_large ? "\n<details><summary>Every problem and optimizer</summary>\n" : "";
+  text += matrices(c);
+  text += is_large ? "\n</details>\n" : "";
   return text + failures(c);
 }
 

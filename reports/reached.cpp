@@ -13,11 +13,11 @@ void fill_from_hits(Run& run, const Hits& hits) {
   }
 }
 
-void fill_from_curve(Run& run, Real minimum) {
+void fill_from_curve(Run& run) {
   const Curve& curve = run.record->curve;
   const Real start = run.record->summary.start_loss;
   for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-    const Real goal = minimum + kTolerances[t].tau * (start - minimum);
+    const Real goal = run.minimum + kTolerances[t].tau * (start - run.minimum);
     for (std::size_t i = 0; i < curve.loss.size(); ++i) {
       if (!(curve.loss[i] <= goal)) continue;
       run.work[t] = static_cast<Real>(curve.work[i]);
@@ -47,10 +47,11 @@ void fill_reached(Run& run, const BestKnown& best) {
   run.work.fill(kNever);
   run.seconds.fill(kNever);
   if (run.record->status == Status::inapplicable) return;
+  run.minimum = best.minimum(*run.record);
   if (run.record->hits)
     fill_from_hits(run, *run.record->hits);
   else
-    fill_from_curve(run, best.minimum(*run.record));
+    fill_from_curve(run);
 }
 
 }  // namespace isoline

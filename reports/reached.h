@@ -19,7 +19,8 @@ class BestKnown {
   std::map<std::pair<std::string, std::uint64_t>, Real> least_;
 };
 
-// Fills work and seconds: exact from the record's hits, otherwise read off the kept curve.
+// Fills the minimum, work and seconds: exact from the record's hits, otherwise read off the kept
+// curve.
 void fill_reached(Run& run, const BestKnown& best);
 
 }  // namespace isoline

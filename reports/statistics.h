@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/array.h"
@@ -24,21 +25,29 @@ struct Spread {
 Spread spread_of(std::vector<Real> values);
 Real median_of(std::vector<Real> values);
 
-// The share of problems that each solver solves within a factor of the least cost.
-// Dolan, Moré (2002), Math. Program. 91:201–213.
+// The share of its problems that each solver solves within a factor of the least cost.
+// Dolan, Moré (2002), Math. Program. 91:201–213; but n_p is a solver's own: a problem never asked
+// of it says nothing about it, while one it failed on, or to which it does not apply, does.
 struct ProfileLine {
   std::vector<Real> ratios;  // r_{p,s} of the problems solved, ascending
+  std::size_t problems = 0;  // n_p: all that were asked of this solver, also those nobody solves
 };
 struct Profile {
-  std::size_t problems = 0;  // n_p: also those that nobody solves
   std::vector<ProfileLine> solvers;
 
   Real share(std::size_t solver, Real factor) const;  // ρ_s(factor)
   Real area(std::size_t solver, Real most) const;  // ∫ ρ_s over log2 factor in [0, log2 most], mean
 };
 
-// costs[p][s]; infinite or not-a-number: unsolved. A cost below one unit counts as one unit, so
-// that a problem solved at its start leaves the other ratios finite.
-Profile performance_profile(const std::vector<std::vector<Real>>& costs);
+// costs[p][s]; infinite or not-a-number: unsolved; nothing: never asked. A cost below one unit
+// counts as one unit, so that a problem solved at its start leaves the other ratios finite.
+using Costs = std::vector<std::vector<std::optional<Real>>>;
+Profile performance_profile(const Costs& costs);
+
+// r_{p,s} of one problem: its costs over the least of them; infinite where unsolved.
+std::vector<std::optional<Real>> cost_ratios(const std::vector<std::optional<Real>>& costs);
+
+// A ratio's part in the area of a profile: 1 at the least cost, 0 from `most` times it on.
+Real score_of(Real ratio, Real most);
 
 }  // namespace isoline

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <span>
 
 namespace isoline {
@@ -121,6 +122,22 @@ std::string figure(const Spread& spread) {
 }
 
 std::string percent(Real share) { return fmt::format("{:.0f} %", 100 * share); }
+
+std::string shown_spec(std::string_view spec) {
+  constexpr std::size_t kLong = 7;  // "0.01389" still stands in full
+  std::string out;
+  for (std::size_t i = 0; i < spec.size();) {
+    const std::size_t end = std::min(spec.find_first_not_of("0123456789.e-", i), spec.size());
+    const std::string word(spec.substr(i, end - i));
+    const bool is_value = i > 0 && spec[i - 1] == '=';
+    char* rest = nullptr;
+    const Real value = is_value && word.size() > kLong ? std::strtod(word.c_str(), &rest) : 0;
+    out += rest != nullptr && *rest == 0 ? figure(value) : word;
+    if (end < spec.size()) out += spec[end];
+    i = end + 1;
+  }
+  return out;
+}
 
 std::string html_text(std::string_view text) { return escaped(text, kHtml); }
 

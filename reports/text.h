@@ -19,6 +19,9 @@ std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for wha
 std::string range_figure(const Spread& spread, std::string (*written)(Real));
 std::string percent(Real share);
 
+// A spec as people read it: "newton[rate=0.3333]", its long numbers cut to four digits.
+std::string shown_spec(std::string_view spec);
+
 // Text from records, made safe for the place it goes to.
 std::string html_text(std::string_view text);
 std::string markdown_text(std::string_view text);

@@ -3,9 +3,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "reports/text.h"
 
 namespace isoline {
+
+std::string status_meaning(Status status) {
+  switch (status) {
+    case Status::converged:
+      return "stopped by the method's own test";
+    case Status::target:
+      return "reached the target loss of the run";
+    case Status::budget:
+      return "used up their work or iterations";
+    case Status::stalled:
+      return "stopped making progress";
+    case Status::diverged:
+      return "blew up: not finite, or 1e12 times the start";
+    case Status::inapplicable:
+      return "make no sense for the problem";
+    case Status::failed:
+      return "ended in an error";
+    case Status::crashed:
+      return "killed their process";
+    case Status::timeout:
+      return "were stopped at the time limit";
+    case Status::memory:
+      return "ran out of memory";
+    case Status::interrupted:
+      return "were interrupted";
+    case Status::running:
+      break;
+  }
+  return "did not end";
+}
 
 std::string status_text(const std::map<Status, std::size_t>& statuses) {
   std::string text;
@@ -31,14 +63,43 @@ std::string headline(const Comparison& c) {
   const auto counted = [](std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
-  return fmt::format("{} on {}, {}, {}", counted(c.optimizers.size(), "optimizer"),
-                     counted(c.problems.size(), "problem"), counted(c.seeds.size(), "seed"),
-                     counted(c.runs.size(), "run"));
+  std::string problems = counted(c.names, "problem");
+  if (c.problems.size() > c.names) problems += fmt::format(" ({} settings)", c.problems.size());
+  return fmt::format("{} on {}, {}, {}", counted(c.optimizers.size(), "optimizer"), problems,
+                     counted(c.seeds.size(), "seed"), counted(c.runs.size(), "run"));
 }
+
+namespace {
+
+// "heat: 17, heat[N=16]: 12" where some problems were not asked of every optimizer; else empty.
+std::string partial_rows(const Comparison& c) {
+  constexpr std::size_t kNamed = 8;
+  std::vector<std::string> rows;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const auto planned =
+        std::ranges::count_if(c.cells[p], [](const Cell& x) { return x.planned > 0; });
+    if (static_cast<std::size_t>(planned) < c.optimizers.size())
+      rows.push_back(fmt::format("{}: {}", shown_spec(c.problems[p].spec), planned));
+  }
+  const std::size_t more = rows.size() > kNamed ? rows.size() - kNamed : 0;
+  rows.resize(rows.size() - more);
+  return fmt::format("{}{}", fmt::join(rows, ", "),
+                     more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+}  // namespace
 
 std::vector<std::string> remarks(const Comparison& c) {
   std::vector<std::string> all;
   const Study& study = *c.study;
+  if (const std::string rows = partial_rows(c); !rows.empty())
+    all.push_back(fmt::format(
+        "Not every problem was given to every optimizer, as where a grid is too large for methods "
+        "that factorize a matrix or take no derivatives. An empty cell was never planned and "
+        "counts "
+        "for nobody: work is compared within one problem, and each optimizer is judged on the "
+        "problems given to it. Optimizers by problem, of {}: {}.",
+        c.optimizers.size(), rows));
   if (study.superseded > 0)
     all.push_back(
         fmt::format("{} older results of the same cells were left aside.", study.superseded));
@@ -51,7 +112,7 @@ std::vector<std::string> remarks(const Comparison& c) {
     if (!problem.is_minimum_declared)
       all.push_back(fmt::format(
           "{} declares no least loss: its tolerances refer to the best loss any run reached.",
-          problem.spec));
+          shown_spec(problem.spec)));
   return all;
 }
 

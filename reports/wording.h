@@ -10,6 +10,7 @@
 namespace isoline {
 
 std::string headline(const Comparison& comparison);  // "33 optimizers on 16 problems, …"
+std::string status_meaning(Status status);           // "used up their work or iterations"
 std::string status_text(const std::map<Status, std::size_t>& statuses);  // "target 3, budget 2"
 
 // "118 of 120 cells, missing: sine / gd / seed 3; …". Empty where nothing is missing.

@@ -1,28 +1,89 @@
 // Charts over the page's data: learning curves, paths over contours, performance profiles.
 'use strict';
 
+const DATA = JSON.parse(document.getElementById('data').textContent);
 const SHOWN_AT_FIRST = 8;
 const COLOURS = {  // Okabe and Ito (2008), told apart by colour-blind readers too
   light: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#5b4bb5', '#555555'],
   dark: ['#4aa8e8', '#f0803c', '#2cc295', '#e09cc2', '#f2b632', '#8fd0f7', '#a394f0', '#b8b8b8'],
 };
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3], [14, 4]];
+const MARKERS = ['circle', 'rect', 'triangle', 'rectRot', 'crossRot'];
+const FEW = 12;  // as many lines are all shown at first
+const NARROW = 640;  // pixels
 
 function isDark() {
   const chosen = document.documentElement.dataset.theme;
   return chosen ? chosen === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
 }
 
-const colourOf = (index) => COLOURS[isDark() ? 'dark' : 'light'][index % 8];
-const dashOf = (index) => DASHES[Math.floor(index / 8) % DASHES.length];
 const cssColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+// One colour a method in every chart; settings of the same method differ by dash and marker.
+const STYLES = (() => {
+  const methods = new Map(), variants = new Map();
+  return DATA.optimizers.map((label) => {
+    const method = label.split('[')[0];
+    if (!methods.has(method)) methods.set(method, methods.size);
+    const variant = variants.get(method) ?? 0;
+    variants.set(method, variant + 1);
+    const place = methods.get(method);
+    return {colour: place % 8, dash: (Math.floor(place / 8) + variant) % DASHES.length, marker: MARKERS[variant % MARKERS.length]};
+  });
+})();
+const colourOf = (index) => COLOURS[isDark() ? 'dark' : 'light'][STYLES[index].colour];
+const dashOf = (index) => DASHES[STYLES[index].dash];
 
 function lineStyle(index) {
   return {
-    borderColor: colourOf(index), backgroundColor: colourOf(index), borderDash: dashOf(index),
+    optimizer: index, borderColor: colourOf(index), backgroundColor: colourOf(index), borderDash: dashOf(index),
     borderWidth: 1.8, pointRadius: 0, pointHoverRadius: 4, pointHitRadius: 6, tension: 0, showLine: true,
   };
 }
+
+// Leaves one optimizer in full colour, or all of them: `index` undefined.
+function highlight(chart, index) {
+  if (!chart || chart.lit === index) return;
+  chart.lit = index;
+  for (const set of chart.data.datasets) {
+    if (set.optimizer === undefined) continue;
+    const isFaded = index !== undefined && set.optimizer !== index;
+    set.borderColor = colourOf(set.optimizer) + (isFaded ? '28' : '');
+    set.borderWidth = index === set.optimizer ? 3 : 1.8;
+    set.order = isFaded ? 2 : 1;
+  }
+  chart.update('none');
+}
+
+// Names at the ends of the lines, pushed apart; where the chart is narrow the legend must do.
+const END_LABELS = {
+  id: 'endLabels',
+  afterDatasetsDraw(chart) {
+    if (chart.width < NARROW || !chart.options.hasEndLabels) return;
+    const context = chart.ctx, height = 13, placed = [];
+    const ends = chart.data.datasets.filter((set) => set.optimizer !== undefined && set.data.length > 0).map((set) => {
+      const last = set.data[set.data.length - 1];
+      return {set, x: chart.scales.x.getPixelForValue(last.x) + 5, y: chart.scales.y.getPixelForValue(last.y)};
+    }).sort((a, b) => a.y - b.y);
+    context.save();
+    context.font = '11.5px system-ui, sans-serif';
+    context.textBaseline = 'middle';
+    for (const end of ends) {
+      const width = context.measureText(end.set.label).width;
+      const meets = (other) => Math.abs(other.y - end.y) < height && end.x < other.x + other.width && other.x < end.x + width;
+      end.x = Math.min(end.x, chart.width - width - 2);
+      for (let other; (other = placed.find(meets));) end.y = other.y + height;
+      placed.push({x: end.x, y: end.y, width});
+      if (end.y > chart.height - 30) continue;
+      context.lineWidth = 3;
+      context.strokeStyle = cssColour('--paper');
+      context.strokeText(end.set.label, end.x, end.y);
+      context.fillStyle = end.set.borderColor;
+      context.fillText(end.set.label, end.x, end.y);
+    }
+    context.restore();
+  },
+};
 
 function axis(title, rest = {}) {
   const soft = cssColour('--soft'), line = cssColour('--line');
@@ -58,7 +119,7 @@ function logAxis(title, low, high) {
   });
 }
 
-function newChart(place, label, datasets, scales, tooltip) {
+function newChart(place, label, datasets, scales, tooltip, hasEndLabels = false) {
   const holder = document.createElement('div');
   holder.className = 'canvas';
   const canvas = document.createElement('canvas');
@@ -69,9 +130,13 @@ function newChart(place, label, datasets, scales, tooltip) {
   return new Chart(canvas, {
     type: 'scatter',
     data: {datasets},
+    plugins: [END_LABELS],
     options: {
+      hasEndLabels,
+      layout: {padding: {right: hasEndLabels && place.clientWidth >= NARROW ? 130 : 8, top: 4}},
+      onHover: (_, items, chart) => highlight(chart, chart.data.datasets[items[0]?.datasetIndex]?.optimizer),
       animation: false, parsing: false, normalized: true, responsive: true, maintainAspectRatio: false,
-      interaction: {mode: 'nearest', intersect: false},
+      interaction: {mode: 'nearest', intersect: true},
       scales,
       plugins: {legend: {display: false}, tooltip},
     },
@@ -89,25 +154,35 @@ function least(values) {
   return values.reduce((low, value) => (value > 0 && value < low ? value : low), Infinity);
 }
 
-// Zero has no logarithm: it is drawn below all others, at half or a tenth of the least.
+// Zero has no logarithm: it is drawn below all others, and what is below the floor on the floor.
 function curveDatasets(state) {
   const curves = state.problem.curves;
   const zeroX = least(curves.flatMap((curve) => curve[state.horizontal])) / 2;
-  const zeroY = least(curves.flatMap((curve) => curve[state.vertical])) / 10;
+  const zeroY = Math.max(LOWEST, least(curves.flatMap((curve) => curve[state.vertical])) / 10);
   return curves.filter((curve) => state.visible.has(curve.s)).map((curve) => {
     const data = [];
     curve[state.horizontal].forEach((x, i) => {
       const y = curve[state.vertical][i];
-      if (x !== null && y !== null) data.push({x: x > 0 ? x : zeroX, y: y > 0 ? y : zeroY});
+      if (x !== null && y !== null) data.push({x: x > 0 ? x : zeroX, y: Math.max(y, zeroY)});
     });
     return {label: DATA.optimizers[curve.s], data, ...lineStyle(curve.s)};
   });
 }
 
+const LOWEST = 1e-12;  // of a loss gap or error: below lies rounding
 const AXES = {
   iterations: 'iterations', work: 'work, forward solves', seconds: 'time, s',
-  loss: 'loss', x_error: 'error in x',
+  gap: 'what is left of the loss', x_error: 'error in x',
 };
+
+// The tolerance of the tables, as a line to cross.
+function toleranceLine(from, to) {
+  const tau = Number(TOLERANCES[tolerance]);
+  return {
+    label: `τ = ${TOLERANCES[tolerance]}`, data: [{x: from, y: tau}, {x: to, y: tau}], showLine: true, pointRadius: 0,
+    pointHitRadius: 0, borderColor: cssColour('--soft'), borderDash: [3, 4], borderWidth: 1.2, order: 5,
+  };
+}
 
 function drawCurves(place, state) {
   const datasets = curveDatasets(state);
@@ -118,10 +193,15 @@ function drawCurves(place, state) {
     const low = values.reduce((a, b) => Math.min(a, b)), high = values.reduce((a, b) => Math.max(a, b));
     return [low, high > low ? high : low * 10];
   };
-  const scales = {x: logAxis(AXES[state.horizontal], ...ends('x')), y: logAxis(AXES[state.vertical], ...ends('y'))};
+  const across = ends('x'), up = ends('y');
+  if (state.vertical === 'gap') {
+    up[1] = Math.min(up[1] * 1.5, 1e3);  // a run that diverges would flatten all others
+    datasets.push(toleranceLine(...across));
+  }
+  const scales = {x: logAxis(AXES[state.horizontal], ...across), y: logAxis(AXES[state.vertical], ...up)};
   const label = `${AXES[state.vertical]} against ${AXES[state.horizontal]} on ${state.problem.spec}`;
   return newChart(place, label, datasets, scales,
-      tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`));
+      tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`), true);
 }
 
 function pairs(flat) {
@@ -146,24 +226,39 @@ function markerDataset(point, style, label) {
   };
 }
 
+// A short run is drawn with a marker a step, as the published figures have it; a long one as a line.
+const isShort = (path) => path.points.length <= 2 * 16;
+const steps = (path) => path.points.length / 2 - 1;
+
+function pathDataset(path) {
+  const style = lineStyle(path.s);
+  if (!isShort(path)) return {...style, borderDash: dashOf(path.s), borderWidth: 2.2, pointHitRadius: 2};
+  const isCross = STYLES[path.s].marker === 'crossRot';
+  return {
+    ...style, borderDash: [3, 3], borderWidth: 1.2, pointRadius: isCross ? 5 : 4.2, pointStyle: STYLES[path.s].marker,
+    pointBorderWidth: 1.6, backgroundColor: cssColour('--paper'),
+  };
+}
+
 function drawPlane(place, state, space) {
   const plane = state.problem[space];
   const shown = plane.paths.filter((path) => state.visible.has(path.s));
   const datasets = contourDatasets(plane.contours);
   for (const path of shown)
-    datasets.push({
-      label: DATA.optimizers[path.s], data: pairs(path.points), ...lineStyle(path.s), pointRadius: 1.6, order: 1,
-    });
+    datasets.push({label: DATA.optimizers[path.s], data: pairs(path.points), ...pathDataset(path), order: 1});
   if (plane.paths.length > 0) datasets.push(markerDataset(pairs(plane.paths[0].points)[0], 'circle', 'start'));
   if (plane.goal.length === 2) datasets.push(markerDataset(pairs(plane.goal)[0], 'star', space === 'x' ? 'solution' : 'target'));
   const [left, right, bottom, top] = plane.window;
-  const scales = {x: axis(`${space}₁`, {min: left, max: right}), y: axis(`${space}₂`, {min: bottom, max: top})};
+  const plain = {ticks: {autoSkip: true, includeBounds: false}, grid: {display: false, borderColor: cssColour('--line')}};
+  const scales = {
+    x: axis(`${space}₁`, {min: left, max: right, ...plain}), y: axis(`${space}₂`, {min: bottom, max: top, ...plain}),
+  };
   return newChart(place, `Paths in ${space} on ${state.problem.spec}`, datasets, scales,
       tooltipOf((point) => `(${short(point.x)}, ${short(point.y)})`));
 }
 
 // ρ(τ) as a staircase over log2 τ.
-function staircase(ratios, problems, end) {
+function staircase([problems, ...ratios], end) {
   const points = [{x: 0, y: 0}];
   ratios.forEach((ratio, i) => {
     const x = Math.log2(ratio);
@@ -175,15 +270,16 @@ function staircase(ratios, problems, end) {
 }
 
 function drawProfile(place, profile, visible) {
-  const farthest = Math.max(2, ...[...visible].flatMap((s) => profile.ratios[s] ?? []).map(Math.log2));
-  const end = Math.min(Math.ceil(farthest + 0.5), 14);
+  const ratios = [...visible].flatMap((s) => profile[s].slice(1));
+  const end = Math.min(Math.ceil(Math.max(2, ...ratios.map(Math.log2)) + 0.5), 10);
   const datasets = [...visible].map((s) => ({
-    label: DATA.optimizers[s], data: staircase(profile.ratios[s] ?? [], profile.problems, end), ...lineStyle(s),
+    label: DATA.optimizers[s], problems: profile[s][0], data: staircase(profile[s], end), ...lineStyle(s),
   }));
   const scales = {
-    x: axis('work, as a multiple of the least', {min: 0, max: end, ticks: {stepSize: 1, callback: (x) => `${2 ** x}×`}}),
+    x: axis('work, as a multiple of the least on the same problem', {min: 0, max: end, ticks: {stepSize: 1, callback: (x) => `${2 ** x}×`}}),
     y: axis('problems solved', {min: 0, max: 100, ticks: {callback: (y) => `${y} %`}}),
   };
-  return newChart(place, 'Performance profile', datasets, scales,
-      tooltipOf((point) => `${point.y.toFixed(0)} % within ${short(2 ** point.x)}×`));
+  const tooltip = tooltipOf((point) => `${point.y.toFixed(0)} % within ${short(2 ** point.x)}×`);
+  tooltip.callbacks.afterLabel = (item) => `of ${item.dataset.problems} problems`;
+  return newChart(place, 'Performance profile', datasets, scales, tooltip, true);
 }

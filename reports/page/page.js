@@ -1,7 +1,6 @@
 // What the page does: themes, switches, legends, copying, and charts built when first seen.
 'use strict';
 
-const DATA = JSON.parse(document.getElementById('data').textContent);
 const TOLERANCES = ['1e-1', '1e-3', '1e-6'];
 let tolerance = TOLERANCES.length - 1;
 const redraws = [];  // one for each chart group already seen
@@ -43,14 +42,14 @@ function swatch(index) {
 }
 
 // A legend that shows and hides lines; `ranked` is in order of rank.
-function fillLegend(legend, ranked, visible, onChange) {
+function fillLegend(legend, ranked, visible, onChange, onPoint) {
   const show = (some) => () => {
     visible.clear();
     some.forEach((index) => visible.add(index));
-    fillLegend(legend, ranked, visible, onChange);
+    fillLegend(legend, ranked, visible, onChange, onPoint);
     onChange();
   };
-  const presets = ranked.length <= SHOWN_AT_FIRST
+  const presets = ranked.length <= FEW
       ? []
       : [pressable(`best ${SHOWN_AT_FIRST}`, undefined, show(ranked.slice(0, SHOWN_AT_FIRST))),
          pressable('all', undefined, show(ranked)), pressable('none', undefined, show([]))];
@@ -62,36 +61,42 @@ function fillLegend(legend, ranked, visible, onChange) {
       onChange();
     });
     button.prepend(swatch(index));
+    for (const [event, lit] of [['pointerenter', index], ['pointerleave', undefined], ['focus', index], ['blur', undefined]])
+      button.addEventListener(event, () => onPoint(lit));
     return button;
   });
   legend.replaceChildren(...presets, ...names);
 }
 
-function newLegend(ranked, visible, onChange) {
+function newLegend(ranked, visible, onChange, onPoint) {
   const legend = document.createElement('div');
   legend.className = 'names';
-  fillLegend(legend, ranked, visible, onChange);
+  fillLegend(legend, ranked, visible, onChange, onPoint);
   return legend;
 }
 
-// Draws into a place anew, whatever it held before.
+const shownAtFirst = (ranked) => new Set(ranked.length <= FEW ? ranked : ranked.slice(0, SHOWN_AT_FIRST));
+
+// Draws into a place anew, whatever it held before; `redraw.chart` is what stands there.
 function redrawer(place, draw) {
-  let chart = null;
-  return () => {
-    chart?.destroy();
+  const redraw = () => {
+    redraw.chart?.destroy();
     place.replaceChildren();
-    chart = draw(place);
+    redraw.chart = draw(place);
   };
+  return redraw;
 }
 
 function buildProfile(section) {
   const place = section.querySelector('.chart');
+  if (place === null) return;  // too few problems
   const all = DATA.optimizers.map((_, index) => index);
-  const visible = new Set(all.slice(0, SHOWN_AT_FIRST));
+  const visible = shownAtFirst(all);
   const draw = redrawer(place, () => drawProfile(place, DATA.profiles[tolerance], visible));
-  const legend = newLegend(all, visible, draw);
+  const point = (index) => highlight(draw.chart, index);
+  const legend = newLegend(all, visible, draw, point);
   place.after(legend);
-  redraws.push(() => { draw(); fillLegend(legend, all, visible, draw); });
+  redraws.push(() => { draw(); fillLegend(legend, all, visible, draw, point); });
   draw();
 }
 
@@ -99,20 +104,21 @@ function buildProblem(article) {
   const problem = DATA.problems[Number(article.dataset.problem)];
   const ranked = problem.curves.map((curve) => curve.s);
   if (ranked.length === 0) return;
-  const state = {problem, visible: new Set(ranked.slice(0, SHOWN_AT_FIRST)), horizontal: 'work', vertical: 'loss'};
+  const state = {problem, visible: shownAtFirst(ranked), horizontal: 'work', vertical: 'gap'};
   const curves = article.querySelector('.curves');
   const place = document.createElement('div');
   const draws = [redrawer(place, () => drawCurves(place, state))];
   for (const plane of article.querySelectorAll('.plane'))
     draws.push(redrawer(plane, () => drawPlane(plane, state, plane.dataset.space)));
   const drawAll = () => draws.forEach((draw) => draw());
+  const point = (index) => draws.forEach((draw) => highlight(draw.chart, index));
   const choose = (key) => (value) => { state[key] = value; draws[0](); };
   curves.append(newSwitch('against', {iterations: 'iterations', work: 'work', seconds: 'time'}, 'work', choose('horizontal')));
   if (problem.curves.some((curve) => curve.x_error.some((error) => error !== null)))
-    curves.append(newSwitch('show', {loss: 'loss', x_error: 'error in x'}, 'loss', choose('vertical')));
-  const legend = newLegend(ranked, state.visible, drawAll);
+    curves.append(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, 'gap', choose('vertical')));
+  const legend = newLegend(ranked, state.visible, drawAll, point);
   curves.append(place, legend);
-  redraws.push(() => { drawAll(); fillLegend(legend, ranked, state.visible, drawAll); });
+  redraws.push(() => { drawAll(); fillLegend(legend, ranked, state.visible, drawAll, point); });
   drawAll();
 }
 
@@ -177,6 +183,9 @@ offerThemes(document.getElementById('theme'));
 offerCopies();
 document.querySelectorAll('table.sortable').forEach(makeSortable);
 document.querySelector('.filter').hidden = false;
+explainMatrices();
+document.getElementById('wide').addEventListener('change', (event) =>
+  document.getElementById('detail-table').classList.toggle('wide', event.target.checked));
 makeFilter(document.getElementById('filter'), document.getElementById('detail-table'), document.getElementById('shown'));
 whenSeen([document.getElementById('profile')], buildProfile);
 whenSeen(document.querySelectorAll('article.problem'), buildProblem);

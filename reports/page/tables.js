@@ -4,9 +4,9 @@
 // What a cell sorts by: its leading number, ✗ as infinite, words otherwise, nothing last.
 function sortKey(cell) {
   const text = (cell?.firstChild?.textContent ?? '').trim();
-  if (text === '') return {group: 2, value: 0};
+  if (text === '' || text === '·') return {group: 2, value: 0};
   if (text.startsWith('✗')) return {group: 0, value: Infinity};
-  const number = Number(text.replace(/[≈/].*$/, ''));
+  const number = Number(text.replace(/[≈/×].*$/, ''));
   return Number.isNaN(number) ? {group: 1, value: text.toLowerCase()} : {group: 0, value: number};
 }
 
@@ -65,4 +65,59 @@ function makeFilter(input, table, output) {
   };
   input.addEventListener('input', apply);
   apply();
+}
+
+// What the table of all cells says of one of them: the matrix has no room for it.
+function explanationOf(row) {
+  const [problem, optimizer, runs, , , work, , , time, loss, error, fate] = [...row.cells].map((cell) => {
+    const range = cell.querySelector('small')?.textContent;
+    return (cell.firstChild?.textContent ?? '') + (range ? ` (${range})` : '');
+  });
+  const lines = work === '' ? [fate] : [
+    `${runs} runs to 1e-6`, `work to 1e-6: ${work} forward solves`, `time: ${time} ms`, `final loss: ${loss}`,
+    ...(error === '' ? [] : [`error in x: ${error}`]), `ended by: ${fate}`];
+  return [`${optimizer} on ${problem}`, ...lines];
+}
+
+function showTip(tip, [title, ...lines], near) {
+  const head = document.createElement('b');
+  head.textContent = title;
+  tip.replaceChildren(head, ...lines.map((line) => {
+    const span = document.createElement('span');
+    span.textContent = line;
+    return span;
+  }));
+  tip.hidden = false;
+  const box = near.getBoundingClientRect();
+  const isBelow = box.bottom + tip.offsetHeight + 8 < innerHeight;
+  tip.style.left = `${Math.max(8, Math.min(box.left, innerWidth - tip.offsetWidth - 8))}px`;
+  tip.style.top = `${isBelow ? box.bottom + 6 : box.top - tip.offsetHeight - 6}px`;
+}
+
+// Rows of the detail table stand by problem, then optimizer, as planned: found by counting, once.
+function rowsByCell(matrix, details) {
+  const rows = [...details.tBodies[0].rows], lines = [...matrix.tBodies[0].rows], found = new Map();
+  let next = 0;
+  for (let column = 2; column < lines[0]?.cells.length; ++column)
+    lines.forEach((line, s) => {
+      if (!line.cells[column].classList.contains('none')) found.set(`${s},${column}`, rows[next++]);
+    });
+  return found;
+}
+
+function explainMatrices() {
+  const tip = document.getElementById('tip');
+  const matrices = [...document.querySelectorAll('table.matrix')];
+  const rows = rowsByCell(matrices[0], document.getElementById('detail-table'));
+  for (const matrix of matrices) {
+    const explain = (event) => {
+      const cell = event.target.closest('td');
+      const row = cell && rows.get(`${cell.parentElement.sectionRowIndex},${cell.cellIndex}`);
+      if (row) showTip(tip, explanationOf(row), cell); else tip.hidden = true;
+    };
+    matrix.addEventListener('pointerover', explain);
+    matrix.addEventListener('click', explain);
+    matrix.addEventListener('pointerleave', () => { tip.hidden = true; });
+  }
+  addEventListener('scroll', () => { tip.hidden = true; }, {passive: true});
 }

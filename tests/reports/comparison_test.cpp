@@ -6,6 +6,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "reports/reached.h"
+#include "reports/readings.h"
 #include "reports/wording.h"
 #include "tests/reports/fixture.h"
 
@@ -104,6 +105,45 @@ TEST(Comparison, AnInapplicableCellIsNoFailure) {
   EXPECT_EQ(comparison.cell(0, 1).inapplicable, "needs a Hessian");
   EXPECT_EQ(comparison.optimizers[1].applicable, 0U);
   EXPECT_EQ(comparison.profiles[kTightest].share(1, 1e9), 0);
+}
+
+// b is worse on the problem both have, and alone on its other: a was never asked there, and is not
+// judged by it.
+TEST(Comparison, AProblemNeverPlannedDoesNotCountAgainstAMethod) {
+  Study study;
+  study.runs = {record_of({.problem = "heat", .optimizer = "a"}),
+                record_of({.problem = "heat", .optimizer = "b", .work_per_hit = 4}),
+                record_of({.problem = "wood", .optimizer = "b"})};
+  const Comparison comparison = compare_optimizers(study);
+  EXPECT_EQ(comparison.optimizers[0].label, "a");
+  EXPECT_EQ(comparison.optimizers[0].planned, 1U);
+  EXPECT_EQ(comparison.optimizers[0].tightest().solved, 1U);
+  EXPECT_EQ(comparison.profiles[kTightest].share(0, 1), 1);
+  EXPECT_EQ(comparison.profiles[kTightest].share(1, 1), 0.5);
+  EXPECT_NE(remarks(comparison).front().find("wood: 1"), std::string::npos);
+}
+
+TEST(Comparison, ThePrivilegedLeadOnlyAmongAll) {
+  Study study;
+  for (const char* problem : {"beale", "heat", "sine", "wood"})
+    for (const auto& [optimizer, work] :
+         {std::pair{"seer", 1}, std::pair{"fair", 3}, std::pair{"slow", 9}})
+      study.runs.push_back(
+          record_of({.problem = problem, .optimizer = optimizer, .work_per_hit = work}));
+  for (Record& record : study.runs)
+    if (record.request.optimizer.name == "seer") record.privileges = {"the solution"};
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(c.optimizers[c.leader->optimizer].label, "seer");
+  EXPECT_EQ(c.optimizers[c.open_leader->optimizer].label, "fair");
+  EXPECT_EQ(c.open_leader->stays_first, 1);  // on every problem, so in every draw
+  EXPECT_EQ(verdict(c).size(), 2U);
+}
+
+TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
+  Study study;
+  study.runs = {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})};
+  EXPECT_EQ(headline(compare_optimizers(study)),
+            "1 optimizer on 1 problem (2 settings), 1 seed, 2 runs");
 }
 
 TEST(Comparison, RatesFromAFileDoNotSplitAMethod) {

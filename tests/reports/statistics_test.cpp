@@ -36,7 +36,7 @@ TEST(Spread, NothingIsKnownOfNoValues) {
 // Three problems, two solvers, by hand: ratios of a are 1, 2, ∞; of b 2, 1, ∞.
 TEST(Profile, FollowsTheDefinition) {
   const Profile profile = performance_profile({{10, 20}, {8, 4}, {kNever, NAN}});
-  EXPECT_EQ(profile.problems, 3U);  // the one that nobody solves stays
+  EXPECT_EQ(profile.solvers[0].problems, 3U);  // the one that nobody solves stays
   EXPECT_DOUBLE_EQ(profile.share(0, 1), 1 / 3.0);
   EXPECT_DOUBLE_EQ(profile.share(0, 1.99), 1 / 3.0);
   EXPECT_DOUBLE_EQ(profile.share(0, 2), 2 / 3.0);
@@ -61,6 +61,15 @@ TEST(Profile, OneNotANumberDoesNotFailItsRow) {
   const Profile profile = performance_profile({{NAN, 3}});
   EXPECT_EQ(profile.share(1, 1), 1);
   EXPECT_EQ(profile.share(0, 1e9), 0);
+}
+
+// Each solver is judged on what was asked of it: a on the first problem, b on both.
+TEST(Profile, AProblemNeverAskedIsNotCounted) {
+  const Profile profile = performance_profile({{10, 5}, {std::nullopt, kNever}});
+  EXPECT_EQ(profile.solvers[0].problems, 1U);
+  EXPECT_EQ(profile.share(0, 2), 1);
+  EXPECT_EQ(profile.solvers[1].problems, 2U);
+  EXPECT_EQ(profile.share(1, kNever), 0.5);
 }
 
 // Drawn and counted by a direct transcription of the definition in Python (random.seed(7)); the

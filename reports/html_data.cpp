@@ -7,7 +7,7 @@
 
 #include "reports/contour.h"
 #include "reports/curves.h"
-#include "reports/page.h"
+#include "reports/html.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -43,9 +43,9 @@ std::string list(const Range& range, Item item) {
 
 std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
   return fmt::format(
-      "{{\"s\":{},\"iterations\":{},\"work\":{},\"seconds\":{},\"loss\":{},\"x_error\":{}}}",
+      "{{\"s\":{},\"iterations\":{},\"work\":{},\"seconds\":{},\"gap\":{},\"x_error\":{}}}",
       optimizer, list(curve.iteration, number), list(curve.work, number),
-      list(curve.seconds, number), list(curve.loss, number), list(curve.x_error, number));
+      list(curve.seconds, number), list(curve.gap, number), list(curve.x_error, number));
 }
 
 // In order of rank, so that the page can show the best by default.
@@ -80,18 +80,19 @@ std::string path_json(const Rows& rows, std::size_t optimizer, std::size_t most)
 std::string plane_json(const std::string& problem, const Landscape& landscape,
                        const std::vector<Path>& all, Rows Path::*rows,
                        const std::vector<Real>& goal) {
+  const auto window = view_window(problem, landscape, rows == &Path::y);
   const auto ranked_path = [&](const Path& path) {
     return path_json(path.*rows, path.index, points_per_path(all.size()));
   };
   return fmt::format("{{\"window\":{},\"contours\":{},\"paths\":{},\"goal\":{}}}",
-                     list(landscape.window, number), contours_json(problem, landscape),
+                     list(window, number), contours_json(problem, landscape),
                      list(all, ranked_path), list(goal, number));
 }
 
 std::string problem_json(const Comparison& c, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
-  std::string text =
-      fmt::format("{{\"spec\":{},\"curves\":{}", quoted(problem.spec), curves_json(c, p));
+  std::string text = fmt::format("{{\"spec\":{},\"curves\":{}", quoted(shown_spec(problem.spec)),
+                                 curves_json(c, p));
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)
@@ -103,10 +104,13 @@ std::string problem_json(const Comparison& c, std::size_t p) {
   return text + "}";
 }
 
+// [[problems, ratio, …], …], one list an optimizer.
 std::string profile_json(const Profile& profile) {
-  return fmt::format(
-      "{{\"problems\":{},\"ratios\":{}}}", profile.problems,
-      list(profile.solvers, [](const ProfileLine& line) { return list(line.ratios, number); }));
+  return list(profile.solvers, [](const ProfileLine& line) {
+    std::string text = fmt::format("[{}", line.problems);
+    for (const Real ratio : line.ratios) text += "," + number(ratio);
+    return text + "]";
+  });
 }
 
 }  // namespace
@@ -114,7 +118,8 @@ std::string profile_json(const Profile& profile) {
 std::string page_data(const Comparison& c) {
   std::string text = fmt::format(
       "{{\"optimizers\":{},\"profiles\":{},\"problems\":[",
-      list(c.optimizers, [](const OptimizerAxis& optimizer) { return quoted(optimizer.label); }),
+      list(c.optimizers,
+           [](const OptimizerAxis& optimizer) { return quoted(shown_spec(optimizer.label)); }),
       list(c.profiles, profile_json));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (p > 0) text += ',';

@@ -8,6 +8,7 @@
 namespace isoline {
 
 // Tables as HTML, complete without scripts.
+std::string standings_html(const Comparison& comparison, std::size_t tolerance);
 std::string matrix_html(const Comparison& comparison, std::size_t tolerance);
 std::string details_html(const Comparison& comparison);
 std::string failures_html(const Comparison& comparison);
