@@ -228,7 +228,6 @@ function markerDataset(point, style, label) {
 
 // A short run is drawn with a marker a step, as the published figures have it; a long one as a line.
 const isShort = (path) => path.points.length <= 2 * 16;
-const steps = (path) => path.points.length / 2 - 1;
 
 function pathDataset(path) {
   const style = lineStyle(path.s);
