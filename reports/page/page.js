@@ -129,15 +129,18 @@ function buildProblem(article) {
   drawAll();
 }
 
+// Once each, when about to be seen; all of them before printing, since paper does not scroll.
 function whenSeen(elements, build) {
-  const observer = new IntersectionObserver((entries) => {
-    for (const entry of entries)
-      if (entry.isIntersecting) {
-        observer.unobserve(entry.target);
-        build(entry.target);
-      }
-  }, {rootMargin: '300px'});
-  elements.forEach((element) => observer.observe(element));
+  const waiting = new Set(elements);
+  const buildOnce = (element) => {
+    observer.unobserve(element);
+    if (waiting.delete(element)) build(element);
+  };
+  const observer = new IntersectionObserver(
+      (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => buildOnce(entry.target)),
+      {rootMargin: '300px'});
+  waiting.forEach((element) => observer.observe(element));
+  addEventListener('beforeprint', () => [...waiting].forEach(buildOnce));
 }
 
 function chooseTolerance(chosen) {
