@@ -171,7 +171,7 @@ std::vector<Real> contour_levels(const std::string& problem, const Landscape& la
 }
 
 std::string contour_wording(const std::string& problem) {
-  if (problem == "square") return "at 2^i for i = −5 … 7, as in Fig. 1 of Holl et al. (2022)";
+  if (problem == "square") return "at 2ⁱ for i = −5 … 7, as in Fig. 1 of Holl et al. (2022)";
   if (problem == "sine")
     return "in even steps of its fifth root, as in Fig. 5a of Holl et al. (2022)";
   return "in even steps of its logarithm";

@@ -21,6 +21,7 @@ std::string_view embedded_page_css();
 std::string_view embedded_page_js();
 std::string_view embedded_tables_js();
 std::string_view embedded_charts_js();
+std::string_view embedded_lines_js();
 std::string_view embedded_chart_js();
 
 namespace {
@@ -168,6 +169,7 @@ std::string html_report(const Comparison& c) {
                                        {"provenance", provenance_html(c)},
                                        {"data", page_data(c)},
                                        {"chart-js", std::string(embedded_chart_js())},
+                                       {"lines-js", std::string(embedded_lines_js())},
                                        {"charts-js", std::string(embedded_charts_js())},
                                        {"tables-js", std::string(embedded_tables_js())},
                                        {"page-js", std::string(embedded_page_js())}});

@@ -68,7 +68,7 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
   std::string row = fmt::format("<tr><th>{}<th>{}{}", shown_html(c.problems[p].spec),
                                 shown_html(c.optimizers[s].label), dagger(cell.privileges));
   if (!cell.is_measured()) {
-    row += fmt::format("<td>{}", cell.runs.size());
+    row += cell.runs.empty() ? "<td>" : "<td>n/a";
     for (int empty = 0; empty < 8; ++empty) row += "<td>";
     return row + fmt::format("<td>{}<td>\n", cell.runs.empty()
                                                  ? "missing"
@@ -136,7 +136,8 @@ std::string matrix_html(const Comparison& c, std::size_t tolerance) {
 
 std::string details_html(const Comparison& c) {
   std::string html =
-      "<table class=sortable id=detail-table><thead><tr><th>problem<th>optimizer<th>runs to 1e-6";
+      "<table class=sortable id=detail-table><thead><tr><th>problem<th>optimizer<th>runs<br>to "
+      "1e-6";
   for (const char* what : {"work", "time, ms,"})
     for (const Tolerance& tolerance : kTolerances)
       html += fmt::format("<th>{}<br>to {}", what, tolerance.name);

@@ -1,4 +1,12 @@
 // The report of a study: one page for people, and the same figures as Markdown, LaTeX, CSV, JSON.
+//
+//   study                           reads the folders
+//   axes, reached, comparison       puts runs into cells and aggregates them: every figure
+//   statistics, standings           medians, profiles, who leads and how sure that is
+//   curves, contour                 what the plots draw
+//   text, wording, readings         how figures, phrases and whole sentences are written
+//   csv, json, latex, markdown,     one output format each
+//   terminal, html (html_*, page/)
 #pragma once
 
 #include <filesystem>

@@ -1,90 +1,6 @@
 // Charts over the page's data: learning curves, paths over contours, performance profiles.
 'use strict';
 
-const DATA = JSON.parse(document.getElementById('data').textContent);
-const SHOWN_AT_FIRST = 8;
-const COLOURS = {  // Okabe and Ito (2008), told apart by colour-blind readers too
-  light: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#5b4bb5', '#555555'],
-  dark: ['#4aa8e8', '#f0803c', '#2cc295', '#e09cc2', '#f2b632', '#8fd0f7', '#a394f0', '#b8b8b8'],
-};
-const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3], [14, 4]];
-const MARKERS = ['circle', 'rect', 'triangle', 'rectRot', 'crossRot'];
-const FEW = 12;  // as many lines are all shown at first
-const NARROW = 640;  // pixels
-
-function isDark() {
-  const chosen = document.documentElement.dataset.theme;
-  return chosen ? chosen === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
-}
-
-const cssColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-// One colour a method in every chart; settings of the same method differ by dash and marker.
-const STYLES = (() => {
-  const methods = new Map(), variants = new Map();
-  return DATA.optimizers.map((label) => {
-    const method = label.split('[')[0];
-    if (!methods.has(method)) methods.set(method, methods.size);
-    const variant = variants.get(method) ?? 0;
-    variants.set(method, variant + 1);
-    const place = methods.get(method);
-    return {colour: place % 8, dash: (Math.floor(place / 8) + variant) % DASHES.length, marker: MARKERS[variant % MARKERS.length]};
-  });
-})();
-const colourOf = (index) => COLOURS[isDark() ? 'dark' : 'light'][STYLES[index].colour];
-const dashOf = (index) => DASHES[STYLES[index].dash];
-
-function lineStyle(index) {
-  return {
-    optimizer: index, borderColor: colourOf(index), backgroundColor: colourOf(index), borderDash: dashOf(index),
-    borderWidth: 1.8, pointRadius: 0, pointHoverRadius: 4, pointHitRadius: 6, tension: 0, showLine: true,
-  };
-}
-
-// Leaves one optimizer in full colour, or all of them: `index` undefined.
-function highlight(chart, index) {
-  if (!chart || chart.lit === index) return;
-  chart.lit = index;
-  for (const set of chart.data.datasets) {
-    if (set.optimizer === undefined) continue;
-    const isFaded = index !== undefined && set.optimizer !== index;
-    set.borderColor = colourOf(set.optimizer) + (isFaded ? '28' : '');
-    set.borderWidth = index === set.optimizer ? 3 : 1.8;
-    set.order = isFaded ? 2 : 1;
-  }
-  chart.update('none');
-}
-
-// Names at the ends of the lines, pushed apart; where the chart is narrow the legend must do.
-const END_LABELS = {
-  id: 'endLabels',
-  afterDatasetsDraw(chart) {
-    if (chart.width < NARROW || !chart.options.hasEndLabels) return;
-    const context = chart.ctx, height = 13, placed = [];
-    const ends = chart.data.datasets.filter((set) => set.optimizer !== undefined && set.data.length > 0).map((set) => {
-      const last = set.data[set.data.length - 1];
-      return {set, x: chart.scales.x.getPixelForValue(last.x) + 5, y: chart.scales.y.getPixelForValue(last.y)};
-    }).sort((a, b) => a.y - b.y);
-    context.save();
-    context.font = '11.5px system-ui, sans-serif';
-    context.textBaseline = 'middle';
-    for (const end of ends) {
-      const width = context.measureText(end.set.label).width;
-      const meets = (other) => Math.abs(other.y - end.y) < height && end.x < other.x + other.width && other.x < end.x + width;
-      end.x = Math.min(end.x, chart.width - width - 2);
-      for (let other; (other = placed.find(meets));) end.y = other.y + height;
-      placed.push({x: end.x, y: end.y, width});
-      if (end.y > chart.height - 30) continue;
-      context.lineWidth = 3;
-      context.strokeStyle = cssColour('--paper');
-      context.strokeText(end.set.label, end.x, end.y);
-      context.fillStyle = end.set.borderColor;
-      context.fillText(end.set.label, end.x, end.y);
-    }
-    context.restore();
-  },
-};
-
 function axis(title, rest = {}) {
   const soft = cssColour('--soft'), line = cssColour('--line');
   return {
@@ -228,7 +144,6 @@ function markerDataset(point, style, label) {
 
 // A short run is drawn with a marker a step, as the published figures have it; a long one as a line.
 const isShort = (path) => path.points.length <= 2 * 16;
-const steps = (path) => path.points.length / 2 - 1;
 
 function pathDataset(path) {
   const style = lineStyle(path.s);

@@ -35,9 +35,14 @@ function newSwitch(caption, choices, chosen, onChoose) {
   return group;
 }
 
-function swatch(index) {
-  const svg = `<svg width="24" height="8" aria-hidden="true"><line x1="0" y1="4" x2="24" y2="4" stroke="${colourOf(index)}" ` +
-      `stroke-width="2.4" stroke-dasharray="${dashOf(index).join(' ')}"/></svg>`;
+const GLYPHS = {circle: '○', rect: '□', triangle: '△', rectRot: '◇', crossRot: '×'};
+
+// The line of the curves; with the marker of the path where the path has them.
+function swatch(index, hasMarkers) {
+  const glyph = hasMarkers
+      ? `<text x="34" y="8" font-size="13" text-anchor="middle" fill="${colourOf(index)}">${GLYPHS[STYLES[index].marker]}</text>` : '';
+  const svg = `<svg width="${hasMarkers ? 42 : 24}" height="12" aria-hidden="true"><line x1="0" y1="6" x2="24" y2="6" ` +
+      `stroke="${colourOf(index)}" stroke-width="2.4" stroke-dasharray="${dashOf(index).join(' ')}"/>${glyph}</svg>`;
   return document.createRange().createContextualFragment(svg);
 }
 
@@ -60,7 +65,7 @@ function fillLegend(legend, ranked, visible, onChange, onPoint) {
       button.setAttribute('aria-pressed', visible.has(index));
       onChange();
     });
-    button.prepend(swatch(index));
+    button.prepend(swatch(index, legend.withMarkers?.has(index)));
     for (const [event, lit] of [['pointerenter', index], ['pointerleave', undefined], ['focus', index], ['blur', undefined]])
       button.addEventListener(event, () => onPoint(lit));
     return button;
@@ -68,8 +73,9 @@ function fillLegend(legend, ranked, visible, onChange, onPoint) {
   legend.replaceChildren(...presets, ...names);
 }
 
-function newLegend(ranked, visible, onChange, onPoint) {
+function newLegend(ranked, visible, onChange, onPoint, withMarkers = new Set()) {
   const legend = document.createElement('div');
+  legend.withMarkers = withMarkers;
   legend.className = 'names';
   fillLegend(legend, ranked, visible, onChange, onPoint);
   return legend;
@@ -116,21 +122,25 @@ function buildProblem(article) {
   curves.append(newSwitch('against', {iterations: 'iterations', work: 'work', seconds: 'time'}, 'work', choose('horizontal')));
   if (problem.curves.some((curve) => curve.x_error.some((error) => error !== null)))
     curves.append(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, 'gap', choose('vertical')));
-  const legend = newLegend(ranked, state.visible, drawAll, point);
+  const short = (problem.x?.paths ?? []).filter(isShort).map((path) => path.s);
+  const legend = newLegend(ranked, state.visible, drawAll, point, new Set(short));
   curves.append(place, legend);
   redraws.push(() => { drawAll(); fillLegend(legend, ranked, state.visible, drawAll, point); });
   drawAll();
 }
 
+// Once each, when about to be seen; all of them before printing, since paper does not scroll.
 function whenSeen(elements, build) {
-  const observer = new IntersectionObserver((entries) => {
-    for (const entry of entries)
-      if (entry.isIntersecting) {
-        observer.unobserve(entry.target);
-        build(entry.target);
-      }
-  }, {rootMargin: '300px'});
-  elements.forEach((element) => observer.observe(element));
+  const waiting = new Set(elements);
+  const buildOnce = (element) => {
+    observer.unobserve(element);
+    if (waiting.delete(element)) build(element);
+  };
+  const observer = new IntersectionObserver(
+      (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => buildOnce(entry.target)),
+      {rootMargin: '300px'});
+  waiting.forEach((element) => observer.observe(element));
+  addEventListener('beforeprint', () => [...waiting].forEach(buildOnce));
 }
 
 function chooseTolerance(chosen) {

@@ -139,6 +139,17 @@ TEST(Comparison, ThePrivilegedLeadOnlyAmongAll) {
   EXPECT_EQ(verdict(c).size(), 2U);
 }
 
+// From f₀ = 1 with f_L = 0.5 declared, the curve 10^(−j/5) has half of its descent left at 0.75.
+TEST(Curves, TheGapIsWhatIsLeftOfTheDescent) {
+  Record record = record_of({.hits = 2});
+  record.minimum = 0.5;
+  record.curve.loss = {1, 0.75};
+  Study study;
+  study.runs = {record};
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(median_curve(c, c.cell(0, 0), 10).gap, (std::vector<Real>{1, 0.5}));
+}
+
 TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
   Study study;
   study.runs = {record_of({.problem = "heat[N=8]"}), record_of({.problem = "heat[N=16]"})};
