@@ -94,7 +94,7 @@ ProblemParts make_sine(const Options& o, const Draw& draw) {
           .truth = truth,
           .x_error =
               [physics, target](BatchRef x) {
-                Vector solution(2);
+                Eigen::Vector2d solution;
                 physics->invert(target, x.col(0), solution);
                 return (x.col(0) - solution).norm();
               },
