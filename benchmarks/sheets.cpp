@@ -28,7 +28,7 @@ std::vector<Real> small(const Matrix& values) {
 
 // L over the problem's window in x, and over the box in y that the window maps into.
 void draw_landscapes(const Problem& problem, Sheet& sheet) {
-  Landscape in_x{.window = *problem.window(), .loss = Matrix(kGrid, kGrid)};
+  Landscape in_x{*problem.window(), Matrix(kGrid, kGrid), problem.contour_spacing()};
   const auto& [x1_low, x1_high, x2_low, x2_high] = in_x.window;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
   Eigen::Vector2d high = -low;
@@ -44,11 +44,14 @@ void draw_landscapes(const Problem& problem, Sheet& sheet) {
     }
   sheet.landscape_x = in_x;
   if (problem.outputs() != 2) return;
-  Landscape in_y{.window = {low[0], high[0], low[1], high[1]}, .loss = Matrix(kGrid, kGrid)};
+  const std::array<Real, 4> image{low[0], high[0], low[1], high[1]};
+  Landscape in_y{problem.y_window().value_or(image), Matrix(kGrid, kGrid),
+                 problem.contour_spacing()};
+  const auto& [y1_low, y1_high, y2_low, y2_high] = in_y.window;
   for (Index j = 0; j < kGrid; ++j)
     for (Index i = 0; i < kGrid; ++i)
       in_y.loss(i, j) = problem.loss_of(
-          Eigen::Vector2d(grid_point(low[0], high[0], i), grid_point(low[1], high[1], j)));
+          Eigen::Vector2d(grid_point(y1_low, y1_high, i), grid_point(y2_low, y2_high, j)));
   sheet.landscape_y = in_y;
 }
 

@@ -27,6 +27,7 @@ Json to_json(const Landscape& landscape) {
   return {{"window", landscape.window},
           {"rows", landscape.loss.rows()},
           {"columns", landscape.loss.cols()},
+          {"spacing", landscape.spacing},
           {"loss", json_numbers(landscape.loss.data(), size)}};  // column major
 }
 
@@ -34,7 +35,8 @@ Landscape landscape_from(const Json& json) {
   const std::vector<Real> values = reals(json.at("loss"));
   const Index rows = json.at("rows"), columns = json.at("columns");
   require(static_cast<Index>(values.size()) == rows * columns, "a landscape has the wrong size");
-  return {json.at("window"), Eigen::Map<const Matrix>(values.data(), rows, columns)};
+  return {json.at("window"), Eigen::Map<const Matrix>(values.data(), rows, columns),
+          json.at("spacing")};
 }
 
 }  // namespace

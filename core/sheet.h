@@ -22,6 +22,8 @@ using Json = nlohmann::json;
 struct Landscape {
   std::array<Real, 4> window{};  // x1 low, x1 high, x2 low, x2 high; both ends are grid points
   Matrix loss;                   // (n1, n2)
+  // How its contours are spaced: "logarithm", "fifth root" or "powers of two", 2⁻⁵ to 2⁷.
+  std::string spacing = "logarithm";
 };
 
 // Schema isoline.component/1: what a reader of the report needs to know of a problem or optimizer.

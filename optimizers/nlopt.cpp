@@ -23,8 +23,7 @@ using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
 constexpr Real kRounding = 1e-15;  // relative step below which θ no longer changes
 constexpr Index kPatience = 100;   // evaluations an unknown without a new best
 constexpr Real kWall = 1e20;       // what a loss that is not finite is told as: inf hangs COBYLA
-// Steps that Luksan's methods remember. NLopt's own choice fills 10 MB, 7 ms of work at n = 2; with
-// ten lbfgs loses three digits on the Poisson problem.
+// Steps that Luksan's methods remember. NLopt's own 10 MB take 7 ms at n = 2; ten cost digits.
 constexpr Index kMemory = 100;
 
 Handle make_handle(nlopt_algorithm algorithm, Index n, Index memory = kMemory) {

@@ -40,7 +40,9 @@ struct ProblemParts {
   // Distance from x to the nearest solution, where the solutions are known.
   std::function<Real(BatchRef x)> x_error;
   // Where to draw the landscape of a two-dimensional problem: low and high corner in x.
-  std::optional<std::array<Real, 4>> window;  // x1 low, x1 high, x2 low, x2 high
+  std::optional<std::array<Real, 4>> window;    // x1 low, x1 high, x2 low, x2 high
+  std::optional<std::array<Real, 4>> y_window;  // of y; what the window maps into where empty
+  std::string contour_spacing = "logarithm";    // or "fifth root", or "powers of two"
 };
 
 class Problem {
@@ -57,6 +59,8 @@ class Problem {
   std::optional<Real> minimum() const { return parts_.minimum; }
   const std::optional<Matrix>& truth() const { return parts_.truth; }
   const auto& window() const { return parts_.window; }
+  const auto& y_window() const { return parts_.y_window; }
+  const std::string& contour_spacing() const { return parts_.contour_spacing; }
   std::vector<Block> layout() const { return parts_.network->layout(); }
   bool has_identity_network() const { return parts_.network->is_identity(); }
   Inverse inverse_kind() const { return parts_.physics->inverse_kind(); }

@@ -57,7 +57,7 @@ class Sine final : public DensePhysics {
   Inverse inverse_kind() const override { return Inverse::exact; }
   bool invert(VectorRef y, VectorRef x0, VectorOut x) const override {
     const Real u = y[0] / amplitude_;
-    x = x0;
+    x << x0[0], x0[1];
     if (!(std::abs(u) <= 1)) return false;
     const Real s1 = frequency_ * z1(x0);
     const Real rising = nearest(std::asin(u), s1);
@@ -96,9 +96,10 @@ ProblemParts make_sine(const Options& o, const Draw& draw) {
               [physics, target](BatchRef x) {
                 Eigen::Vector2d solution;
                 physics->invert(target, x.col(0), solution);
-                return (x.col(0) - solution).norm();
+                return std::hypot(x(0, 0) - solution[0], x(1, 0) - solution[1]);
               },
-          .window = {{-corner[0], corner[0], -corner[1], corner[1]}}};
+          .window = {{-corner[0], corner[0], -corner[1], corner[1]}},
+          .contour_spacing = "fifth root"};  // as in Fig. 5a
 }
 
 }  // namespace

@@ -34,7 +34,9 @@ ProblemParts make_square(const NoOptions&, const Draw& draw) {
           .minimum = 0,
           .truth = Vector::Zero(2),
           .x_error = [](BatchRef x) { return x.norm(); },
-          .window = {{-0.3, 3.2, -0.1, 3.5}}};
+          .window = {{-0.3, 3.2, -0.1, 3.5}},  // the axes and levels of Fig. 1
+          .y_window = {{-0.3, 3.2, -0.1, 9.5}},
+          .contour_spacing = "powers of two"};
 }
 
 }  // namespace

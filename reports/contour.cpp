@@ -128,8 +128,8 @@ Landscape refined(const Landscape& coarse) {
   if (std::min(loss.rows(), loss.cols()) < kLeast || !loss.allFinite()) return coarse;
   Matrix half((loss.rows() - 1) * kTimes + 1, loss.cols());
   for (Index j = 0; j < loss.cols(); ++j) half.col(j) = refined(Vector(loss.col(j)), kTimes);
-  Landscape fine{.window = coarse.window,
-                 .loss = Matrix(half.rows(), (loss.cols() - 1) * kTimes + 1)};
+  Landscape fine{coarse.window, Matrix(half.rows(), (loss.cols() - 1) * kTimes + 1),
+                 coarse.spacing};
   for (Index i = 0; i < half.rows(); ++i)
     fine.loss.row(i) = refined(Vector(half.row(i)), kTimes).transpose();
   return fine;
@@ -156,38 +156,31 @@ std::vector<Polyline> isolines(const Landscape& landscape, Real level) {
   return lines;
 }
 
-std::vector<Real> contour_levels(const std::string& problem, const Landscape& landscape) {
+std::vector<Real> contour_levels(const Landscape& landscape) {
   constexpr int kLevels = 13;
-  if (problem == "square") return even_steps(-6, 8, kLevels, [](Real i) { return std::exp2(i); });
+  if (landscape.spacing == "powers of two")
+    return even_steps(-6, 8, kLevels, [](Real i) { return std::exp2(i); });
   Real low = INFINITY, high = 0;
   for (const Real loss : landscape.loss.reshaped())
     if (std::isfinite(loss) && loss > 0) low = std::min(low, loss), high = std::max(high, loss);
   if (!(low < high)) return {};
-  if (problem == "sine")
+  if (landscape.spacing == "fifth root")
     return even_steps(0, std::pow(high, 0.2), kLevels, [](Real v) { return std::pow(v, 5); });
   constexpr Real kDecades = 1e-4;  // lower levels crowd around the minimum
   return even_steps(std::log(std::max(low, high * kDecades)), std::log(high), kLevels,
                     [](Real v) { return std::exp(v); });
 }
 
-std::string contour_wording(const std::string& problem) {
-  if (problem == "square") return "at 2ⁱ for i = −5 … 7, as in Fig. 1 of Holl et al. (2022)";
-  if (problem == "sine")
-    return "in even steps of its fifth root, as in Fig. 5a of Holl et al. (2022)";
+std::string contour_wording(const Landscape& landscape) {
+  if (landscape.spacing == "powers of two") return "at 2ⁱ for i = −5 … 7";
+  if (landscape.spacing == "fifth root") return "in even steps of its fifth root";
   return "in even steps of its logarithm";
 }
 
-std::array<Real, 4> view_window(const std::string& problem, const Landscape& landscape,
-                                bool is_in_y) {
-  if (problem == "square" && is_in_y) return {-0.3, 3.2, -0.1, 9.5};  // Fig. 1, right
-  return landscape.window;
-}
-
-std::vector<Contour> contours(const std::string& problem, const Landscape& landscape) {
+std::vector<Contour> contours(const Landscape& landscape) {
   const Landscape fine = refined(landscape);
   std::vector<Contour> all;
-  for (const Real level : contour_levels(problem, landscape))
-    all.push_back({level, isolines(fine, level)});
+  for (const Real level : contour_levels(landscape)) all.push_back({level, isolines(fine, level)});
   return all;
 }
 

@@ -22,16 +22,11 @@ struct Contour {
 // Linear between grid points. A cell with a corner that is not finite is left out.
 std::vector<Polyline> isolines(const Landscape& landscape, Real level);
 
-// Levels that show the problem as its source does: square, 2^i for i = −5 … 7 (Holl et al. 2022,
-// Fig. 1); sine, even steps of L^0.2 (Fig. 5a); all others, even steps of log L.
-std::vector<Real> contour_levels(const std::string& problem, const Landscape& landscape);
+// Levels spaced as the landscape asks: 2^i for i = −5 … 7, or even steps of L^0.2 or of log L.
+std::vector<Real> contour_levels(const Landscape& landscape);
 
-std::string contour_wording(const std::string& problem);  // "at 2^i, i = −5 … 7"
+std::string contour_wording(const Landscape& landscape);  // "at 2^i, i = −5 … 7"
 
-// What a plot shows: the landscape's own window, or the axes of the published figure.
-std::array<Real, 4> view_window(const std::string& problem, const Landscape& landscape,
-                                bool is_in_y);
-
-std::vector<Contour> contours(const std::string& problem, const Landscape& landscape);
+std::vector<Contour> contours(const Landscape& landscape);
 
 }  // namespace isoline

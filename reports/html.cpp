@@ -122,7 +122,8 @@ std::string planes_html(const Comparison& c, std::size_t p) {
   return html + fmt::format(
                     "</div><p class=legend>Thin lines: equal loss, {}. Paths of the lowest "
                     "seed; markers are steps, drawn for runs of few steps. ○ start, ✳ {}.</p>",
-                    contour_wording(sheet->name), "solution in x, target in y");
+                    contour_wording(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y),
+                    "solution in x, target in y");
 }
 
 std::string problem_html(const Comparison& c, std::size_t p) {

@@ -58,11 +58,11 @@ std::string curves_json(const Comparison& c, std::size_t problem) {
 
 std::string point(Real a, Real b) { return number(a) + "," + number(b); }
 
-std::string contours_json(const std::string& problem, const Landscape& landscape) {
+std::string contours_json(const Landscape& landscape) {
   const auto polyline = [](const Polyline& line) {
     return list(line, [](const Point& p) { return point(p.x1, p.x2); });
   };
-  return list(contours(problem, landscape), [&](const Contour& contour) {
+  return list(contours(landscape), [&](const Contour& contour) {
     return fmt::format("{{\"level\":{},\"lines\":{}}}", number(contour.level),
                        list(contour.lines, polyline));
   });
@@ -77,15 +77,13 @@ std::string path_json(const Rows& rows, std::size_t optimizer, std::size_t most)
   return fmt::format("{{\"s\":{},\"points\":{}}}", optimizer, points);
 }
 
-std::string plane_json(const std::string& problem, const Landscape& landscape,
-                       const std::vector<Path>& all, Rows Path::*rows,
+std::string plane_json(const Landscape& landscape, const std::vector<Path>& all, Rows Path::*rows,
                        const std::vector<Real>& goal) {
-  const auto window = view_window(problem, landscape, rows == &Path::y);
   const auto ranked_path = [&](const Path& path) {
     return path_json(path.*rows, path.index, points_per_path(all.size()));
   };
   return fmt::format("{{\"window\":{},\"contours\":{},\"paths\":{},\"goal\":{}}}",
-                     list(window, number), contours_json(problem, landscape),
+                     list(landscape.window, number), contours_json(landscape),
                      list(all, ranked_path), list(goal, number));
 }
 
@@ -96,10 +94,9 @@ std::string problem_json(const Comparison& c, std::size_t p) {
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)
-      text += ",\"x\":" + plane_json(sheet->name, *sheet->landscape_x, all, &Path::x, sheet->truth);
+      text += ",\"x\":" + plane_json(*sheet->landscape_x, all, &Path::x, sheet->truth);
     if (sheet->landscape_y)
-      text +=
-          ",\"y\":" + plane_json(sheet->name, *sheet->landscape_y, all, &Path::y, sheet->target);
+      text += ",\"y\":" + plane_json(*sheet->landscape_y, all, &Path::y, sheet->target);
   }
   return text + "}";
 }

@@ -99,5 +99,15 @@ TEST(ReadmeExamples, RunWithEverythingElseInTheCatalog) {
   EXPECT_GE(std::ranges::count_if(column.records, is_solved), 4) << "problems, by the example";
 }
 
+TEST(Readme, LinksToFilesOfTheTreeThatExist) {
+  const std::string text = readme();
+  for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+    const std::string target = text.substr(at + 2, text.find_first_of(")#", at) - at - 2);
+    if (target.empty() || target.find("://") != std::string::npos) continue;
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(ISOLINE_SOURCE_DIR) / target))
+        << target;
+  }
+}
+
 }  // namespace
 }  // namespace isoline

@@ -68,32 +68,25 @@ TEST(Contour, LeavesOutWhatIsNotFinite) {
 }
 
 TEST(Contour, LevelsAreThoseOfTheFigures) {
-  const Landscape bowl = sampled(11, [](Real a, Real b) { return a * a + b * b; });
-  const auto powers = contour_levels("square", bowl);  // 2^i, i = −5 … 7
+  Landscape bowl = sampled(11, [](Real a, Real b) { return a * a + b * b; });
+  bowl.spacing = "powers of two";
+  const auto powers = contour_levels(bowl);  // 2^i, i = −5 … 7
   ASSERT_EQ(powers.size(), 13U);
   EXPECT_DOUBLE_EQ(powers.front(), 1 / 32.0);
   EXPECT_DOUBLE_EQ(powers.back(), 128);
-  const auto roots = contour_levels("sine", bowl);
+  bowl.spacing = "fifth root";
+  const auto roots = contour_levels(bowl);
   EXPECT_NEAR(std::pow(roots[2], 0.2) - std::pow(roots[1], 0.2), std::pow(roots[0], 0.2), 1e-12);
-}
-
-// The axes of Holl et al. (2022), Fig. 1; the grid of y may reach farther.
-TEST(Contours, SquareShowsThePublishedAxes) {
-  const Landscape in_x{.window = {-0.3, 3.2, -0.1, 3.5}, .loss = {}};
-  const Landscape in_y{.window = {-0.3, 3.2, 1e-4, 12.25}, .loss = {}};
-  EXPECT_EQ(view_window("square", in_x, false), in_x.window);
-  EXPECT_EQ(view_window("square", in_y, true), (std::array<Real, 4>{-0.3, 3.2, -0.1, 9.5}));
-  EXPECT_EQ(view_window("sine", in_y, true), in_y.window);
 }
 
 // The isoline L = 2⁻⁵ of x1² + x2² is a circle of radius 0.1768, a tenth of the grid's spacing from
 // a corner of it; cubic refinement is exact for quadratics, its chords are not: hence 2 %.
 TEST(Contours, ASmallCircleOfACoarseGridIsRound) {
-  Landscape landscape{.window = {-2, 2, -2, 2}, .loss = Matrix(33, 33)};
+  Landscape landscape{{-2, 2, -2, 2}, Matrix(33, 33), "powers of two"};
   const Vector at = Vector::LinSpaced(33, -2, 2);
   for (Index j = 0; j < 33; ++j)
     for (Index i = 0; i < 33; ++i) landscape.loss(i, j) = at[i] * at[i] + at[j] * at[j];
-  const Contour smallest = contours("square", landscape).front();
+  const Contour smallest = contours(landscape).front();
   ASSERT_EQ(smallest.lines.size(), 1U);
   for (const Point& p : smallest.lines[0])
     EXPECT_NEAR(std::hypot(p.x1, p.x2), std::sqrt(smallest.level),
