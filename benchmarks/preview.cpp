@@ -13,7 +13,7 @@ namespace isoline {
 namespace {
 
 constexpr double kProbeSeconds = 30;
-constexpr double kProcessSeconds = 2e-3;  // a fork, a record and its fsync
+constexpr double kProcessSeconds = 1e-2;  // a fork, a record and its fsync, on a busy machine
 
 // What one problem says of itself and of each optimizer, found in a process of its own.
 struct Probe {
