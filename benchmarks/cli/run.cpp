@@ -83,10 +83,9 @@ void print_plan(Session& session, const std::vector<Request>& requests, const fs
     fmt::print("{:28} {:44} seed {:<4} {}\n", request.problem.spec, request.optimizer.spec,
                request.seed, fate);
   }
-  fmt::print(
-      "{} cells: {} cached, {} inapplicable, {} to run, at most about {} with {} at a time\n",
-      requests.size(), cached, inapplicable, requests.size() - cached - inapplicable,
-      duration_text(seconds / jobs), jobs);
+  fmt::print("{} cells: {} cached, {} inapplicable, {} to run, about {} with {} at a time\n",
+             requests.size(), cached, inapplicable, requests.size() - cached - inapplicable,
+             duration_text(seconds / jobs), jobs);
 }
 
 // A sheet for every component of the plan, each made in a process of its own.
