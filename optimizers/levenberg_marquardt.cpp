@@ -1,5 +1,5 @@
-// Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978, eq. 6.3) and the gain-ratio
-// rule of Nielsen (1999, eq. 2.5): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
+// Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978) and the gain-ratio
+// rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
 // column of J has had. By QR of the augmented matrix (J; √μ D), which the normal equations' squared
 // condition number would spoil. Steps that do not lower ‖r‖ are rejected and the damping is raised.
 #include <algorithm>
@@ -98,7 +98,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .title = "Levenberg-Marquardt",
        .family = Family::curvature,
        .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
-       .source = "Marquardt (1963); Moré (1978), eq. 6.3; Nielsen (1999), eq. 2.5",
+       .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
        .note = "A rejected candidate is an iteration too.",
        .needs = {Oracle::forward, Oracle::jacobian},
        .is_input_scale_invariant = true,
