@@ -101,7 +101,7 @@ void plain_nlopt_lbfgs(const Problem& problem, int evaluations) {
   };
   nlopt_set_min_objective(search, evaluate, &plain);
   nlopt_set_maxeval(search, evaluations);
-  nlopt_set_vector_storage(search, 10);  // as ours by default
+  nlopt_set_vector_storage(search, 100);  // as ours by default
   double loss = 0;
   nlopt_optimize(search, x.data(), &loss);
   nlopt_destroy(search);
