@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/digest.h"
 #include "core/errors.h"
 
 namespace isoline {
@@ -76,7 +77,12 @@ void write_text(const fs::path& path, std::string_view text) {
     throw;
   }
   ::close(file);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail("rename to", path);
+  if (::rename(temporary.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(temporary.c_str());
+    errno = reason;
+    fail("rename to", path);
+  }
 }
 
 Json parse_json(const std::string& text, const std::string& origin) {
@@ -91,11 +97,6 @@ Json read_json(const fs::path& path) { return parse_json(read_text(path), path.s
 
 void write_json(const fs::path& path, const Json& value) { write_text(path, value.dump(1) + "\n"); }
 
-std::string digest(std::string_view text) {
-  constexpr std::uint64_t kOffset = 0xcbf29ce484222325, kPrime = 0x100000001b3;
-  std::uint64_t hash = kOffset;
-  for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * kPrime;
-  return fmt::format("{:016x}", hash);
-}
+std::string digest(std::string_view text) { return fmt::format("{:016x}", fnv1a(text)); }
 
 }  // namespace isoline

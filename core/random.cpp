@@ -6,20 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/digest.h"
+
 namespace isoline {
-namespace {
-
-std::uint64_t hash(std::string_view text, std::uint64_t state = 0xcbf29ce484222325) {
-  for (const char letter : text)
-    state = (state ^ static_cast<unsigned char>(letter)) * 0x100000001b3;  // FNV-1a
-  return state;
-}
-
-}  // namespace
-
 RandomStream::RandomStream(std::uint64_t seed, std::string_view component, std::string_view purpose,
                            std::uint64_t index)
-    : key_{seed, hash(purpose, hash("/", hash(component)))}, index_(index) {}
+    : key_{seed, fnv1a(purpose, fnv1a("/", fnv1a(component)))}, index_(index) {}
 
 std::uint64_t RandomStream::next() {
   if (left_ == 0) {

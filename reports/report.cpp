@@ -5,8 +5,7 @@
 
 namespace isoline {
 
-void write_report(const Study& study, const std::filesystem::path& out) {
-  const Comparison comparison = compare_optimizers(study);
+void write_report(const Comparison& comparison, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
   write_text(out / "index.html", html_report(comparison));
   write_text(out / "report.md", markdown_report(comparison));

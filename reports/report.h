@@ -18,7 +18,7 @@
 namespace isoline {
 
 // Writes index.html, report.md, report.tex, report.csv and report.json; makes the folder.
-void write_report(const Study& study, const std::filesystem::path& out);
+void write_report(const Comparison& comparison, const std::filesystem::path& out);
 
 std::string html_report(const Comparison& comparison);
 std::string markdown_report(const Comparison& comparison);

@@ -24,9 +24,9 @@ void add_report(CLI::App& app, Session&) {
     const std::vector<fs::path> folders(options->folders.begin(), options->folders.end());
     const fs::path out = options->out.empty() ? folders.front() / "report" : fs::path(options->out);
     const Study study = read_study(folders);
-    write_report(study, out);
-    fmt::print("{}\nreport: {}\n", terminal_table(compare_optimizers(study)),
-               (out / "index.html").string());
+    const Comparison comparison = compare_optimizers(study);
+    write_report(comparison, out);
+    fmt::print("{}\nreport: {}\n", terminal_table(comparison), (out / "index.html").string());
   });
 }
 

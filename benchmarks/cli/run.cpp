@@ -130,10 +130,10 @@ void print_outcome(const Outcome& outcome, bool quiet) {
 void report_on(const fs::path& out, bool quiet) {
   const Study study = read_study({out});
   const fs::path folder = out / "report";
-  write_report(study, folder);
+  const Comparison comparison = compare_optimizers(study);
+  write_report(comparison, folder);
   if (quiet) return;
-  fmt::print("\n{}\nreport: {}\n", terminal_table(compare_optimizers(study)),
-             (folder / "index.html").string());
+  fmt::print("\n{}\nreport: {}\n", terminal_table(comparison), (folder / "index.html").string());
 }
 
 std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {

@@ -4,7 +4,7 @@
 #include "benchmarks/runner.h"
 #include "core/clock.h"
 #include "tests/benchmarks/hostile.h"
-#include "tests/benchmarks/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 namespace {

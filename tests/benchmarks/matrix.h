@@ -5,7 +5,7 @@
 
 #include "benchmarks/runner.h"
 #include "benchmarks/suite.h"
-#include "tests/benchmarks/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 

@@ -11,7 +11,7 @@
 #include "benchmarks/runner.h"
 #include "benchmarks/suite.h"
 #include "core/json.h"
-#include "tests/benchmarks/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 namespace {

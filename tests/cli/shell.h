@@ -10,7 +10,7 @@
 
 #include "core/json.h"
 #include "core/record.h"
-#include "tests/benchmarks/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 namespace {
@@ -33,21 +34,21 @@ TEST(Numbers, WhatIsNoNumberIsAUsageError) {
 }
 
 TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {
-  std::string pattern = testing::TempDir() + "isoline-XXXXXX";
-  const std::filesystem::path folder = mkdtemp(pattern.data());
+  const TemporaryFolder owned;
+  const std::filesystem::path& folder = owned.path();
   const auto path = folder / "record.json";
   write_text(path, "old");
   std::filesystem::create_directory(folder / "taken");
   EXPECT_THROW(write_text(folder / "taken", "new"), std::runtime_error);  // rename must fail
   EXPECT_THROW(write_text(folder / "absent" / "record.json", "new"), std::runtime_error);
   EXPECT_EQ(read_text(path), "old");
-  std::filesystem::remove_all(folder);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
 }
 
 // A limit on the size of files stands in for a full disk: write() fails half-way in both.
 TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
-  std::string pattern = testing::TempDir() + "isoline-XXXXXX";
-  const std::filesystem::path folder = mkdtemp(pattern.data());
+  const TemporaryFolder owned;
+  const std::filesystem::path& folder = owned.path();
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit small{10, before.rlim_max};
@@ -57,7 +58,6 @@ TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, SIG_DFL);
   EXPECT_TRUE(std::filesystem::is_empty(folder));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Files, WhatIsNoJsonNamesItsOrigin) {

@@ -197,7 +197,7 @@ TEST(Json, ConformsToItsSchema) {
 TEST(Formats, AnEmptyFolderIsReported) {
   const ResultFolder folder;
   const Study study = read_study({folder.path()});
-  write_report(study, folder.path() / "report");
+  write_report(compare_optimizers(study), folder.path() / "report");
   for (const char* name : {"index.html", "report.md", "report.tex", "report.csv", "report.json"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "report" / name)) << name;
 }
