@@ -101,8 +101,6 @@ Request request_from_json(const Json& json);
 Json without_timings(Json record);
 
 inline constexpr const char* kRunSchema = "isoline.run/1";
-inline constexpr const char* kPlanSchema = "isoline.plan/1";
-inline constexpr const char* kComponentSchema = "isoline.component/1";
 
 // τ of `verified`, by its name in the record.
 inline const std::map<std::string, Real> kVerified = {
