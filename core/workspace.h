@@ -2,17 +2,30 @@
 // physics and networks stay const; sized at first use, so that hot loops allocate nothing.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/array.h"
 
 namespace isoline {
 
+// What a component keeps that is no array of double: it derives its own.
+struct Scratch {
+  virtual ~Scratch() = default;
+};
+
 struct Workspace {
   Matrix x;                       // (k, B) input of the last forward
   Matrix context;                 // (p, B) context of the last forward, empty for most
   std::vector<Matrix> saved;      // whatever else the component keeps; its own business
   bool saved_is_current = false;  // whether `saved` belongs to x; false after each forward
+  std::unique_ptr<Scratch> own;   // as `saved`, of the component's own type
+
+  template <class Own>
+  Own& as() {
+    if (!own) own = std::make_unique<Own>();
+    return static_cast<Own&>(*own);
+  }
 };
 
 }  // namespace isoline

@@ -9,6 +9,7 @@ class Identity final : public Network {
  public:
   explicit Identity(Vector start) : start_(std::move(start)) {}
   Index parameters() const override { return start_.size(); }
+  Index inputs() const override { return 0; }
   Index outputs() const override { return start_.size(); }
   Vector start(RandomStream&) const override { return start_; }
   std::vector<Block> layout() const override { return {{0, start_.size(), 1, Block::Kind::input}}; }

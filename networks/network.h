@@ -1,20 +1,33 @@
 // A differentiable map θ ↦ x = N(input; θ). Parameters are one flat vector; one sample a column.
+// Const: what a forward pass leaves behind lives in the caller's Workspace, and the products are
+// taken at the (θ, input) of the last forward.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/array.h"
+#include "core/options.h"
 #include "core/random.h"
+#include "core/registry.h"
 #include "core/workspace.h"
 
 namespace isoline {
 
-// One array of parameters within θ.
+// One array of parameters within θ: `rows` by `columns`, column major, from `offset`.
 struct Block {
   enum class Kind { input, weight, bias, convolution, norm };
   Index offset, rows, columns;
   Kind kind;
+};
+
+// One dense layer z = W a + b under a cotangent: the gradient of W is G Aᵀ and that of b is G 1.
+struct LayerFactor {
+  Index weight, bias;  // the blocks of layout() that hold W and b
+  Matrix inputs;       // A, (columns of W, B)
+  Matrix cotangents;   // G, (rows of W, B)
 };
 
 class Network {
@@ -22,14 +35,66 @@ class Network {
   virtual ~Network() = default;
 
   virtual Index parameters() const = 0;           // n
+  virtual Index inputs() const = 0;               // i
   virtual Index outputs() const = 0;              // k
   virtual Vector start(RandomStream&) const = 0;  // θ₀, (n)
   virtual std::vector<Block> layout() const = 0;
   virtual bool is_identity() const { return false; }
+  // What the tests may ask: x_b depends on column b of the input alone (not so with batch norm);
+  // 1e-5 instead of 1e-12; steps that cross a kink drawn anew.
+  virtual bool has_independent_samples() const { return true; }
+  virtual bool is_single_precision() const { return false; }
+  virtual bool has_kinks() const { return false; }
 
   virtual void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const = 0;
   virtual void pushforward(VectorRef v, BatchOut Jv, Workspace& w) const = 0;  // (n) -> (k, B)
   virtual void pullback(BatchRef u, VectorOut JTu, Workspace& w) const = 0;    // (k, B) -> (n)
+
+  // (d/dε) N'(θ + ε v)ᵀ (u + ε du) at ε = 0, exactly, by forward over reverse: u, du (k, B) -> (n).
+  // v is that of the last pushforward on this workspace, whose tangents are used.
+  virtual bool has_curvature() const { return false; }
+  virtual void curvature(VectorRef v, BatchRef u, BatchRef du, VectorOut out, Workspace& w) const;
+
+  // ∂y/∂θ of all samples stacked, (m·B, n), from ∂y/∂x of each side by side, (m, k·B). By default
+  // one pullback a row.
+  virtual void jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) const;
+
+  // The factors of each dense layer, in order, under the cotangent u (k, B).
+  virtual bool has_layer_factors() const { return false; }
+  virtual void layer_factors(BatchRef u, std::vector<LayerFactor>& out, Workspace& w) const;
+
+  // Evaluation of trained parameters. Where the forward pass depends on statistics of its batch,
+  // `statistics` gives those of a batch, to be averaged, and `infer` is given the average.
+  virtual Vector statistics(VectorRef theta, BatchRef in, Workspace& w) const;  // empty by default
+  virtual void infer(VectorRef theta, VectorRef statistics, BatchRef in, BatchOut x,
+                     Workspace& w) const;  // forward by default
 };
+
+// What a network is asked to map. Grids are columns of channels·N² numbers, channel by channel,
+// each N×N column major.
+struct NetworkShape {
+  Index inputs, outputs;                          // i, k
+  Index grid = 0;                                 // N where samples are grids, else 0
+  Index input_channels = 1, output_channels = 1;  // of grids
+};
+
+struct NetworkEntry {
+  std::string name, title;
+  std::string source;  // author, year, equation
+  std::string note = {};
+  OptionTable options = {};
+  int revision = 1;  // raised when results change
+  std::function<std::unique_ptr<Network>(const Json& complete_options, const NetworkShape&)> make =
+      {};
+};
+using NetworkRegistry = Registry<NetworkEntry>;
+
+// Every network, registered once.
+const NetworkRegistry& network_registry();
+
+// A network from "mlp[layers=32-64-32]"; UsageError where it does not fit the shape.
+std::unique_ptr<Network> make_network(const std::string& spec, const NetworkShape& shape);
+
+void register_networks(NetworkRegistry& registry);  // generated: one call a file
 
 }  // namespace isoline

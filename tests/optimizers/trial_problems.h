@@ -69,6 +69,7 @@ inline Problem far_root() {
 class Line final : public Network {
  public:
   Index parameters() const override { return 2; }
+  Index inputs() const override { return 1; }
   Index outputs() const override { return 1; }
   Vector start(RandomStream&) const override { return Eigen::Vector2d(1, 0); }
   std::vector<Block> layout() const override { return {{0, 2, 1, Block::Kind::weight}}; }
