@@ -1,6 +1,8 @@
 // The built-in catalog, and components completed from their names and options.
 #include "benchmarks/catalog.h"
 
+#include "core/spec.h"
+
 namespace isoline {
 namespace {
 
@@ -23,7 +25,14 @@ Catalog builtin_catalog() {
 }
 
 Component complete_problem(const Catalog& catalog, const std::string& name, const Json& options) {
-  return complete(catalog.problems.at(name), options);
+  Component problem = complete(catalog.problems.at(name), options);
+  if (problem.options.value("mode", "") == "learn") {
+    constexpr int kNetworkRevisions = 1000;  // more than any network will have
+    const std::string network = parse_spec(problem.options["network"].get<std::string>()).name;
+    problem.revision =
+        problem.revision * kNetworkRevisions + network_registry().at(network).revision;
+  }
+  return problem;
 }
 
 Component complete_optimizer(const Catalog& catalog, const std::string& name, const Json& options) {

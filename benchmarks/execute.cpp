@@ -25,7 +25,7 @@ std::vector<std::string> lines_of(const char* text) {
   return lines;
 }
 
-void run(const Catalog& catalog, const Request& request, Trace& trace) {
+void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint) {
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
@@ -35,7 +35,43 @@ void run(const Catalog& catalog, const Request& request, Trace& trace) {
   set_text(trace.privileges,
            fmt::format("{}", fmt::join(privileges_of(granted, problem.inverse_kind()), "\n")));
   Meter meter(problem, request.budget, granted, trace);
-  drive(*method, meter, problem.start());
+  drive(*method, meter, problem.start(), checkpoint);
+}
+
+// What only learning problems and problems with series trace.
+void add_training_columns(const Trace& trace, Curve& curve) {
+  const auto column = [&](auto&& value) {
+    std::vector<Real> values;
+    for (int i = 0; i < trace.points; ++i) values.push_back(value(trace.point[i]));
+    return values;
+  };
+  if (!trace.is_learned) return;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::int64_t window = TracePoint::kWindows[i];
+    curve.batch_loss[window] = column([i](const TracePoint& point) { return point.batch_loss[i]; });
+    curve.batch_x_error[window] =
+        column([i](const TracePoint& point) { return point.batch_x_error[i]; });
+  }
+}
+
+std::map<std::string, std::vector<Real>> series_of(const Trace& trace) {
+  std::map<std::string, std::vector<Real>> series;
+  const std::vector<std::string> names = lines_of(trace.series_names);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (int p = 0; p < trace.points; ++p) series[names[i]].push_back(trace.point[p].series[i]);
+  return series;
+}
+
+Matrix matrix_of(const Trace::Exhibit& shown) {
+  return Eigen::Map<const Matrix>(shown.value, shown.rows, shown.columns);
+}
+
+std::optional<Exhibit> exhibit_of(const Trace& trace) {
+  if (trace.shown_x.rows == 0) return std::nullopt;
+  return Exhibit{.grid = trace.shown_grid,
+                 .target = matrix_of(trace.shown_target),
+                 .x = matrix_of(trace.shown_x),
+                 .truth = matrix_of(trace.shown_truth)};
 }
 
 Curve curve_of(const Trace& trace) {
@@ -52,6 +88,7 @@ Curve curve_of(const Trace& trace) {
     curve.gradient_norm.push_back(point.gradient_norm);
     curve.step_norm.push_back(point.step_norm);
   }
+  add_training_columns(trace, curve);
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     std::vector<std::int64_t> column;
     for (int i = 0; i < points; ++i) column.push_back(trace.point[i].counts[kind]);
@@ -110,21 +147,26 @@ std::optional<bool> is_verified(const Trace& trace, Real tau) {
 
 }  // namespace
 
-void drive(Optimizer& method, Meter& meter, Vector theta) {
-  Status verdict = meter.begin(theta);
-  if (verdict == Status::running) method.start(meter, theta);
+Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint) {
+  Status verdict = Status::running;
+  if (!checkpoint.restore(method, meter, theta)) {
+    verdict = meter.begin(theta);
+    if (verdict == Status::running) method.start(meter, theta);
+  }
   while (verdict == Status::running) {
     verdict = method.step(meter, theta);
     if (method.reports_iterations()) break;
     const Status judged = meter.iterate(theta);
     if (judged != Status::running) verdict = judged;
+    if (verdict == Status::running && checkpoint.save_if_due(method, meter, theta)) return theta;
   }
   meter.finish(theta, verdict);
+  return theta;
 }
 
-void execute(const Catalog& catalog, const Request& request, Trace& trace) {
+void execute(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint checkpoint) {
   try {
-    run(catalog, request, trace);
+    run(catalog, request, trace, checkpoint);
   } catch (const NotApplicable& reason) {
     conclude(trace, Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {
@@ -152,6 +194,8 @@ Record record_of(const Request& request, const Trace& trace) {
   record.curve = curve_of(trace);
   if (record.minimum) record.hits = hits_of(trace);
   if (trace.path_inputs > 0) record.trajectory = trajectory_of(trace);
+  record.series = series_of(trace);
+  record.exhibit = exhibit_of(trace);
   record.privileges = lines_of(trace.privileges);
   record.is_nondeterministic = trace.stopped_by_clock || trace.status == Status::timeout ||
                                trace.status == Status::interrupted ||

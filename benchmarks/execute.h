@@ -2,17 +2,20 @@
 #pragma once
 
 #include "benchmarks/catalog.h"
+#include "benchmarks/checkpoint.h"
 #include "core/record.h"
 #include "core/trace.h"
 
 namespace isoline {
 
-// Starts, steps and judges the method until it is done; the meter writes the trace.
-void drive(Optimizer& method, Meter& meter, Vector theta);
+// Starts, steps and judges the method until it is done, or asked to stop; the meter writes the
+// trace. Returns the last θ.
+Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint);
 
 // Makes the components of the request and drives them. The verdict is in the trace, whatever
 // happens: an exception ends as `failed`, `memory` or `inapplicable`.
-void execute(const Catalog& catalog, const Request& request, Trace& trace);
+void execute(const Catalog& catalog, const Request& request, Trace& trace,
+             Checkpoint checkpoint = {});
 
 // The record of a run from what it left behind.
 Record record_of(const Request& request, const Trace& trace);

@@ -149,7 +149,12 @@ void Worker::collect(int wait_status, const rusage& usage) {
 }
 
 void Worker::interrupt() {
-  kill_as(Status::interrupted, "the run was interrupted");
+  verdict_ = Status::interrupted;
+  set_text(trace_->message, "the run was interrupted");
+  constexpr int kGraceMilliseconds = 3000;  // for a child that keeps its state before it ends
+  kill(pid_, SIGTERM);
+  pollfd ending{descriptor_, POLLIN, 0};
+  if (::poll(&ending, 1, kGraceMilliseconds) <= 0) kill(pid_, SIGKILL);
   int wait_status = 0;
   rusage usage{};
   while (wait4(pid_, &wait_status, 0, &usage) < 0 && errno == EINTR) {

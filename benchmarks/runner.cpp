@@ -114,10 +114,17 @@ class Runner {
       tasks_[i] = {std::move(pending[next++]), run_provenance()};
       const Request& request = *tasks_[i].pending.request;
       progress.started(title_of(request));
-      workers_[i].start([&](Trace& trace) { execute(catalog_, request, trace); },
-                        limits_of(request, options_.limits), request.threads);
+      if (options_.force) store_.remove_checkpoint(request);
+      workers_[i].start(
+          [&](Trace& trace) { execute(catalog_, request, trace, checkpoint_of(request)); },
+          limits_of(request, options_.limits), request.threads);
     }
     return next;
+  }
+
+  Checkpoint checkpoint_of(const Request& request) const {
+    const auto path = store_.checkpoint_path(request);
+    return {path, path.stem().string(), options_.checkpoint_seconds};
   }
 
   Json run_provenance() const {
@@ -166,6 +173,7 @@ class Runner {
         !same_result(*earlier, record))
       outcome_.conflicts.push_back(title_of(*task.pending.request));
     store_.write(record, earlier);
+    if (record.status != Status::interrupted) store_.remove_checkpoint(record.request);
     ++outcome_.run;
     if (!earlier) count(record);
   }
@@ -200,6 +208,7 @@ class Runner {
 
 Limits limits_of(const Request& request, const Limits& standard) {
   Limits limits = standard;
+  if (request.hard_seconds > 0) limits.hard_seconds = request.hard_seconds;
   if (std::isfinite(request.budget.seconds)) limits.hard_seconds = 2 * request.budget.seconds;
   return limits;
 }

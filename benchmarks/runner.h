@@ -18,6 +18,7 @@ struct RunOptions {
   bool exclusive = false;  // one at a time, for tables of wall time
   int repeat = 1;          // timings wanted of each cell
   Limits limits;
+  double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
   Progress::Style progress = Progress::Style::silent;
   std::string command;  // for the record
 };

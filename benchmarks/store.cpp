@@ -24,6 +24,11 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
   return folder / "runs" / file_name;
 }
 
+std::string file_name_of(const Request& request) {
+  return record_file_name(cell_digest(request),
+                          build_digest(request.problem.revision, request.optimizer.revision));
+}
+
 // A file half written by a process that was killed: its name ends in ".PID.tmp".
 bool is_abandoned(const fs::path& path) {
   if (path.extension() != ".tmp") return false;
@@ -50,7 +55,7 @@ class FolderLock {
 }  // namespace
 
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
-  for (const char* part : {"runs", "components"}) {
+  for (const char* part : {"runs", "components", "checkpoints"}) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
     require(!error,
@@ -74,8 +79,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
 }
 
 std::optional<Record> Store::find_in(const fs::path& folder, const Request& request) {
-  const std::string build = build_digest(request.problem.revision, request.optimizer.revision);
-  const fs::path path = run_path(folder, record_file_name(cell_digest(request), build));
+  const fs::path path = run_path(folder, file_name_of(request));
   if (!fs::exists(path)) return std::nullopt;
   try {
     Record record = record_from_json(read_json(path));
@@ -93,7 +97,19 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
-  write_text(run_path(folder_, record.file_name()), to_json(record).dump() + "\n");
+  const fs::path path = run_path(folder_, record.file_name());
+  if (record.exhibit && record.exhibit->is_picture())
+    write_pictures(*record.exhibit, fs::path(path).replace_extension(".npy"));
+  write_text(path, to_json(record).dump() + "\n");
+}
+
+fs::path Store::checkpoint_path(const Request& request) const {
+  return folder_ / "checkpoints" / fs::path(file_name_of(request)).replace_extension(".state");
+}
+
+void Store::remove_checkpoint(const Request& request) const {
+  std::error_code missing;
+  fs::remove(checkpoint_path(request), missing);
 }
 
 void Store::write(const Sheet& sheet) {

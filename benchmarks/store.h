@@ -31,6 +31,10 @@ class Store {
   void write(Record record, const std::optional<Record>& earlier);
   void write(const Sheet& sheet);
 
+  // Where a run of this request by this build is kept while it goes.
+  std::filesystem::path checkpoint_path(const Request& request) const;
+  void remove_checkpoint(const Request& request) const;
+
  private:
   std::filesystem::path folder_;
 };

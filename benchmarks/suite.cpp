@@ -34,7 +34,9 @@ MatrixBlock block_from(const Json& json) {
           .except_optimizers = json.value("except_optimizers", none),
           .seeds = parse_seeds(json.value("seeds", "=0")),
           .budget = budget_from(json.value("budget", Json::object())),
-          .threads = json.value("threads", 1)};
+          .threads = json.value("threads", 1),
+          .hard_seconds = json.value("hard_seconds", 0.0),
+          .rates = json.value("rates", "")};
 }
 
 // What a step costs, which decides the grids that a method can be given.
@@ -98,11 +100,12 @@ void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates&
     const Component problem =
         complete_problem(catalog, problem_spec.name, options_of(problem_spec));
     for (const Spec& spec : optimizers) {
-      const Rates::Row* row = rates.find(problem.spec, spec.name);
+      const Rates::Row* row = rates.find(problem, spec.name, block.rates);
       const Component optimizer = with_rates(catalog, spec, row);
       for (const std::uint64_t seed : block.seeds) {
-        Request request{problem,      optimizer,     seed,
-                        block.budget, block.threads, row ? row->origin : ""};
+        Request request{problem,           optimizer,     seed,
+                        block.budget,      block.threads, row ? row->origin : "",
+                        block.hard_seconds};
         if (known.insert(cell_digest(request)).second) requests.push_back(std::move(request));
       }
     }

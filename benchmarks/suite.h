@@ -20,6 +20,8 @@ struct MatrixBlock {
   std::vector<std::uint64_t> seeds = {0};
   Budget budget;
   int threads = 1;
+  double hard_seconds = 0;  // when a cell is killed; 0: the standard limit
+  std::string rates;        // the one table to look in; empty: all that are not of tuned rates
 };
 
 struct Suite {

@@ -48,6 +48,11 @@ void Stopwatch::pause() {
   is_running_ = false;
 }
 
+void Stopwatch::set(double wall_seconds, double processor_seconds) {
+  elapsed_ = static_cast<std::uint64_t>(wall_seconds / seconds_per_tick());
+  processor_ = processor_seconds;
+}
+
 double Stopwatch::seconds() const { return static_cast<double>(elapsed()) * seconds_per_tick(); }
 
 }  // namespace isoline

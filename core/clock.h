@@ -24,8 +24,9 @@ class Stopwatch {
   void resume();
   void pause();
   std::uint64_t elapsed() const { return is_running_ ? elapsed_ + ticks() - resumed_ : elapsed_; }
-  double seconds() const;                                  // wall time so far
-  double processor_seconds() const { return processor_; }  // up to the last pause
+  double seconds() const;                                   // wall time so far
+  double processor_seconds() const { return processor_; }   // up to the last pause
+  void set(double wall_seconds, double processor_seconds);  // goes on from an earlier reading
 
  private:
   bool is_running_ = false;

@@ -9,19 +9,22 @@
 namespace isoline {
 
 enum class Oracle {
-  forward,      // y = P(N(θ)) and L
-  pullback,     // Jᵀ w
-  pushforward,  // J v
-  jacobian,     // J, (m, n)
-  hessian,      // ∇²L, (n, n)
-  curvature,    // Σ wᵢ ∇²Pᵢ, (k, k) a sample
-  inverse,      // P⁻¹(y; x)
-  network,      // (∂x/∂θ)ᵀ w, through the network alone
-  truth,        // the x* that made y*: a privilege
+  forward,          // y = P(N(θ)) and L
+  pullback,         // Jᵀ w
+  pushforward,      // J v
+  jacobian,         // J, (m, n)
+  hessian,          // ∇²L, (n, n)
+  curvature,        // Σ wᵢ ∇²Pᵢ, (k, k) a sample
+  sensitivity,      // ∂y/∂x, (m, k) a sample, through the physics alone
+  hessian_product,  // ∇²L v
+  inverse,          // P⁻¹(y; x)
+  network,          // (∂x/∂θ)ᵀ w, through the network alone
+  layer_factors,    // inputs and cotangents of each dense layer
+  truth,            // the x* that made y*: a privilege
 };
-inline constexpr std::array<std::string_view, 9> kOracleNames = {
-    "forward",   "pullback", "pushforward", "jacobian", "hessian",
-    "curvature", "inverse",  "network",     "truth"};
+inline constexpr std::array<std::string_view, 12> kOracleNames = {
+    "forward",     "pullback",        "pushforward", "jacobian", "hessian",       "curvature",
+    "sensitivity", "hessian_product", "inverse",     "network",  "layer_factors", "truth"};
 inline constexpr std::size_t kOracles = kOracleNames.size();
 
 using OracleCounts = std::array<std::int64_t, kOracles>;

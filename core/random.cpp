@@ -13,6 +13,14 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view component, std::
                            std::uint64_t index)
     : key_{seed, fnv1a(purpose, fnv1a("/", fnv1a(component)))}, index_(index) {}
 
+RandomStream RandomStream::of_sample(std::uint64_t index) const {
+  RandomStream other = *this;
+  other.index_ = index;
+  other.block_ = 0;
+  other.left_ = 0;
+  return other;
+}
+
 std::uint64_t RandomStream::next() {
   if (left_ == 0) {
     const r123::Philox4x64::ctr_type counter{{index_, block_++, 0, 0}};

@@ -16,6 +16,9 @@ class RandomStream {
   RandomStream(std::uint64_t seed, std::string_view component, std::string_view purpose,
                std::uint64_t index = 0);
 
+  // The stream of another sample, from its beginning; everything else of the key the same.
+  RandomStream of_sample(std::uint64_t index) const;
+
   Real uniform();                     // U[0, 1)
   Real uniform(Real low, Real high);  // U[low, high)
   Real normal();                      // N(0, 1), by Box and Muller

@@ -30,16 +30,31 @@ std::vector<std::vector<Real>> real_rows(const Json& list) {
   return values;
 }
 
+Json by_window(const std::map<std::int64_t, std::vector<Real>>& columns) {
+  Json json = Json::object();
+  for (const auto& [window, values] : columns) json[std::to_string(window)] = numbers(values);
+  return json;
+}
+
+std::map<std::int64_t, std::vector<Real>> windows_from(const Json& json) {
+  std::map<std::int64_t, std::vector<Real>> columns;
+  for (const auto& [window, values] : json.items()) columns[std::stoll(window)] = reals(values);
+  return columns;
+}
+
 Json to_json(const Curve& curve) {
-  return {{"iteration", curve.iteration},
-          {"work", curve.work},
-          {"counts", curve.counts},
-          {"wall_seconds", numbers(curve.wall_seconds)},
-          {"processor_seconds", numbers(curve.processor_seconds)},
-          {"loss", numbers(curve.loss)},
-          {"x_error", numbers(curve.x_error)},
-          {"gradient_norm", numbers(curve.gradient_norm)},
-          {"step_norm", numbers(curve.step_norm)}};
+  Json json = {{"iteration", curve.iteration},
+               {"work", curve.work},
+               {"counts", curve.counts},
+               {"wall_seconds", numbers(curve.wall_seconds)},
+               {"processor_seconds", numbers(curve.processor_seconds)},
+               {"loss", numbers(curve.loss)},
+               {"x_error", numbers(curve.x_error)},
+               {"gradient_norm", numbers(curve.gradient_norm)},
+               {"step_norm", numbers(curve.step_norm)}};
+  if (!curve.batch_loss.empty()) json["batch_loss"] = by_window(curve.batch_loss);
+  if (!curve.batch_x_error.empty()) json["batch_x_error"] = by_window(curve.batch_x_error);
+  return json;
 }
 
 Curve curve_from(const Json& json) {
@@ -53,6 +68,8 @@ Curve curve_from(const Json& json) {
   curve.x_error = reals(json.at("x_error"));
   curve.gradient_norm = reals(json.at("gradient_norm"));
   curve.step_norm = reals(json.at("step_norm"));
+  if (json.contains("batch_loss")) curve.batch_loss = windows_from(json["batch_loss"]);
+  if (json.contains("batch_x_error")) curve.batch_x_error = windows_from(json["batch_x_error"]);
   return curve;
 }
 
@@ -143,6 +160,9 @@ Record parsed(const Json& json) {
   if (json.contains("trajectory"))
     record.trajectory = {real_rows(json["trajectory"].at("x")),
                          real_rows(json["trajectory"].at("y"))};
+  if (json.contains("series"))
+    for (const auto& [name, values] : json["series"].items()) record.series[name] = reals(values);
+  if (json.contains("exhibit")) record.exhibit = exhibit_from_json(json["exhibit"]);
   json.at("privileges").get_to(record.privileges);
   record.is_nondeterministic = json.at("nondeterministic");
   record.repeat_wall_seconds = reals(json.at("repeat_wall_seconds"));
@@ -173,6 +193,8 @@ Json to_json(const Record& record) {
   if (record.hits) json["hits"] = to_json(*record.hits);
   if (record.trajectory)
     json["trajectory"] = {{"x", rows(record.trajectory->x)}, {"y", rows(record.trajectory->y)}};
+  for (const auto& [name, values] : record.series) json["series"][name] = numbers(values);
+  if (record.exhibit) json["exhibit"] = to_json(*record.exhibit);
   return json;
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/array.h"
 #include "core/budget.h"
+#include "core/exhibit.h"
 #include "core/oracle.h"
 #include "core/status.h"
 
@@ -34,6 +35,7 @@ struct Request {
   Budget budget;
   int threads = 1;
   std::string rates;  // the file under benchmarks/rates that set options, or empty; not in the cell
+  double hard_seconds = 0;  // when it is killed; 0: the runner's own limit; not in the record
 };
 
 // The curve as columns of equal length.
@@ -41,6 +43,8 @@ struct Curve {
   std::vector<std::int64_t> iteration, work;
   std::map<std::string, std::vector<std::int64_t>> counts;  // by oracle; never-asked ones left out
   std::vector<Real> wall_seconds, processor_seconds, loss, x_error, gradient_norm, step_norm;
+  // Of learning problems, by window: the means over the training batches of the last steps.
+  std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
 };
 
 // When each of 51 targets τ = 10^(−j/5) was first reached: f ≤ f_L + τ (f₀ − f_L). −1: never.
@@ -81,6 +85,8 @@ struct Record {
   Curve curve;
   std::optional<Hits> hits;  // where f_L is declared
   std::optional<Trajectory> trajectory;
+  std::map<std::string, std::vector<Real>> series;  // a problem's own quantities, as the curve
+  std::optional<Exhibit> exhibit;
   std::vector<std::string> privileges;
   bool is_nondeterministic = false;       // ended by a clock or a kill
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted

@@ -23,6 +23,13 @@ struct TracePoint {
   double x_error = 0;        // distance to the nearest solution; nan where none is known
   double gradient_norm = 0;  // ‖∂L/∂θ‖; nan where the problem has none
   double step_norm = 0;      // ‖θ − θ at the previous iteration‖
+  // Of learning problems: the means over the batches of the last 64 and 256 steps, each taken
+  // before its step; nan elsewhere.
+  double batch_loss[2] = {kAbsent, kAbsent}, batch_x_error[2] = {kAbsent, kAbsent};
+  double series[4] = {kAbsent, kAbsent, kAbsent, kAbsent};  // named quantities of the problem
+
+  static constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+  static constexpr std::int64_t kWindows[2] = {64, 256};
 };
 
 // When the j-th target was first reached: f ≤ f_L + 10^(−j/5) (f₀ − f_L).
@@ -35,6 +42,8 @@ struct Trace {
   static constexpr int kPoints = 512;  // iterations 0-100, then 32 a decade: enough for 1e14
   static constexpr int kHits = 51;
   static constexpr int kInputs = 3, kOutputs = 16;  // largest x and y whose path is kept
+  static constexpr int kSeries = 4;
+  static constexpr int kExhibit = 4096;  // numbers of each array of the exhibit
   static constexpr int kText = 1024;
 
   std::atomic<std::int64_t> first_oracle_nanoseconds{0};  // CLOCK_MONOTONIC; 0: not yet
@@ -44,6 +53,16 @@ struct Trace {
   TraceHit hit[kHits];
   double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
   int path_inputs = 0, path_outputs = 0;  // sizes of x and y in the path; 0: not kept
+
+  // What was learned, on samples of the validation: one grid, or some small samples, one a column.
+  struct Exhibit {
+    int rows = 0, columns = 0;
+    double value[kExhibit];
+  };
+  Exhibit shown_target, shown_x, shown_truth;
+  int shown_grid = 0;  // N where the columns are N×N grids
+  bool is_learned = false;
+  char series_names[kText] = "";  // a line each
 
   // The last state known, kept up to date at every iteration; the final verdict when finished.
   TracePoint last;

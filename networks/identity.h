@@ -20,6 +20,10 @@ class Identity final : public Network {
   }
   void pushforward(VectorRef v, BatchOut Jv, Workspace&) const override { Jv.col(0) = v; }
   void pullback(BatchRef u, VectorOut JTu, Workspace&) const override { JTu = u.col(0); }
+  bool has_curvature() const override { return true; }
+  void curvature(VectorRef, BatchRef, BatchRef du, VectorOut out, Workspace&) const override {
+    out = du.col(0);
+  }
 
  private:
   Vector start_;

@@ -11,6 +11,7 @@ struct Adadelta {
   struct State {
     Vector s, u, step;  // (n) mean squares of gradients and of steps, and Δ
   };
+  static void persist(State& s, Archive& archive) { archive(s.s, s.u); }
   State init(Index n) const { return {Vector::Zero(n), Vector::Zero(n), Vector::Zero(n)}; }
   void update(VectorRef g, Vector& theta, State& state) const {
     auto& [s, u, step] = state;

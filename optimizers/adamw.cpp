@@ -12,6 +12,7 @@ struct Adamw {
     Vector m, v;                  // (n)
     Real power1 = 1, power2 = 1;  // β₁ᵗ, β₂ᵗ
   };
+  static void persist(State& s, Archive& archive) { archive(s.m, s.v, s.power1, s.power2); }
   State init(Index n) const { return {Vector::Zero(n), Vector::Zero(n)}; }
   void update(VectorRef g, Vector& theta, State& s) const {
     s.m = beta1 * s.m + (1 - beta1) * g;

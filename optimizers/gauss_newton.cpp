@@ -19,6 +19,7 @@ struct GaussNewton {
     Linearization at;
     Vector residual, step;  // (m·B), (n)
   };
+  static void persist(State&, Archive&) {}  // all of it is scratch
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);

@@ -18,6 +18,7 @@ struct HalfInverse {
     Matrix g;      // (m, B)
     Vector along;  // (r), in the singular basis
   };
+  static void persist(State&, Archive&) {}  // all of it is scratch
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);

@@ -15,6 +15,7 @@ struct InverseGradient {
     Linearization at;
     Vector dy, dx;  // (m·B), (n)
   };
+  static void persist(State&, Archive&) {}  // all of it is scratch
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);

@@ -93,17 +93,17 @@ void fields(LevenbergMarquardt& o, auto& field) {
 }  // namespace
 
 void register_levenberg_marquardt(OptimizerRegistry& registry) {
-  registry.add(stepper_entry<LevenbergMarquardt>(
-      {.name = "levenberg-marquardt",
-       .title = "Levenberg-Marquardt",
-       .family = Family::curvature,
-       .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
-       .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
-       .note = "A rejected candidate is an iteration too.",
-       .needs = {Oracle::forward, Oracle::jacobian},
-       .is_input_scale_invariant = true,
-       .most_unknowns = 4096,
-       .most_rank = 2048}));
+  registry.add(
+      stepper_entry<LevenbergMarquardt>({.name = "levenberg-marquardt",
+                                         .title = "Levenberg-Marquardt",
+                                         .family = Family::curvature,
+                                         .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
+                                         .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
+                                         .note = "A rejected candidate is an iteration too.",
+                                         .needs = {Oracle::forward, Oracle::jacobian},
+                                         .is_input_scale_invariant = true,
+                                         .most_unknowns = 4096,
+                                         .most_rank = 2048}));
 }
 
 }  // namespace isoline

@@ -24,6 +24,11 @@ void Linearization::pullback(BatchRef w, VectorOut out) {
   meter_->problem_.pullback(w, out, point_);
 }
 
+void Linearization::physics_pullback(BatchRef w, BatchOut out) {
+  meter_->charge(Oracle::pullback);
+  meter_->problem_.physics_pullback(w, out, point_);
+}
+
 void Linearization::pushforward(VectorRef v, BatchOut out) {
   meter_->charge(Oracle::pushforward);
   meter_->problem_.pushforward(v, out, point_);
@@ -35,6 +40,21 @@ const Matrix& Linearization::jacobian() {
   meter_->problem_.jacobian(J_, point_);
   has_jacobian_ = true;
   return J_;
+}
+
+const Matrix& Linearization::sensitivity() {
+  meter_->charge(Oracle::sensitivity);
+  meter_->problem_.sensitivity(dy_dx_, point_);
+  return dy_dx_;
+}
+
+void Linearization::hessian_product(VectorRef v, VectorOut out) {
+  meter_->charge(Oracle::hessian_product);
+  meter_->problem_.hessian_product(v, out, point_);
+}
+
+void Linearization::loss_curvature(BatchRef dy, BatchOut dg) const {
+  meter_->problem_.loss_curvature(point_, dy, dg);
 }
 
 const Matrix& Linearization::hessian() {
@@ -53,6 +73,11 @@ void Linearization::curvature(BatchRef w, BatchOut out) {
 Success Linearization::local_inverse(BatchRef y, BatchOut x) {
   meter_->charge(Oracle::inverse);
   return meter_->problem_.local_inverse(y, x, point_);
+}
+
+void Linearization::layer_factors(BatchRef w, std::vector<LayerFactor>& out) {
+  meter_->charge(Oracle::layer_factors);
+  meter_->problem_.layer_factors(w, out, point_);
 }
 
 void Linearization::network_pullback(BatchRef w, VectorOut out) {

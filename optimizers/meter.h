@@ -4,9 +4,11 @@
 
 #include <string_view>
 
+#include "core/archive.h"
 #include "core/budget.h"
 #include "core/clock.h"
 #include "core/trace.h"
+#include "optimizers/running_mean.h"
 #include "problems/problem.h"
 
 namespace isoline {
@@ -24,18 +26,23 @@ class Linearization {
   void residual(Vector& r) const;   // r = (y − y*)/√B, (m·B)
   void gradient(Vector& out);       // Jᵀ g, (n)
   void pullback(BatchRef w, VectorOut out);
+  void physics_pullback(BatchRef w, BatchOut out);  // through the physics alone, (m, B) -> (k, B)
   void pushforward(VectorRef v, BatchOut out);
-  const Matrix& jacobian();  // (m·B, n), computed once a point
-  const Matrix& hessian();   // ∇²L, (n, n), computed once a point
+  const Matrix& jacobian();     // (m·B, n), computed once a point
+  const Matrix& sensitivity();  // ∂y/∂x of each sample side by side, (m, k·B)
+  const Matrix& hessian();      // ∇²L, (n, n), computed once a point
+  void hessian_product(VectorRef v, VectorOut out);     // ∇²L v, (n)
+  void loss_curvature(BatchRef dy, BatchOut dg) const;  // (∂²L/∂y²) dy, (m, B)
   void curvature(BatchRef w, BatchOut out);
   Success local_inverse(BatchRef y, BatchOut x);
   void network_pullback(BatchRef w, VectorOut out);
+  void layer_factors(BatchRef w, std::vector<LayerFactor>& out);  // under the cotangent w, (m, B)
 
  private:
   friend class Meter;
   Meter* meter_ = nullptr;
   Point point_;
-  Matrix g_, J_, H_;
+  Matrix g_, J_, H_, dy_dx_;
   bool has_jacobian_ = false, has_hessian_ = false;
 };
 
@@ -47,15 +54,17 @@ class Meter {
   // --- for methods
   void linearize(VectorRef theta, Linearization& at);
   Real loss(VectorRef theta);
-  const Matrix& target() const { return problem_.target(); }  // y*, (m, B)
+  void linearize_physics(BatchRef x, Linearization& at);  // at an x, the network left out
+  // The samples of this step: the same for every call within it.
+  const Matrix& target() const { return samples_->target; }  // y*, (m, B)
+  const Matrix& truth();                                     // x*, (k, B): a privilege
   std::vector<Block> layout() const { return problem_.layout(); }
   Index unknowns() const { return problem_.unknowns(); }
   Index residuals() const { return problem_.residuals(); }
   Index samples() const { return problem_.samples(); }
   bool has_identity_network() const { return problem_.has_identity_network(); }
   Inverse inverse_kind() const { return problem_.inverse_kind(); }
-  // ½‖P(x) − y‖² of the physics alone and its gradient in x: one forward and one pullback.
-  Real physics_misfit(BatchRef y, BatchRef x, BatchOut gradient);
+  bool has_fresh_batches() const { return problem_.has_fresh_batches(); }
 
   // A library's solver reports each iteration here and stops unless told `running`.
   Status iterate(VectorRef theta);
@@ -69,6 +78,8 @@ class Meter {
 
   // --- for the harness
   Status begin(VectorRef theta);
+  // All that a run has come to, to be gone on with by another process; reading it begins the run.
+  void persist(Archive& archive);
   void finish(VectorRef theta, Status verdict);
   const Problem& problem() const { return problem_; }
 
@@ -81,13 +92,23 @@ class Meter {
     work_ += prices_[kind];
   }
   [[noreturn]] void refuse(Oracle oracle) const;
+  // What a learning problem is judged by is its validation, not the batch of a step.
   void see(Real loss) {
+    if (problem_.is_learned()) return;
+    observe(loss);
+  }
+  void observe(Real loss) {
     if (loss < best_loss_) best_loss_ = loss;
     if (loss <= next_target_) reach(loss);
   }
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
+  Real judged_gradient_norm();
   void keep_point();
+  void show();     // what was learned
+  void prepare();  // samples and limits
+  void draw_batch();
+  void note_batch(const Point& at);
   Status judge(VectorRef theta);
   bool has_stalled();
   bool is_out_of_time() const { return most_ticks_ != kNoLimit && watch_.elapsed() >= most_ticks_; }
@@ -97,6 +118,10 @@ class Meter {
   Budget budget_;
   OracleSet granted_;
   Trace& trace_;
+  const Batch* samples_;  // of this step
+  Batch batch_, validation_;
+  RunningMean batch_loss_, batch_x_error_;
+  bool has_seen_batch_ = false;  // whether this step's batch is among the means
   OracleCounts counts_{};
   std::array<std::int64_t, kOracles> prices_;
   std::int64_t work_ = 0, iteration_ = 0, next_kept_ = 0;

@@ -12,6 +12,7 @@ struct Nesterov {
   struct State {
     Vector v;  // (n)
   };
+  static void persist(State& s, Archive& archive) { archive(s.v); }
   State init(Index n) const { return {Vector::Zero(n)}; }
   void update(VectorRef g, Vector& theta, State& s) const {
     s.v = momentum * s.v + g;

@@ -14,6 +14,7 @@ struct Newton {
     Linearization at;
     Vector gradient, step;  // (n)
   };
+  static void persist(State&, Archive&) {}  // all of it is scratch
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);

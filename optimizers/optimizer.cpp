@@ -18,6 +18,13 @@ std::string_view reason_of(Oracle missing) {
       return "the problem offers no second derivatives";
     case Oracle::inverse:
       return "the physics has no local inverse";
+    case Oracle::hessian_product:
+      return "the problem offers no products with the Hessian";
+    case Oracle::jacobian:
+    case Oracle::sensitivity:
+      return "the Jacobian would be too large to form";
+    case Oracle::layer_factors:
+      return "there is no network of dense layers";
     case Oracle::truth:
       return "the problem knows no true x";
     default:
@@ -51,6 +58,8 @@ std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
     const auto oracle = static_cast<Oracle>(kind);
     if (needs.contains(oracle) && !offered.contains(oracle)) return std::string(reason_of(oracle));
   }
+  if (entry.needs_same_samples && problem.has_fresh_batches())
+    return "it compares losses from step to step, which needs a finite data set (data=N)";
   if (problem.unknowns() > entry.most_unknowns)
     return fmt::format("{} unknowns, and {} is limited to {}", problem.unknowns(), entry.name,
                        entry.most_unknowns);

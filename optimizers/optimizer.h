@@ -33,6 +33,8 @@ class Optimizer {
   virtual void start(Meter& f, const Vector& theta) = 0;
   virtual Status step(Meter& f, Vector& theta) = 0;          // one iteration, or the whole solve
   virtual bool reports_iterations() const { return false; }  // to the meter, by itself
+  // Its state between two steps, so that another process can go on; false where it has no way to.
+  virtual bool persist(Archive&) { return false; }
 };
 
 // A gradient rule with its state, for the methods that use one inside.
@@ -41,7 +43,20 @@ class Descent {
   virtual ~Descent() = default;
   virtual void start(Index n) = 0;
   virtual void update(VectorRef g, Vector& theta) = 0;
+  virtual bool persist(Archive&) { return false; }
 };
+
+// A method or rule whose State is more than scratch names what it carries from step to step:
+//
+//   static void persist(State& s, Archive& archive) { archive(s.m, s.v); }
+template <class M>
+bool persist_state(typename M::State& state, Archive& archive) {
+  if constexpr (requires { M::persist(state, archive); }) {
+    M::persist(state, archive);
+    return true;
+  }
+  return std::is_empty_v<typename M::State>;
+}
 
 enum class Family { first_order, curvature, inversion, ceres, nlopt, nlopt_derivative_free };
 inline constexpr std::array<std::string_view, 6> kFamilyNames = {
@@ -62,6 +77,8 @@ struct OptimizerEntry {
   OracleSet needs = {};
   // The path in y does not change when x is rescaled, componentwise and linearly.
   bool is_input_scale_invariant = false;
+  // Compares losses from step to step, so that fresh samples at each step would mislead it.
+  bool needs_same_samples = false;
   // Above these the cell is inapplicable: n, and min(n, m·B) where J is factorized whole.
   Index most_unknowns = std::numeric_limits<Index>::max();
   Index most_rank = std::numeric_limits<Index>::max();
@@ -97,6 +114,7 @@ class Stepping final : public Optimizer {
   explicit Stepping(M method) : method_(std::move(method)) {}
   void start(Meter& f, const Vector& theta) override { state_ = method_.init(f, theta); }
   Status step(Meter& f, Vector& theta) override { return method_.step(f, theta, state_); }
+  bool persist(Archive& archive) override { return persist_state<M>(state_, archive); }
 
  private:
   const M method_;
@@ -114,6 +132,7 @@ class ByGradient final : public Optimizer {
     rule_.update(gradient_, theta, state_);
     return Status::running;
   }
+  bool persist(Archive& archive) override { return persist_state<R>(state_, archive); }
 
  private:
   const R rule_;
@@ -128,6 +147,7 @@ class Descending final : public Descent {
   explicit Descending(const R& rule) : rule_(rule) {}
   void start(Index n) override { state_ = rule_.init(n); }
   void update(VectorRef g, Vector& theta) override { rule_.update(g, theta, state_); }
+  bool persist(Archive& archive) override { return persist_state<R>(state_, archive); }
 
  private:
   const R rule_;

@@ -11,6 +11,7 @@ struct Rmsprop {
   struct State {
     Vector s;  // (n), mean of squared gradients
   };
+  static void persist(State& s, Archive& archive) { archive(s.s); }
   State init(Index n) const { return {Vector::Zero(n)}; }
   void update(VectorRef g, Vector& theta, State& state) const {
     state.s = alpha * state.s + (1 - alpha) * g.cwiseAbs2();

@@ -20,6 +20,7 @@ struct SaddleFreeNewton {
     SymmetricEigen eigen;
     Vector gradient, along;  // (n), ∇L and the step in the eigenbasis
   };
+  static void persist(State&, Archive&) {}  // all of it is scratch
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);

@@ -83,8 +83,10 @@ class Sip final : public Optimizer {
     const Index k = found_.rows(), samples = found_.cols();
     flat_ = found_.reshaped();
     const auto misfit = [&](VectorRef x, VectorOut gradient) {
-      return f.physics_misfit(wanted_, Eigen::Map<const Matrix>(x.data(), k, samples),
-                              Eigen::Map<Matrix>(gradient.data(), k, samples));
+      f.linearize_physics(Eigen::Map<const Matrix>(x.data(), k, samples), trial_);
+      misfit_ = trial_.y() - wanted_;
+      trial_.physics_pullback(misfit_, Eigen::Map<Matrix>(gradient.data(), k, samples));
+      return 0.5 * misfit_.squaredNorm();
     };
     minimize_lbfgs(misfit,
                    {.evaluations = options_.inverse_evaluations,
@@ -97,11 +99,11 @@ class Sip final : public Optimizer {
   const Options options_;
   const OptimizerRegistry& registry_;
   std::unique_ptr<Descent> descent_;
-  Linearization at_;
-  Matrix wanted_;        // (m, B) ỹ
-  Matrix found_, pull_;  // (k, B) x̃ and the proxy's gradient in x
-  Vector flat_;          // (k·B) x̃ during descent
-  Vector gradient_;      // (n)
+  Linearization at_, trial_;
+  Matrix wanted_, misfit_;  // (m, B) ỹ, and P(x) − ỹ during descent
+  Matrix found_, pull_;     // (k, B) x̃ and the proxy's gradient in x
+  Vector flat_;             // (k·B) x̃ during descent
+  Vector gradient_;         // (n)
 };
 
 OracleSet needs_for(const Json& options, const Problem& problem) {

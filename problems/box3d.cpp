@@ -49,7 +49,7 @@ ProblemParts make_box3d(const Options& o, const Draw& draw) {
   isolated << 1, 10, 10, 1, 1, -1;
   ProblemParts parts =
       classical(std::make_unique<Box3d>(o.m), Eigen::Vector3d(0, 10, 20), draw, 0, isolated);
-  parts.x_error = [isolated](BatchRef x) {
+  parts.x_error = [isolated](BatchRef x, const Batch&) {
     const Real to_line = std::hypot((x(0, 0) - x(1, 0)) / std::sqrt(2.0), x(2, 0));
     return std::min(distance_to_nearest(x, isolated), to_line);
   };

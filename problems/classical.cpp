@@ -17,7 +17,9 @@ ProblemParts classical(std::unique_ptr<Physics> f, const Vector& start, const Dr
           .target = target,
           .minimum = minimum,
           .truth = minimizers.leftCols(1),
-          .x_error = [minimizers](BatchRef x) { return distance_to_nearest(x, minimizers); }};
+          .x_error = [minimizers](BatchRef x, const Batch&) {
+            return distance_to_nearest(x, minimizers);
+          }};
 }
 
 }  // namespace isoline

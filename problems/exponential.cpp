@@ -3,16 +3,20 @@
 // sought from x = 0. Seed 0 takes its quantiles x*ᵢ = −12 (i + ½)/n, so y* = e⁻⁶ for n = 1.
 #include <cmath>
 
+#include "problems/learning.h"
 #include "problems/physics.h"
-#include "problems/problem.h"
 
 namespace isoline {
 namespace {
 
 struct Options {
   Index n = 1;
+  Learning learning{.network = "mlp[layers=16-64-16,activation=sigmoid]", .batch = 100};
 };
-void fields(Options& o, auto& field) { field("n", o.n, between(1, 1e6), "number of components"); }
+void fields(Options& o, auto& field) {
+  field("n", o.n, between(1, 1e6), "number of components");
+  fields(o.learning, field);
+}
 
 // The scalar function: a vectorized one would give an entry other bits by its place in the array.
 constexpr auto kExp = [](Real x) { return std::exp(x); };
@@ -49,8 +53,26 @@ class Exponential final : public Physics {
   Index n_;
 };
 
+constexpr Real kSpan = -12;  // y* falls to e⁻¹²
+
+// x* = −12u, u ~ U[0, 1); the network sees y* as it is.
+ProblemParts learn_exponential(const Options& o, const Draw& draw) {
+  const auto sample = [](RandomStream& stream, Index b, Batch& batch) {
+    for (Real& x : batch.truth.col(b)) x = kSpan * stream.uniform();
+    batch.target.col(b) = batch.truth.col(b).unaryExpr(kExp);
+    batch.input.col(b) = batch.target.col(b);
+  };
+  const auto mean_error = [](BatchRef x, const Batch& batch) {
+    return (x - batch.truth).cwiseAbs().mean();
+  };
+  return learn(o.learning, {.inputs = o.n, .outputs = o.n}, draw,
+               {.physics = std::make_unique<Exponential>(o.n),
+                .x_error = mean_error,
+                .samples = {.draw = sample}});
+}
+
 ProblemParts make_exponential(const Options& o, const Draw& draw) {
-  constexpr Real kSpan = -12;  // y* falls to e⁻¹²
+  if (o.learning.is_on()) return learn_exponential(o, draw);
   const Real n = static_cast<Real>(o.n);
   const Matrix truth = draw.is_published()
                            ? Vector(Vector::LinSpaced(o.n, kSpan / (2 * n), kSpan * (n - 0.5) / n))
@@ -60,7 +82,7 @@ ProblemParts make_exponential(const Options& o, const Draw& draw) {
           .target = truth.unaryExpr(kExp),
           .minimum = 0,
           .truth = truth,
-          .x_error = [truth](BatchRef x) { return (x - truth).norm(); }};
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
 }
 
 }  // namespace

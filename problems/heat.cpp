@@ -11,7 +11,8 @@
 #include <numbers>
 
 #include "core/fourier.h"
-#include "problems/problem.h"
+#include "networks/mean_matched.h"
+#include "problems/learning.h"
 #include "problems/random_fields.h"
 
 namespace isoline {
@@ -19,12 +20,17 @@ namespace {
 
 struct Options {
   Index N = 64;
+  Learning learning{.network = "unet", .batch = 128};
 };
-void fields(Options& o, auto& field) { field("N", o.N, between(2, 1024), "cells along each side"); }
+void fields(Options& o, auto& field) {
+  field("N", o.N, between(2, 1024), "cells along each side");
+  fields(o.learning, field);
+}
 
 class Heat final : public Physics {
  public:
-  explicit Heat(Index N) : N_(N), fourier_(N, N), ell_(N / 2 + 1, N), gain_(ell_) {
+  Heat(Index N, Real noise_floor)
+      : N_(N), noise_floor_(noise_floor), fourier_(N, N), ell_(N / 2 + 1, N), gain_(ell_) {
     constexpr Real kDiffusion = 8;  // νt
     for (Index j = 0; j < N; ++j) {
       for (Index i = 0; i <= N / 2; ++i) {
@@ -50,6 +56,9 @@ class Heat final : public Physics {
   void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { diffuse(u, JTu); }
   bool has_curvature() const override { return true; }
   void curvature(BatchRef, BatchOut out, Workspace&) const override { out.setZero(); }
+  void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const override {
+    out.setZero();
+  }
 
   Inverse inverse_kind() const override { return Inverse::damped; }
   Index inverse_price() const override { return 2; }  // P(x₀), and as much again to invert
@@ -63,9 +72,7 @@ class Heat final : public Physics {
 
  private:
   void sharpen(VectorOut d) const {  // d = F⁻¹(e^(αℓ) F d), (N²)
-    // The floor of 1e-8 is the authors' for repeated use: as d vanishes, so would σ, and rounding
-    // errors would pass for evidence.
-    const Real sigma = 1e-6 * d.norm() + 1e-8;
+    const Real sigma = 1e-6 * d.norm() + noise_floor_;
     fourier_.forward(d);
     auto& D = fourier_.spectrum();
     for (Index j = 0; j < D.cols(); ++j) {
@@ -87,14 +94,42 @@ class Heat final : public Physics {
   }
 
   Index N_;
+  Real noise_floor_;
   mutable RealFourier2d fourier_;  // its spectrum is scratch
   Matrix ell_;                     // ℓ, (N/2 + 1, N)
   Matrix gain_;                    // e^(−ℓ) over the factor of a round trip, (N/2 + 1, N)
 };
 
+// Of σ, the authors' for repeated use: as d vanishes, so would σ, and rounding errors would pass
+// for evidence. A network's d does not vanish, and they train without it.
+constexpr Real kNoiseFloor = 1e-8;
+
+// The published error: |x − x*| summed over cells, the mean over samples.
+Real summed_error(BatchRef x, const Batch& batch) {
+  return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
+}
+
+// The mean of x* is that of y*, which the network is given: x ← N(y*) + mean(y*) − mean(N(y*)).
+ProblemParts learn_heat(const Options& o, const Draw& draw) {
+  const auto physics = std::make_shared<const Heat>(o.N, 0);
+  const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {
+    batch.truth.col(b) = soft_rectangles(N, stream);
+    physics->diffuse(batch.truth.col(b), batch.target.col(b));
+    batch.input.col(b) = batch.target.col(b);
+  };
+  const NetworkShape shape{.inputs = o.N * o.N, .outputs = o.N * o.N, .grid = o.N};
+  return learn(o.learning, shape, draw,
+               {.physics = std::make_unique<Heat>(o.N, 0),
+                .network = std::make_unique<MeanMatched>(make_network(o.learning.network, shape)),
+                .x_error = summed_error,
+                .samples = {.validation = 64, .draw = sample},
+                .grid = o.N});
+}
+
 ProblemParts make_heat(const Options& o, const Draw& draw) {
+  if (o.learning.is_on()) return learn_heat(o, draw);
   RandomStream stream = draw.stream("target");
-  auto physics = std::make_unique<Heat>(o.N);
+  auto physics = std::make_unique<Heat>(o.N, kNoiseFloor);
   const Matrix truth = soft_rectangles(o.N, stream);
   Matrix target(truth.rows(), 1);
   physics->diffuse(truth, target);
@@ -103,7 +138,7 @@ ProblemParts make_heat(const Options& o, const Draw& draw) {
           .target = target,
           .minimum = 0,
           .truth = truth,
-          .x_error = [truth](BatchRef x) { return (x - truth).norm(); }};
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
 }
 
 }  // namespace

@@ -23,6 +23,13 @@ void Physics::curvature(BatchRef, BatchOut, Workspace&) const {
   throw NotApplicable("the physics offers no second derivatives");
 }
 
+void Physics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const {
+  const Index k = inputs();
+  Matrix H(k, k * u.cols());
+  curvature(u, H, w);
+  for (Index b = 0; b < u.cols(); ++b) out.col(b).noalias() = H.middleCols(b * k, k) * v.col(b);
+}
+
 Success Physics::local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut) const {
   return Success::Constant(y.cols(), false);
 }

@@ -34,6 +34,8 @@ class Physics {
   // Σᵢ uᵢ ∇²Pᵢ of each sample, side by side: (k, k·B), u (m, B).
   virtual bool has_curvature() const { return false; }
   virtual void curvature(BatchRef u, BatchOut out, Workspace& w) const;
+  // (Σᵢ uᵢ ∇²Pᵢ) v of each sample, (k, B). By default through the matrices.
+  virtual void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const;
 
   // The x nearest x0 with P(x) = y, for every sample that has one.
   virtual Inverse inverse_kind() const { return Inverse::none; }

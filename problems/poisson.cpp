@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/fourier.h"
-#include "problems/problem.h"
+#include "problems/learning.h"
 #include "problems/random_fields.h"
 
 namespace isoline {
@@ -14,8 +14,12 @@ namespace {
 
 struct Options {
   Index N = 64;
+  Learning learning{.network = "unet", .batch = 128};
 };
-void fields(Options& o, auto& field) { field("N", o.N, between(2, 1024), "cells along each side"); }
+void fields(Options& o, auto& field) {
+  field("N", o.N, between(2, 1024), "cells along each side");
+  fields(o.learning, field);
+}
 
 class Poisson final : public Physics {
  public:
@@ -42,6 +46,9 @@ class Poisson final : public Physics {
   void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { solve(u, JTu); }
   bool has_curvature() const override { return true; }
   void curvature(BatchRef, BatchOut out, Workspace&) const override { out.setZero(); }
+  void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const override {
+    out.setZero();
+  }
 
   Inverse inverse_kind() const override { return Inverse::exact; }
   Success local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut x) const override {  // x = ∇²y
@@ -63,7 +70,27 @@ class Poisson final : public Physics {
   Matrix gain_;                   // 1/λ over the factor of a round trip, (N, N)
 };
 
+// The published error: |x − x*| summed over cells, the mean over samples.
+Real summed_error(BatchRef x, const Batch& batch) {
+  return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
+}
+
+ProblemParts learn_poisson(const Options& o, const Draw& draw) {
+  const auto physics = std::make_shared<const Poisson>(o.N);
+  const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {
+    batch.truth.col(b) = smooth_noise(N, 10, 1, stream);
+    physics->solve(batch.truth.col(b), batch.target.col(b));
+    batch.input.col(b) = batch.target.col(b);
+  };
+  return learn(o.learning, {.inputs = o.N * o.N, .outputs = o.N * o.N, .grid = o.N}, draw,
+               {.physics = std::make_unique<Poisson>(o.N),
+                .x_error = summed_error,
+                .samples = {.validation = 64, .draw = sample},
+                .grid = o.N});
+}
+
 ProblemParts make_poisson(const Options& o, const Draw& draw) {
+  if (o.learning.is_on()) return learn_poisson(o, draw);
   RandomStream stream = draw.stream("target");
   auto physics = std::make_unique<Poisson>(o.N);
   const Matrix truth = smooth_noise(o.N, 10, 1, stream);
@@ -74,7 +101,7 @@ ProblemParts make_poisson(const Options& o, const Draw& draw) {
           .target = target,
           .minimum = 0,
           .truth = truth,
-          .x_error = [truth](BatchRef x) { return (x - truth).norm(); }};
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
 }
 
 }  // namespace

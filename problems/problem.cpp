@@ -11,24 +11,62 @@ namespace isoline {
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   if (!parts_.network) parts_.network = std::make_unique<Identity>(parts_.start);
   if (!parts_.loss) parts_.loss = std::make_unique<HalfSquared>();
-  require(parts_.target.rows() == outputs(), "the target does not fit the physics' outputs");
+  if (is_learned())
+    draw_batch(0, batch_);
+  else
+    batch_ = {std::move(parts_.input), std::move(parts_.context), std::move(parts_.target),
+              parts_.truth.value_or(Matrix())};
+  require(batch_.target.rows() == outputs(), "the target does not fit the physics' outputs");
   require(parts_.network->outputs() == inputs(), "the network does not fit the physics' inputs");
   require(parts_.network->parameters() == unknowns(), "the start does not fit the network");
 }
 
-Real Problem::x_error(BatchRef x) const {
-  return parts_.x_error ? parts_.x_error(x) : std::nan("");
+Real Problem::x_error(BatchRef x, const Batch& batch) const {
+  return parts_.x_error ? parts_.x_error(x, batch) : std::nan("");
+}
+
+void Problem::draw_batch(std::int64_t step, Batch& out) const {
+  const Samples& samples = parts_.samples;
+  const Index count = samples.data > 0 ? samples.data : samples.batch;
+  const std::int64_t first = samples.data > 0 ? 0 : step * count;
+  draw("training", static_cast<std::uint64_t>(first), count, out);
+}
+
+void Problem::draw_validation(Batch& out) const {
+  draw("validation", 0, parts_.samples.validation, out);
+}
+
+void Problem::draw(std::string_view purpose, std::uint64_t first, Index count, Batch& out) const {
+  const Samples& samples = parts_.samples;
+  out.resize(parts_.network->inputs(), samples.contexts, outputs(),
+             samples.has_truth ? inputs() : 0, count);
+  const RandomStream streams = samples.stream(purpose);
+  for (Index b = 0; b < count; ++b) {
+    RandomStream stream = streams.of_sample(first + static_cast<std::uint64_t>(b));
+    samples.draw(stream, b, out);
+  }
 }
 
 OracleSet Problem::offers() const {
-  OracleSet offered{Oracle::forward, Oracle::pullback, Oracle::pushforward, Oracle::jacobian,
-                    Oracle::network};
-  if (parts_.physics->has_curvature()) {
-    offered.add(Oracle::curvature);
-    if (has_identity_network()) offered.add(Oracle::hessian);
+  OracleSet offered{Oracle::forward, Oracle::pullback, Oracle::pushforward, Oracle::network};
+  // A dense matrix of more than 1 GiB is not offered, nor more than a few columns a sample: the
+  // Jacobian of a grid costs as many solves as it has cells.
+  constexpr Real kMostEntries = 1 << 27;
+  constexpr Index kMostLearnedInputs = 64;
+  const Real entries = static_cast<Real>(residuals()) * static_cast<Real>(unknowns());
+  const bool is_small = has_identity_network() || inputs() <= kMostLearnedInputs;
+  if (is_small && entries <= kMostEntries) {
+    offered.add(Oracle::jacobian);
+    offered.add(Oracle::sensitivity);
   }
+  if (parts_.physics->has_curvature()) {
+    if (is_small) offered.add(Oracle::curvature);
+    if (has_identity_network()) offered.add(Oracle::hessian);
+    if (parts_.network->has_curvature()) offered.add(Oracle::hessian_product);
+  }
+  if (parts_.network->has_layer_factors()) offered.add(Oracle::layer_factors);
   if (inverse_kind() != Inverse::none) offered.add(Oracle::inverse);
-  if (parts_.truth) offered.add(Oracle::truth);
+  if (batch_.truth.size() > 0) offered.add(Oracle::truth);
   return offered;
 }
 
@@ -43,44 +81,47 @@ std::array<std::int64_t, kOracles> Problem::prices() const {
   set(Oracle::jacobian, std::min(unknowns(), residuals()));
   set(Oracle::hessian, unknowns());
   set(Oracle::curvature, inputs());
+  set(Oracle::sensitivity, std::min(inputs(), outputs()));
+  set(Oracle::hessian_product, 2);  // a pushforward, and the pullback's own derivative
+  set(Oracle::layer_factors, 1);    // a pullback that keeps what passes
   set(Oracle::inverse, parts_.physics->inverse_price());
   set(Oracle::network, has_identity_network() ? 0 : 1);
   return price;
 }
 
-void Problem::forward(VectorRef theta, Point& at) const {
-  at.physics.x.resize(inputs(), samples());
-  at.y.resize(outputs(), samples());
-  at.physics.context = parts_.context;
-  at.physics.saved_is_current = at.network.saved_is_current = false;
-  parts_.network->forward(theta, parts_.input, at.physics.x, at.network);
-  parts_.physics->forward(at.x(), parts_.context, at.y, at.physics);
-  at.loss = parts_.loss->value(at.y, parts_.target);
+void Problem::forward(VectorRef theta, const Batch& batch, Point& at) const {
+  at.physics.x.resize(inputs(), batch.samples());
+  at.network.saved_is_current = false;
+  parts_.network->forward(theta, batch.input, at.physics.x, at.network);
+  evaluate_physics(batch, at);
 }
 
-Real Problem::physics_misfit(BatchRef y, BatchRef x, Point& scratch, BatchOut gradient) const {
-  scratch.physics.x = x;
-  scratch.physics.context = parts_.context;
-  scratch.physics.saved_is_current = false;
-  scratch.y.resize(y.rows(), y.cols());
-  parts_.physics->forward(scratch.physics.x, parts_.context, scratch.y, scratch.physics);
-  scratch.y -= y;
-  parts_.physics->pullback(scratch.y, gradient, scratch.physics);
-  return 0.5 * scratch.y.squaredNorm();
+void Problem::physics_forward(BatchRef x, const Batch& batch, Point& at) const {
+  at.physics.x = x;
+  evaluate_physics(batch, at);
 }
 
-Real Problem::loss_of(BatchRef y) const { return parts_.loss->value(y, parts_.target); }
+void Problem::evaluate_physics(const Batch& batch, Point& at) const {
+  at.batch = &batch;
+  at.y.resize(outputs(), batch.samples());
+  at.physics.context = batch.context;
+  at.physics.saved_is_current = false;
+  parts_.physics->forward(at.x(), batch.context, at.y, at.physics);
+  at.loss = parts_.loss->value(at.y, batch.target);
+}
+
+Real Problem::loss_of(BatchRef y) const { return parts_.loss->value(y, batch_.target); }
 
 void Problem::cotangent(const Point& at, BatchOut g) const {
-  parts_.loss->cotangent(at.y, parts_.target, g);
+  parts_.loss->cotangent(at.y, at.batch->target, g);
 }
 
 void Problem::loss_curvature(const Point& at, BatchRef dy, BatchOut dg) const {
-  parts_.loss->curvature(at.y, parts_.target, dy, dg);
+  parts_.loss->curvature(at.y, at.batch->target, dy, dg);
 }
 
 void Problem::residual(const Point& at, VectorOut r) const {
-  r = (at.y - parts_.target).reshaped() / std::sqrt(static_cast<Real>(samples()));
+  r = (at.y - at.batch->target).reshaped() / std::sqrt(static_cast<Real>(at.batch->samples()));
 }
 
 // Where the network is the identity nothing lies between x and θ, not even a copy: on large grids
@@ -88,7 +129,7 @@ void Problem::residual(const Point& at, VectorOut r) const {
 void Problem::pullback(BatchRef w, VectorOut out, Point& at) const {
   if (has_identity_network())
     return parts_.physics->pullback(w, Eigen::Map<Matrix>(out.data(), out.size(), 1), at.physics);
-  at.scratch_x.resize(inputs(), samples());
+  at.scratch_x.resize(inputs(), w.cols());
   parts_.physics->pullback(w, at.scratch_x, at.physics);
   parts_.network->pullback(at.scratch_x, out, at.network);
 }
@@ -97,9 +138,23 @@ void Problem::pushforward(VectorRef v, BatchOut out, Point& at) const {
   if (has_identity_network())
     return parts_.physics->pushforward(Eigen::Map<const Matrix>(v.data(), v.size(), 1), out,
                                        at.physics);
-  at.scratch_x.resize(inputs(), samples());
+  at.scratch_x.resize(inputs(), out.cols());
   parts_.network->pushforward(v, at.scratch_x, at.network);
   parts_.physics->pushforward(at.scratch_x, out, at.physics);
+}
+
+void Problem::physics_pullback(BatchRef w, BatchOut out, Point& at) const {
+  parts_.physics->pullback(w, out, at.physics);
+}
+
+void Problem::network_pushforward(VectorRef v, BatchOut out, Point& at) const {
+  parts_.network->pushforward(v, out, at.network);
+}
+
+void Problem::layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const {
+  at.scratch_x.resize(inputs(), w.cols());
+  parts_.physics->pullback(w, at.scratch_x, at.physics);
+  parts_.network->layer_factors(at.scratch_x, out, at.network);
 }
 
 void Problem::network_pullback(BatchRef w, VectorOut out, Point& at) const {
@@ -107,9 +162,32 @@ void Problem::network_pullback(BatchRef w, VectorOut out, Point& at) const {
 }
 
 void Problem::jacobian(Matrix& J, Point& at) const {
-  require(has_identity_network(), "the dense Jacobian of a network is not available");
-  J.resize(residuals(), unknowns());
-  parts_.physics->jacobian(J, at.physics);
+  J.resize(at.y.size(), unknowns());
+  if (has_identity_network()) return parts_.physics->jacobian(J, at.physics);
+  Matrix dy_dx;
+  sensitivity(dy_dx, at);
+  parts_.network->jacobian(dy_dx, J, at.network);
+}
+
+void Problem::sensitivity(Matrix& dy_dx, Point& at) const {
+  dy_dx.resize(outputs(), at.x().size());
+  parts_.physics->jacobian(dy_dx, at.physics);
+}
+
+// With x' = N'v and y' = P'x':  ∇²L v = (d/dε) N'ᵀ u,  u = P'ᵀ g,  u' = P'ᵀ L''y' + Σ gᵢ ∇²Pᵢ x'.
+void Problem::hessian_product(VectorRef v, VectorOut out, Point& at) const {
+  const Index samples = at.y.cols();
+  for (Matrix* x : {&at.dx, &at.du, &at.bent, &at.scratch_x}) x->resize(inputs(), samples);
+  for (Matrix* y : {&at.dy, &at.dg}) y->resize(outputs(), samples);
+  parts_.network->pushforward(v, at.dx, at.network);
+  parts_.physics->pushforward(at.dx, at.dy, at.physics);
+  loss_curvature(at, at.dy, at.dg);
+  parts_.physics->pullback(at.dg, at.du, at.physics);
+  cotangent(at, at.dg);
+  parts_.physics->pullback(at.dg, at.scratch_x, at.physics);
+  parts_.physics->curvature_product(at.dg, at.dx, at.bent, at.physics);
+  at.du += at.bent;
+  parts_.network->curvature(v, at.scratch_x, at.du, out, at.network);
 }
 
 // ∇²L = Jᵀ (∂²L/∂y²) J + Σᵢ gᵢ ∇²Pᵢ
@@ -123,7 +201,7 @@ void Problem::hessian(Matrix& H, Point& at) const {
   parts_.physics->curvature(g, H, at.physics);
   Matrix weighted(residuals(), n);  // (∂²L/∂y²) J
   for (Index j = 0; j < n; ++j)
-    parts_.loss->curvature(at.y, parts_.target, J.col(j), weighted.col(j));
+    parts_.loss->curvature(at.y, at.batch->target, J.col(j), weighted.col(j));
   H.noalias() += J.transpose() * weighted;
 }
 
@@ -132,7 +210,7 @@ void Problem::curvature(BatchRef w, BatchOut out, Point& at) const {
 }
 
 Success Problem::local_inverse(BatchRef y, BatchOut x, Point& at) const {
-  return parts_.physics->local_inverse(y, at.x(), parts_.context, x);
+  return parts_.physics->local_inverse(y, at.x(), at.batch->context, x);
 }
 
 Vector Draw::start(const Vector& standard) const {

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "core/registry.h"
 #include "networks/network.h"
+#include "problems/batch.h"
 #include "problems/loss.h"
 #include "problems/physics.h"
 
@@ -18,15 +19,24 @@ namespace isoline {
 
 // The forward pass at θ and what its products need. Owned by the caller and reused.
 struct Point {
-  Matrix y;  // (m, B)
+  const Batch* batch = nullptr;  // the samples it was evaluated on; outlives the point
+  Matrix y;                      // (m, B)
   Real loss = 0;
   Workspace physics, network;
-  Matrix scratch_x;  // (k, B)
+  Matrix scratch_x;             // (k, B)
+  Matrix dx, dy, dg, du, bent;  // of Hessian products: (k, B), (m, B), (m, B), (k, B), (k, B)
 
   const Matrix& x() const { return physics.x; }  // (k, B)
 };
 
-// What a problem is made of. A direct problem leaves network and input empty.
+// Named quantities of a problem at (θ, its forward pass), traced at kept iterations.
+struct Series {
+  std::vector<std::string> names = {};
+  std::function<void(Point& at, VectorOut values)> evaluate = {};
+};
+
+// What a problem is made of. A direct problem leaves network, input and samples empty; a learning
+// problem leaves target, input, context and truth empty, which `samples` draws.
 struct ProblemParts {
   std::unique_ptr<Physics> physics;
   Vector start;                      // θ₀, (n)
@@ -37,8 +47,11 @@ struct ProblemParts {
   std::unique_ptr<Loss> loss;        // ½‖y − y*‖² where empty
   std::optional<Real> minimum;       // f_L, least loss attainable, where known
   std::optional<Matrix> truth;       // the x* that made y*, (k, B), where there is one
-  // Distance from x to the nearest solution, where the solutions are known.
-  std::function<Real(BatchRef x)> x_error;
+  // Distance from x to the nearest solution, the mean over samples, where solutions are known.
+  std::function<Real(BatchRef x, const Batch& batch)> x_error;
+  Samples samples = {};
+  Index grid = 0;      // N where x and y are N×N grids, for pictures
+  Series series = {};  // further quantities to be traced, at most four
   // Where to draw the landscape of a two-dimensional problem: low and high corner in x.
   std::optional<std::array<Real, 4>> window;    // x1 low, x1 high, x2 low, x2 high
   std::optional<std::array<Real, 4>> y_window;  // of y; what the window maps into where empty
@@ -52,26 +65,38 @@ class Problem {
   Index unknowns() const { return parts_.start.size(); }       // n
   Index inputs() const { return parts_.physics->inputs(); }    // k
   Index outputs() const { return parts_.physics->outputs(); }  // m
-  Index samples() const { return parts_.target.cols(); }       // B
-  Index residuals() const { return parts_.target.size(); }     // m·B, rows of J
+  Index samples() const { return batch_.samples(); }           // B
+  Index residuals() const { return batch_.target.size(); }     // m·B, rows of J
   const Vector& start() const { return parts_.start; }
-  const Matrix& target() const { return parts_.target; }
+  const Batch& batch() const { return batch_; }  // the only one, or the first of a learning problem
+  const Matrix& target() const { return batch_.target; }
   std::optional<Real> minimum() const { return parts_.minimum; }
-  const std::optional<Matrix>& truth() const { return parts_.truth; }
+  const std::optional<Matrix>& truth() const { return parts_.truth; }  // of a direct problem
   const auto& window() const { return parts_.window; }
   const auto& y_window() const { return parts_.y_window; }
   const std::string& contour_spacing() const { return parts_.contour_spacing; }
   std::vector<Block> layout() const { return parts_.network->layout(); }
+  const Network& network() const { return *parts_.network; }
   bool has_identity_network() const { return parts_.network->is_identity(); }
+  Index grid() const { return parts_.grid; }
+  const Series& series() const { return parts_.series; }
+  bool is_learned() const { return parts_.samples.batch > 0; }
+  bool has_fresh_batches() const { return is_learned() && parts_.samples.data == 0; }
   Inverse inverse_kind() const { return parts_.physics->inverse_kind(); }
-  Real x_error(BatchRef x) const;  // nan where no solution is known
+  Real x_error(BatchRef x, const Batch& batch) const;  // nan where no solution is known
+  Real x_error(BatchRef x) const { return x_error(x, batch_); }
+
+  // Of a learning problem: the batch of a step, counted from 0, and the samples that judge it.
+  void draw_batch(std::int64_t step, Batch& out) const;
+  void draw_validation(Batch& out) const;
 
   OracleSet offers() const;
   std::array<std::int64_t, kOracles> prices() const;  // declared, in forwards
 
-  void forward(VectorRef theta, Point& at) const;
+  void forward(VectorRef theta, const Batch& batch, Point& at) const;
+  void forward(VectorRef theta, Point& at) const { forward(theta, batch_, at); }
   // The physics again at a given x, network left out: for inverting the physics alone.
-  Real physics_misfit(BatchRef y, BatchRef x, Point& scratch, BatchOut gradient) const;
+  void physics_forward(BatchRef x, const Batch& batch, Point& at) const;
 
   Real loss_of(BatchRef y) const;                                        // L at any y, (m, B)
   void cotangent(const Point& at, BatchOut g) const;                     // g = ∂L/∂y, (m, B)
@@ -79,14 +104,23 @@ class Problem {
   void residual(const Point& at, VectorOut r) const;                  // r = (y − y*)/√B, (m·B)
   void pullback(BatchRef w, VectorOut out, Point& at) const;          // Jᵀ w, (m, B) -> (n)
   void pushforward(VectorRef v, BatchOut out, Point& at) const;       // J v, (n) -> (m, B)
+  void physics_pullback(BatchRef w, BatchOut out, Point& at) const;   // (m, B) -> (k, B)
   void network_pullback(BatchRef w, VectorOut out, Point& at) const;  // (k, B) -> (n)
-  void jacobian(Matrix& J, Point& at) const;                          // (m·B, n)
+  void network_pushforward(VectorRef v, BatchOut out, Point& at) const;            // (n) -> (k, B)
+  void layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const;  // w (m, B)
+  void jacobian(Matrix& J, Point& at) const;                                       // (m·B, n)
+  void sensitivity(Matrix& dy_dx, Point& at) const;                                // (m, k·B)
+  void hessian_product(VectorRef v, VectorOut out, Point& at) const;               // ∇²L v, (n)
   void hessian(Matrix& H, Point& at) const;                   // ∇²L, (n, n), identity network
   void curvature(BatchRef w, BatchOut out, Point& at) const;  // (k, k·B)
   Success local_inverse(BatchRef y, BatchOut x, Point& at) const;
 
  private:
+  void draw(std::string_view purpose, std::uint64_t first, Index count, Batch& out) const;
+  void evaluate_physics(const Batch& batch, Point& at) const;  // y and L at at.x()
+
   ProblemParts parts_;
+  Batch batch_;
 };
 
 // What an entry draws its instance from. Seed 0 is the published one.

@@ -44,7 +44,7 @@ ProblemParts make_scaling(const Options& o, const Draw& draw) {
           .target = Vector::Zero(2),
           .minimum = 0,
           .truth = Vector::Zero(2),
-          .x_error = [](BatchRef x) { return x.norm(); },
+          .x_error = [](BatchRef x, const Batch&) { return x.norm(); },
           .window = {{-3.5, 3.5, -3.5 / o.alpha, 3.5 / o.alpha}}};
 }
 

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "problems/dense_physics.h"
-#include "problems/problem.h"
+#include "problems/learning.h"
 
 namespace isoline {
 namespace {
@@ -18,12 +18,14 @@ namespace {
 struct Options {
   Real gamma = 10, xi = 10, phi = 45;
   std::string form = "code";
+  Learning learning{.network = "mlp[layers=32-64-32]", .batch = 100};
 };
 void fields(Options& o, auto& field) {
   field("gamma", o.gamma, between(0.1, 100), "scale γ of both coordinates");
   field("xi", o.xi, between(1, 1000), "conditioning ξ");
   field("phi", o.phi, between(-180, 180), "rotation φ in degrees");
   field("form", o.form, {"code", "paper"}, "whether ξ divides inside the sine or outside");
+  fields(o.learning, field);
 }
 
 class Sine final : public DensePhysics {
@@ -38,6 +40,10 @@ class Sine final : public DensePhysics {
     sin_ = std::sin(phi);
   }
   Real amplitude() const { return amplitude_; }
+  // The x on the axis of z1 where the sine's argument is s1.
+  Eigen::Vector2d at_phase(Real s1) const {
+    return Eigen::Vector2d(cos_, -sin_) * (s1 / frequency_);
+  }
 
   void value(VectorRef x, VectorOut y) const override {
     y << amplitude_ * std::sin(frequency_ * z1(x)), slope_ * z2(x);
@@ -79,7 +85,37 @@ class Sine final : public DensePhysics {
   Real amplitude_, frequency_, slope_, cos_, sin_;
 };
 
+// Mean distance to the solution nearest each x.
+Real distance(const Sine& physics, BatchRef target, BatchRef x) {
+  Real sum = 0;
+  Eigen::Vector2d solution;
+  for (Index b = 0; b < x.cols(); ++b) {
+    physics.invert(target.col(b), x.col(b), solution);
+    sum += std::hypot(x(0, b) - solution[0], x(1, b) - solution[1]);
+  }
+  return sum / static_cast<Real>(x.cols());
+}
+
+// y* ~ U([−1, 1]²), the network's input; x* is the solution nearest a random phase of three periods
+// of the sine, so that what it teaches is a multivalued map.
+ProblemParts learn_sine(const Options& o, const Draw& draw) {
+  const auto physics = std::make_shared<const Sine>(o);
+  const auto sample = [physics](RandomStream& stream, Index b, Batch& batch) {
+    batch.target.col(b) << physics->amplitude() * stream.uniform(-1, 1), stream.uniform(-1, 1);
+    batch.input.col(b) = batch.target.col(b);
+    const Eigen::Vector2d near = physics->at_phase(3 * std::numbers::pi * stream.uniform(-1, 1));
+    physics->invert(batch.target.col(b), near, batch.truth.col(b));
+  };
+  return learn(
+      o.learning, {.inputs = 2, .outputs = 2}, draw,
+      {.physics = std::make_unique<Sine>(o),
+       .x_error = [physics](BatchRef x,
+                            const Batch& batch) { return distance(*physics, batch.target, x); },
+       .samples = {.draw = sample}});
+}
+
 ProblemParts make_sine(const Options& o, const Draw& draw) {
+  if (o.learning.is_on()) return learn_sine(o, draw);
   const auto physics = std::make_shared<const Sine>(o);
   Vector target = draw.is_published() ? Vector(Eigen::Vector2d(0.3, -0.5))
                                       : draw.stream("target").uniform_vector(2, -1, 1);
@@ -92,12 +128,8 @@ ProblemParts make_sine(const Options& o, const Draw& draw) {
           .target = target,
           .minimum = 0,
           .truth = truth,
-          .x_error =
-              [physics, target](BatchRef x) {
-                Eigen::Vector2d solution;
-                physics->invert(target, x.col(0), solution);
-                return std::hypot(x(0, 0) - solution[0], x(1, 0) - solution[1]);
-              },
+          .x_error = [physics, target](BatchRef x,
+                                       const Batch&) { return distance(*physics, target, x); },
           .window = {{-corner[0], corner[0], -corner[1], corner[1]}},
           .contour_spacing = "fifth root"};  // as in Fig. 5a
 }

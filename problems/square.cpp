@@ -33,7 +33,7 @@ ProblemParts make_square(const NoOptions&, const Draw& draw) {
           .loss = std::make_unique<HalfSquared>(2),
           .minimum = 0,
           .truth = Vector::Zero(2),
-          .x_error = [](BatchRef x) { return x.norm(); },
+          .x_error = [](BatchRef x, const Batch&) { return x.norm(); },
           .window = {{-0.3, 3.2, -0.1, 3.5}},  // the axes and levels of Fig. 1
           .y_window = {{-0.3, 3.2, -0.1, 9.5}},
           .contour_spacing = "powers of two"};

@@ -1,0 +1,24 @@
+// Arrays in NumPy's file format, version 1.0 (NumPy's numpy.lib.format): read and written whole.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/array.h"
+
+namespace isoline {
+
+// Numbers in the order of the file's bytes, which is that of C: the last index runs fastest.
+struct NumberArray {
+  std::vector<Index> shape;
+  std::vector<Real> values;
+};
+
+// Float and integer arrays of 4 or 8 bytes a number, in either order of indices; UsageError, naming
+// the file, where it is none, is cut short, or holds a number that is not finite.
+NumberArray read_npy(const std::filesystem::path& path);
+
+// As float64; whole or not at all.
+void write_npy(const std::filesystem::path& path, const NumberArray& array);
+
+}  // namespace isoline

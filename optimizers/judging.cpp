@@ -1,0 +1,210 @@
+// The meter as the harness has it: a run begun, traced, judged and ended.
+#include <algorithm>
+#include <cmath>
+
+#include "optimizers/meter.h"
+
+namespace isoline {
+namespace {
+
+constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+constexpr Real kDivergence = 1e12, kStallDecrease = 1e-12;
+constexpr std::int64_t kStallIterations = 100;
+
+// Iterations 0 to 100, then 32 a decade.
+std::int64_t next_kept_after(std::int64_t iteration) {
+  constexpr std::int64_t kEvery = 100;
+  constexpr Real kPerDecade = 32;
+  if (iteration < kEvery) return iteration + 1;
+  const Real passed = std::floor(kPerDecade * std::log10(static_cast<Real>(iteration)) + 1e-9);
+  std::int64_t next = iteration;
+  for (Real step = passed; next <= iteration; ++step)
+    next = std::llround(std::pow(10.0, step / kPerDecade));
+  return next;
+}
+
+}  // namespace
+
+Status Meter::begin(VectorRef theta) {
+  prepare();
+  previous_ = theta;
+  measure(theta);
+  trace_.start_loss = judged_.loss;
+  trace_.start_x_error = trace_.last.x_error;
+  if (problem_.minimum() && std::isfinite(judged_.loss)) {
+    target_loss_ = *problem_.minimum() + budget_.target * (judged_.loss - *problem_.minimum());
+    next_target_ = kInfinity;
+  }
+  observe(judged_.loss);
+  keep_point();
+  status_ = judge(theta);
+  watch_.resume();
+  return status_;
+}
+
+void Meter::prepare() {
+  trace_.first_oracle_nanoseconds = monotonic_nanoseconds();
+  const double limit = budget_.seconds / seconds_per_tick();  // calibrated off the clock
+  if (limit < static_cast<double>(kNoLimit)) most_ticks_ = static_cast<std::uint64_t>(limit);
+  if (!problem_.is_learned()) return;
+  problem_.draw_validation(validation_);
+  draw_batch();
+}
+
+void Meter::persist(Archive& archive) {
+  double wall = watch_.seconds(), processor = watch_.processor_seconds();
+  archive(counts_, work_, iteration_, next_kept_, best_loss_, next_target_, target_loss_,
+          targets_met_, stall_loss_, stall_iteration_, status_, batch_loss_, batch_x_error_,
+          judged_.loss, judged_theta_, previous_, wall, processor);
+  archive.raw(&trace_, sizeof trace_);  // plain data, but for atomics that nobody waits for
+  if (!archive.is_reading()) return;
+  watch_.set(wall, processor);
+  prepare();
+  watch_.resume();
+}
+
+Status Meter::iterate(VectorRef theta) {
+  ++iteration_;
+  if (iteration_ >= next_kept_ || best_loss_ <= target_loss_) {
+    watch_.pause();
+    measure(theta);
+    observe(judged_.loss);
+    if (iteration_ >= next_kept_) keep_point();
+    watch_.resume();
+  }
+  if (iteration_ + 1 >= next_kept_) previous_ = theta;
+  status_ = judge(theta);
+  if (problem_.has_fresh_batches() && status_ == Status::running) {
+    watch_.pause();
+    draw_batch();
+    watch_.resume();
+  }
+  has_seen_batch_ = false;
+  return status_;
+}
+
+void Meter::draw_batch() {
+  if (!problem_.has_fresh_batches()) return;
+  problem_.draw_batch(iteration_, batch_);
+  samples_ = &batch_;
+}
+
+void Meter::note_batch(const Point& at) {
+  watch_.pause();
+  has_seen_batch_ = true;
+  batch_loss_.add(at.loss);
+  batch_x_error_.add(problem_.x_error(at.x(), *samples_));
+  watch_.resume();
+}
+
+void Meter::finish(VectorRef theta, Status verdict) {
+  watch_.pause();
+  if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch) {
+    measure(theta);
+    observe(judged_.loss);
+  }
+  trace_.last.counts = counts_;  // a library may have asked much since its last iteration
+  trace_.last.work = work_;
+  trace_.last.wall_seconds = watch_.seconds();
+  trace_.last.processor_seconds = watch_.processor_seconds();
+  const int points = trace_.points;  // the curve ends at the returned point
+  if (points > 0 && trace_.point[points - 1].iteration == iteration_) trace_.points = points - 1;
+  keep_point();
+  if (problem_.is_learned()) show();
+  if (verdict == Status::running) verdict = Status::converged;
+  if (judged_.loss <= target_loss_) verdict = Status::target;
+  if (!std::isfinite(judged_.loss)) verdict = Status::diverged;
+  trace_.status = verdict;
+}
+
+// The loss and what surrounds it at θ, by the harness itself, charged to nobody.
+void Meter::measure(VectorRef theta) {
+  judged_theta_ = theta;
+  const bool is_learned = problem_.is_learned();
+  const Batch& judging = is_learned ? validation_ : problem_.batch();
+  problem_.forward(theta, judging, judged_);
+  TracePoint& last = trace_.last;
+  last.iteration = iteration_;
+  last.counts = counts_;
+  last.work = work_;
+  last.wall_seconds = watch_.seconds();
+  last.processor_seconds = watch_.processor_seconds();
+  last.loss = judged_.loss;
+  last.x_error = problem_.x_error(judged_.x(), judging);
+  last.gradient_norm = is_learned ? TracePoint::kAbsent : judged_gradient_norm();
+  last.step_norm = (theta - previous_).norm();
+  for (int i = 0; i < 2; ++i) {
+    last.batch_loss[i] = batch_loss_.mean(TracePoint::kWindows[i]);
+    last.batch_x_error[i] = batch_x_error_.mean(TracePoint::kWindows[i]);
+  }
+  const Series& series = problem_.series();
+  if (series.names.empty()) return;
+  Vector values(static_cast<Index>(series.names.size()));
+  series.evaluate(judged_, values);
+  std::copy_n(values.data(), values.size(), last.series);
+}
+
+// A second pass over the network for a validation of many samples would cost more than the step.
+Real Meter::judged_gradient_norm() {
+  judged_g_.resize(problem_.outputs(), problem_.samples());
+  judged_gradient_.resize(problem_.unknowns());
+  problem_.cotangent(judged_, judged_g_);
+  problem_.pullback(judged_g_, judged_gradient_, judged_);
+  return judged_gradient_.norm();
+}
+
+// The validation as it was last judged: its first grid, or its first small samples.
+void Meter::show() {
+  constexpr Index kMostSamples = 256;
+  const auto keep = [&](const Matrix& all, Trace::Exhibit& shown) {
+    if (all.size() == 0 || all.rows() > Trace::kExhibit) return;
+    const Index most =
+        problem_.grid() > 0 ? 1 : std::min(kMostSamples, Trace::kExhibit / all.rows());
+    shown.columns = static_cast<int>(std::min(most, all.cols()));
+    std::copy_n(all.data(), all.rows() * shown.columns, shown.value);
+    shown.rows = static_cast<int>(all.rows());
+  };
+  keep(validation_.target, trace_.shown_target);
+  keep(judged_.x(), trace_.shown_x);
+  keep(validation_.truth, trace_.shown_truth);
+  trace_.shown_grid = static_cast<int>(problem_.grid());
+}
+
+void Meter::keep_point() {
+  const int index = trace_.points;
+  if (index >= Trace::kPoints) return;
+  trace_.point[index] = trace_.last;
+  if (trace_.path_inputs > 0) {
+    std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
+    std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
+  }
+  trace_.points = index + 1;
+  trace_.best_loss = best_loss_;
+  next_kept_ = next_kept_after(iteration_);
+}
+
+bool Meter::has_stalled() {
+  if (stall_loss_ - best_loss_ > kStallDecrease * std::abs(stall_loss_)) {
+    stall_loss_ = best_loss_;
+    stall_iteration_ = iteration_;
+  }
+  return iteration_ - stall_iteration_ >= kStallIterations;
+}
+
+// `judged_` holds the loss at the last kept iteration, which is this one for the first hundred.
+Status Meter::judge(VectorRef theta) {
+  const Real loss = judged_.loss;
+  if (!is_finite(theta) || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
+    return Status::diverged;
+  if (std::isnan(batch_loss_.last())) return Status::diverged;
+  if (loss <= target_loss_) return Status::target;
+  if (!problem_.is_learned() && has_stalled()) return Status::stalled;
+  if (work_ >= budget_.work || iteration_ >= budget_.iterations) return Status::budget;
+  if (is_out_of_time()) {
+    trace_.stopped_by_clock = true;
+    return Status::budget;
+  }
+  return Status::running;
+}
+
+}  // namespace isoline
