@@ -25,7 +25,8 @@ std::vector<std::string> lines_of(const char* text) {
   return lines;
 }
 
-void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint) {
+void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
+         Vector* returned) {
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
@@ -35,7 +36,8 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   set_text(trace.privileges,
            fmt::format("{}", fmt::join(privileges_of(granted, problem.inverse_kind()), "\n")));
   Meter meter(problem, request.budget, granted, trace);
-  drive(*method, meter, problem.start(), checkpoint);
+  const Vector theta = drive(*method, meter, problem.start(), checkpoint);
+  if (returned) *returned = theta;
 }
 
 // What only learning problems and problems with series trace.
@@ -164,9 +166,10 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
   return theta;
 }
 
-void execute(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint checkpoint) {
+void execute(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint checkpoint,
+             Vector* returned) {
   try {
-    run(catalog, request, trace, checkpoint);
+    run(catalog, request, trace, checkpoint, returned);
   } catch (const NotApplicable& reason) {
     conclude(trace, Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {

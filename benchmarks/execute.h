@@ -13,9 +13,9 @@ namespace isoline {
 Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint);
 
 // Makes the components of the request and drives them. The verdict is in the trace, whatever
-// happens: an exception ends as `failed`, `memory` or `inapplicable`.
+// happens: an exception ends as `failed`, `memory` or `inapplicable`. `returned` gets the last θ.
 void execute(const Catalog& catalog, const Request& request, Trace& trace,
-             Checkpoint checkpoint = {});
+             Checkpoint checkpoint = {}, Vector* returned = nullptr);
 
 // The record of a run from what it left behind.
 Record record_of(const Request& request, const Trace& trace);

@@ -150,7 +150,6 @@ void Worker::collect(int wait_status, const rusage& usage) {
 
 void Worker::interrupt() {
   verdict_ = Status::interrupted;
-  set_text(trace_->message, "the run was interrupted");
   constexpr int kGraceMilliseconds = 3000;  // for a child that keeps its state before it ends
   kill(pid_, SIGTERM);
   pollfd ending{descriptor_, POLLIN, 0};
@@ -159,6 +158,7 @@ void Worker::interrupt() {
   rusage usage{};
   while (wait4(pid_, &wait_status, 0, &usage) < 0 && errno == EINTR) {
   }
+  set_text(trace_->message, "the run was interrupted");  // after the child kept its trace
   collect(wait_status, usage);
 }
 

@@ -73,6 +73,7 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
               .unknowns = problem.unknowns(),
               .residuals = problem.residuals(),
               .target = small(problem.target())};
+  sheet.panels = entry.panels;
   if (problem.truth()) sheet.truth = small(*problem.truth());
   if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
   return sheet;

@@ -85,14 +85,6 @@ std::vector<Spec> chosen_optimizers(const Catalog& catalog, const MatrixBlock& b
   return specs;
 }
 
-// The spec's own options, and those of the rates that it leaves open.
-Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
-  Json options = row ? row->options : Json::object();
-  const Json given = options_of(spec);
-  for (const auto& [key, value] : given.items()) options[key == "lr" ? "rate" : key] = value;
-  return complete_optimizer(catalog, spec.name, options);
-}
-
 void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates& rates,
                   std::set<std::string>& known, std::vector<Request>& requests) {
   const std::vector<Spec> optimizers = chosen_optimizers(catalog, block);
@@ -113,6 +105,13 @@ void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates&
 }
 
 }  // namespace
+
+Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
+  Json options = row ? row->options : Json::object();
+  const Json given = options_of(spec);
+  for (const auto& [key, value] : given.items()) options[key == "lr" ? "rate" : key] = value;
+  return complete_optimizer(catalog, spec.name, options);
+}
 
 Suite suite_from_json(const Json& json, const std::string& origin) {
   const Json schema = parse_json(std::string(builtin_schemas().at("suite")), "suite schema");

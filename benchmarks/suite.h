@@ -8,6 +8,7 @@
 #include "benchmarks/catalog.h"
 #include "benchmarks/rates.h"
 #include "core/record.h"
+#include "core/spec.h"
 
 namespace isoline {
 
@@ -28,6 +29,9 @@ struct Suite {
   std::string name, title;
   std::vector<MatrixBlock> blocks;
 };
+
+// The spec's own options, and those of the row that it leaves open; the row may be null.
+Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row);
 
 // The name of a suite in the tree, or the path of a file.
 Suite read_suite(const std::string& name_or_path);

@@ -35,7 +35,7 @@ class Archive {
  private:
   template <class Value>
   void one(Value& value) {
-    if constexpr (std::is_base_of_v<Eigen::PlainObjectBase<Value>, Value>) {
+    if constexpr (requires { value.resize(value.rows(), value.cols()); }) {
       Index rows = value.rows(), columns = value.cols();
       (*this)(rows, columns);
       if (is_reading_) value.resize(rows, columns);

@@ -63,6 +63,7 @@ Json to_json(const Sheet& sheet) {
             {"residuals", sheet.residuals},
             {"target", numbers(sheet.target)},
             {"truth", numbers(sheet.truth)}};
+  for (const Panel& panel : sheet.panels) json["panels"].push_back(to_json(panel));
   if (sheet.landscape_x) json["landscape_x"] = to_json(*sheet.landscape_x);
   if (sheet.landscape_y) json["landscape_y"] = to_json(*sheet.landscape_y);
   return json;
@@ -87,6 +88,8 @@ Sheet sheet_from_json(const Json& json) {
                 .residuals = json.at("residuals"),
                 .target = reals(json.at("target")),
                 .truth = reals(json.at("truth"))};
+    for (const Json& panel : json.value("panels", Json::array()))
+      sheet.panels.push_back(panel_from_json(panel));
     if (json.contains("landscape_x")) sheet.landscape_x = landscape_from(json["landscape_x"]);
     if (json.contains("landscape_y")) sheet.landscape_y = landscape_from(json["landscape_y"]);
     return sheet;

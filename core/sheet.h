@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/array.h"
+#include "core/panel.h"
 
 namespace isoline {
 
@@ -39,6 +40,7 @@ struct Sheet {
   std::optional<Landscape> landscape_x, landscape_y;  // of a problem with two unknowns, two outputs
   std::vector<Real> target;                           // y*, where small
   std::vector<Real> truth;                            // x*, where small and known
+  std::vector<Panel> panels;                          // of a problem: the figures of its paper
 
   std::string file_name() const;
 };

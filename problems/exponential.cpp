@@ -93,7 +93,9 @@ void register_exponential(ProblemRegistry& registry) {
        .title = "Exponential",
        .formula = "Pᵢ(x) = exp(xᵢ),  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
-       .note = "Published as a learning problem; seed 0 takes the quantiles of its distribution."},
+       .note = "Published as a learning problem; seed 0 takes the quantiles of its distribution.",
+       .panels = {{.title = "Fig. 2: x inferred against x*", .kind = "scatter"},
+                  {.title = "Error by decade of y*", .kind = "decades"}}},
       make_exponential));
 }
 

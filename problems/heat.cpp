@@ -155,7 +155,9 @@ void register_heat(ProblemRegistry& registry) {
            "noise of 0.1 a cell, most of which the data cannot tell: it stays as a floor under "
            "the error in x of every method. Published curves sum |x − x*| over cells; the error "
            "here is ‖x − x*‖. The damped inverse has the authors' floor for single problems, "
-           "1e-8."},
+           "1e-8.",
+       .panels = {{.title = "Fig. 6d: learning curves", .kind = "curve"},
+                  {.title = "Fig. 6c: one sample of the validation", .kind = "pictures"}}},
       make_heat));
 }
 

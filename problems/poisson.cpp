@@ -114,7 +114,9 @@ void register_poisson(ProblemRegistry& registry) {
        .source = "Holl, Koltun, Thuerey (2022), Fig. 6a",
        .note = "The sought x* is smooth noise of our own streams, for seed 0 too: no instance is "
                "published. The standard start is 0. Published curves sum |x − x*| over cells; the "
-               "error here is ‖x − x*‖."},
+               "error here is ‖x − x*‖.",
+       .panels = {{.title = "Fig. 6b: learning curves", .kind = "curve"},
+                  {.title = "Fig. 6a: one sample of the validation", .kind = "pictures"}}},
       make_poisson));
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/options.h"
 #include "core/oracle.h"
+#include "core/panel.h"
 #include "core/random.h"
 #include "core/registry.h"
 #include "networks/network.h"
@@ -145,7 +146,8 @@ struct ProblemEntry {
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know
   OptionTable options = {};
-  int revision = 1;  // raised when results change
+  int revision = 1;                // raised when results change
+  std::vector<Panel> panels = {};  // figures to draw of its runs
   std::function<Problem(const Json& complete_options, const Draw&)> make = {};
 };
 using ProblemRegistry = Registry<ProblemEntry>;

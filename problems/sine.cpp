@@ -144,7 +144,22 @@ void register_sine(ProblemRegistry& registry) {
        .source = "Holl, Koltun, Thuerey (2022), Fig. 5",
        .note = "form=code is what the published scripts compute; form=paper, (sin(γz₁)/ξ, γξz₂), "
                "is what the paper prints, its y₁* divided by ξ. Published as a learning problem; "
-               "the start (6, 3)/γ, half-way to the corner of its landscape, is ours."},
+               "the start (6, 3)/γ, half-way to the corner of its landscape, is ours.",
+       .panels = {{.title = "Fig. 5b: ξ = 1, φ = 45°",
+                   .kind = "curve",
+                   .where = {{"xi", 1}, {"phi", 45}}},
+                  {.title = "Fig. 5c: ξ = 32, φ = 45°",
+                   .kind = "curve",
+                   .where = {{"xi", 32}, {"phi", 45}}},
+                  {.title = "Fig. 5d: relative error over ξ, φ = 0",
+                   .kind = "sweep",
+                   .where = {{"phi", 0}},
+                   .over = "xi",
+                   .divided_by = "xi"},
+                  {.title = "Fig. 5e: error over φ, ξ = 32",
+                   .kind = "sweep",
+                   .where = {{"xi", 32}},
+                   .over = "phi"}}},
       make_sine));
 }
 

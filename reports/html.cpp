@@ -22,6 +22,7 @@ std::string_view embedded_page_js();
 std::string_view embedded_tables_js();
 std::string_view embedded_charts_js();
 std::string_view embedded_lines_js();
+std::string_view embedded_figures_js();
 std::string_view embedded_chart_js();
 
 namespace {
@@ -154,6 +155,7 @@ std::string problems_html(const Comparison& c) {
 }  // namespace
 
 std::string html_report(const Comparison& c) {
+  const std::vector<Figure> drawn = figures(c);
   return filled(embedded_page_html(), {{"style", std::string(embedded_page_css())},
                                        {"headline", html_text(headline(c))},
                                        {"alerts", alerts_html(c)},
@@ -164,14 +166,16 @@ std::string html_report(const Comparison& c) {
                                        {"matrices", panes_html(c, "Work", matrix_html)},
                                        {"profile", profile_html(c)},
                                        {"details", details_html(c)},
+                                       {"figures", figures_html(drawn)},
                                        {"problems", problems_html(c)},
                                        {"families", families_html(c)},
                                        {"failures", failures_html(c)},
                                        {"provenance", provenance_html(c)},
-                                       {"data", page_data(c)},
+                                       {"data", page_data(c, drawn)},
                                        {"chart-js", std::string(embedded_chart_js())},
                                        {"lines-js", std::string(embedded_lines_js())},
                                        {"charts-js", std::string(embedded_charts_js())},
+                                       {"figures-js", std::string(embedded_figures_js())},
                                        {"tables-js", std::string(embedded_tables_js())},
                                        {"page-js", std::string(embedded_page_js())}});
 }

@@ -112,12 +112,12 @@ std::string profile_json(const Profile& profile) {
 
 }  // namespace
 
-std::string page_data(const Comparison& c) {
+std::string page_data(const Comparison& c, const std::vector<Figure>& figures) {
   std::string text = fmt::format(
-      "{{\"optimizers\":{},\"profiles\":{},\"problems\":[",
+      "{{\"optimizers\":{},\"profiles\":{},\"figures\":{},\"problems\":[",
       list(c.optimizers,
            [](const OptimizerAxis& optimizer) { return quoted(shown_spec(optimizer.label)); }),
-      list(c.profiles, profile_json));
+      list(c.profiles, profile_json), figures_json(figures));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (p > 0) text += ',';
     text += problem_json(c, p);

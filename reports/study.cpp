@@ -137,10 +137,25 @@ void read_plan(Study& study, const fs::path& folder, std::set<std::string>& know
 
 }  // namespace
 
+std::optional<Exhibit> Study::pictures_of(const Record& record) const {
+  Exhibit exhibit = *record.exhibit;
+  for (const fs::path& folder : folders) {
+    const fs::path file = (folder / "runs" / record.file_name()).replace_extension(".npy");
+    if (fs::exists(file)) try {
+        read_pictures(exhibit, file);
+        return exhibit;
+      } catch (const UsageError&) {
+        return std::nullopt;
+      }
+  }
+  return std::nullopt;
+}
+
 Study read_study(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders)
     require(fs::is_directory(folder), fmt::format("no result folder {}", folder.string()));
   Study study;
+  study.folders = folders;
   std::set<std::string> cells, sheets;
   for (const fs::path& folder : folders) {
     read_plan(study, folder, cells);

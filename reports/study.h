@@ -22,6 +22,10 @@ struct Study {
   std::vector<Sheet> sheets;
   std::vector<Unreadable> unreadable;
   std::size_t superseded = 0;  // readable records left aside for a newer one of the same cell
+  std::vector<std::filesystem::path> folders;
+
+  // The exhibit of a record that keeps pictures beside it; nothing where they cannot be read.
+  std::optional<Exhibit> pictures_of(const Record& record) const;
 };
 
 // Folders are laid out as core/sheet.h says; a missing one is a UsageError.

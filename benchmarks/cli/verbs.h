@@ -38,6 +38,8 @@ void add_list(CLI::App& app, Session& session);
 void add_describe(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
 void add_validate(CLI::App& app, Session& session);
+void add_train(CLI::App& app, Session& session);
+void add_infer(CLI::App& app, Session& session);
 void add_tune(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);
 

@@ -199,3 +199,4 @@ document.getElementById('wide').addEventListener('change', (event) =>
 makeFilter(document.getElementById('filter'), document.getElementById('detail-table'), document.getElementById('shown'));
 whenSeen([document.getElementById('profile')], buildProfile);
 whenSeen(document.querySelectorAll('article.problem'), buildProblem);
+whenSeen(document.querySelectorAll('figure.panel'), buildFigure);

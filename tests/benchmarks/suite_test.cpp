@@ -138,7 +138,7 @@ TEST(Rates, CoverEveryFirstOrderCellOfQuick) {
   for (const Request& cell : cells_of("quick")) {
     const OptimizerEntry& entry = catalog().optimizers.at(cell.optimizer.name);
     if (entry.family != Family::first_order) continue;
-    EXPECT_NE(rates.find(cell.problem.spec, entry.name), nullptr)
+    EXPECT_NE(rates.find(cell.problem, entry.name), nullptr)
         << cell.problem.spec << " × " << entry.name;
     EXPECT_FALSE(cell.rates.empty()) << cell.problem.spec << " × " << entry.name;
   }

@@ -1,0 +1,104 @@
+// The toy of half-inverse gradients, Schnell, Holl, Thuerey (2022), section 3: a network t ↦ x of
+// seven tanh neurons fits ŷ(t) = (sin 6t, cos 9t) for t ∈ [−1, 1] by ½(x₁ − ŷ₁)² + ½(λ(x₂ − ŷ₂))².
+// The plotted state is (x₁, λ x₂), so λ is the physics, P(x) = (x₁, λ x₂), and J carries it. Batch,
+// start and number of samples are not published: 256 fixed samples, Glorot's start. The traced
+// series are those of the figure: mean and spread of the hidden neurons over the validation, and y
+// at the t nearest π/9, whose target is (0.87, −λ).
+#include <cmath>
+#include <numbers>
+
+#include "problems/dense_physics.h"
+#include "problems/learning.h"
+
+namespace isoline {
+namespace {
+
+struct Options {
+  Real lambda = 1;
+  Learning learning{.mode = "learn",
+                    .network = "mlp[layers=7,activation=tanh,precision=double,init=glorot]",
+                    .batch = 256,
+                    .data = 256};
+};
+void fields(Options& o, auto& field) {
+  field("lambda", o.lambda, between(1e-6, 1e6), "scale λ of the second component");
+  fields(o.learning, field);
+}
+
+class Scaled final : public DensePhysics {
+ public:
+  explicit Scaled(Real lambda) : DensePhysics(2, 2), lambda_(lambda) {}
+  void value(VectorRef x, VectorOut y) const override { y << x[0], lambda_ * x[1]; }
+  void derivative(VectorRef, BatchOut J) const override { J.diagonal() << 1, lambda_; }
+  bool has_curvature() const override { return true; }
+  void second(VectorRef, VectorRef, BatchOut) const override {}
+
+  Inverse inverse_kind() const override { return Inverse::exact; }
+  bool invert(VectorRef y, VectorRef, VectorOut x) const override {
+    x << y[0], y[1] / lambda_;
+    return true;
+  }
+
+ private:
+  Real lambda_;
+};
+
+Vector curve(Real t) { return Eigen::Vector2d(std::sin(6 * t), std::cos(9 * t)); }
+
+// Mean and spread of the hidden neurons, and y at the sample nearest π/9.
+void watch(const Network& network, Point& at, VectorOut values) {
+  std::vector<LayerFactor> layers;
+  network.layer_factors(Matrix::Zero(2, at.y.cols()), layers, at.network);
+  const auto hidden = layers.back().inputs.array();
+  const Real mean = hidden.mean();
+  Index nearest = 0;
+  (at.batch->input.row(0).array() - std::numbers::pi / 9).abs().minCoeff(&nearest);
+  values << mean, std::sqrt((hidden - mean).square().mean()), at.y.col(nearest);
+}
+
+ProblemParts make_hig_toy(const Options& o, const Draw& draw) {
+  require(o.learning.is_on(), "hig-toy: it is a learning problem; mode=direct makes no sense");
+  const auto sample = [lambda = o.lambda](RandomStream& stream, Index b, Batch& batch) {
+    batch.input(0, b) = stream.uniform(-1, 1);
+    batch.truth.col(b) = curve(batch.input(0, b));
+    batch.target.col(b) << batch.truth(0, b), lambda * batch.truth(1, b);
+  };
+  const auto distance = [](BatchRef x, const Batch& batch) {
+    return (x - batch.truth).colwise().norm().mean();
+  };
+  ProblemParts parts = learn(o.learning, {.inputs = 1, .outputs = 2}, draw,
+                             {.physics = std::make_unique<Scaled>(o.lambda),
+                              .x_error = distance,
+                              .samples = {.draw = sample}});
+  if (!parts.network->has_layer_factors()) return parts;
+  parts.series = {.names = {"mean of the hidden neurons", "spread of the hidden neurons",
+                            "y1 at t = π/9", "y2 at t = π/9"},
+                  .evaluate = [network = parts.network.get()](Point& at, VectorOut values) {
+                    watch(*network, at, values);
+                  }};
+  return parts;
+}
+
+}  // namespace
+
+void register_hig_toy(ProblemRegistry& registry) {
+  registry.add(problem_entry(
+      {.name = "hig-toy",
+       .title = "Toy of half-inverse gradients",
+       .formula = "x = N(t; θ),  P(x) = (x₁, λx₂),  ŷ(t) = (sin 6t, cos 9t)",
+       .source = "Schnell, Holl, Thuerey (2022), section 3",
+       .note = "The published batch, start and rates are unknown: 256 fixed samples of t and "
+               "Glorot's start are ours.",
+       .panels = {{.title = "Mean of the hidden neurons",
+                   .kind = "series",
+                   .quantity = "mean of the hidden neurons"},
+                  {.title = "Spread of the hidden neurons",
+                   .kind = "series",
+                   .quantity = "spread of the hidden neurons"},
+                  {.title = "Path of y at t = π/9",
+                   .kind = "path",
+                   .quantity = "y1 at t = π/9|y2 at t = π/9"}}},
+      make_hig_toy));
+}
+
+}  // namespace isoline
