@@ -42,8 +42,11 @@ void Perceptron<Scalar>::curvature(VectorRef, BatchRef u, BatchRef du, VectorOut
 template <class Array>
 void repeat_rows(const Array& from, Index samples, Index m, Array& to) {
   to.resize(whole_registers<typename Array::Scalar>(m * samples), from.cols());
-  for (Index c = 0; c < from.cols(); ++c)
-    for (Index b = 0; b < samples; ++b) to.col(c).segment(b * m, m).setConstant(from(b, c));
+  for (Index c = 0; c < from.cols(); ++c) {
+    auto* out = &to(0, c);
+    for (Index b = 0; b < samples; ++b)
+      for (Index i = 0; i < m; ++i) *out++ = from(b, c);
+  }
 }
 
 // ∂y/∂z_{l−1} = (∂y/∂z_l W_l) s'(z_{l−1}) for all rows at once; the columns of W_l are outer
