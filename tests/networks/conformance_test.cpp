@@ -18,7 +18,8 @@ std::vector<std::string> specs() {
                                   "mlp[activation=gelu,init=glorot]",
                                   "mlp[activation=gelu,precision=double]",
                                   "mlp[activation=relu,precision=double,layers=9-5]",
-                                  "mlp[activation=tanh,precision=double,init=glorot]"};
+                                  "mlp[activation=tanh,precision=double,init=glorot]",
+                                  "fno[modes=3,width=5]"};
   for (const std::string& name : network_registry().names()) all.push_back(name);
   return all;
 }

@@ -24,10 +24,12 @@ class NetworkExamination {
   const Matrix& in() const { return in_; }
   const Matrix& x() const { return x_; }
 
-  // As large as θ: a step of h along it changes θ by the fraction h.
+  // Each number as large as its parameter, or a tenth of the root mean square where that is zero:
+  // a step of h changes small and large blocks alike by about the fraction h.
   Vector direction() {
     const Vector v = stream_.normal_vector(network_.parameters());
-    return theta_.norm() / v.norm() * v;
+    const Real floor = 0.1 * theta_.norm() / std::sqrt(Real(v.size()));
+    return v.array() * theta_.array().abs().max(floor);
   }
   Matrix normal(Index rows) {
     return stream_.normal_vector(rows * samples_).reshaped(rows, samples_);
