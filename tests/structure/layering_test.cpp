@@ -74,6 +74,7 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"lapacke.h", R"(core/decompose\.cpp|benchmarks/micro/.*\.cpp)"},
     {"openblas_config.h", R"(core/decompose\.cpp)"},
     {"oneapi/dnnl/", R"(core/convolution\.cpp|benchmarks/micro/.*\.cpp)"},
+    {"omp.h", R"(core/threads\.cpp)"},
     {"Random123/", R"(core/random\.cpp)"},
     {"valijson/", R"(core/schema\.cpp)"},
     {"ceres/", R"(optimizers/ceres\.cpp|benchmarks/micro/.*\.cpp)"},
