@@ -42,7 +42,7 @@ void set_library_threads(int threads) {
 
 int library_threads() { return omp_get_max_threads(); }
 
-void for_each_task(Index tasks, const std::function<void(Index task, int thread)>& work) {
+void run_tasks(Index tasks, const std::function<void(Index task, int thread)>& work) {
 #pragma omp parallel for schedule(dynamic)
   for (Index task = 0; task < tasks; ++task) work(task, omp_get_thread_num());
 }

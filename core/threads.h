@@ -18,7 +18,12 @@ int library_threads();
 // Calls work(task, thread) once for every task in [0, tasks), on all threads of the libraries. Who
 // takes which task is left to chance, so nothing may depend on it. The only door to OpenMP, whose
 // threads begin with the first call: never before a fork.
-void for_each_task(Index tasks, const std::function<void(Index task, int thread)>& work);
+void run_tasks(Index tasks, const std::function<void(Index task, int thread)>& work);
+
+template <class Work>
+void for_each_task(Index tasks, const Work& work) {
+  run_tasks(tasks, std::cref(work));  // a reference, for which nothing is allocated
+}
 
 // While it lives, OpenMP grants one thread.
 class OneThread {

@@ -1,121 +1,31 @@
 // The pullback of a U-net to its parameters, and with dual numbers its derivative: the curvature.
 // Unit by unit from the last, `cotangents` holds g, that of the unit's y before the rectifier.
 #include "core/threads.h"
-#include "networks/unet_passes.h"
+#include "networks/unet_cotangents.h"
 
 namespace isoline {
 namespace {
-
-// Sums over one task of g and g x̂, and of their tangents.
-template <class T>
-struct NormSums {
-  T row{}, row_x{};
-
-  void add(const T& g, const T& x) {
-    row = row + g;
-    row_x = row_x + g * x;
-  }
-  void flush(const UnitPass& pass, Index task, Index block) {
-    pass.sum(task, block, 0) += widened(value_of(row));
-    pass.sum(task, block, 1) += widened(value_of(row_x));
-    if constexpr (kIsDual<T>) {
-      pass.sum(task, block, 2) += widened(row.tangent);
-      pass.sum(task, block, 3) += widened(row_x.tangent);
-    }
-    row = row_x = T{};
-  }
-};
-
-enum class Part { only, first, last };  // of the cotangents of an activation that is used twice
-
-// Takes the cotangent of one block of an activation through the rectifier.
-template <class T>
-void absorb(const UnitPass& pass, Index task, Index unit, Index sample, Index block,
-            const Place& cotangent, Part part) {
-  const auto a = activation<T>(pass.plan, pass.state, unit, sample, block);
-  Norm& norm = pass.state.units[unit].norm;
-  const T inverse = norm.at<T>(Norm::inverse, block), centre = norm.at<T>(Norm::centre, block);
-  const Index level = pass.plan.units[unit].level, N = pass.plan.size(level);
-  const Place g = pass.state.cotangents[level].place() + (sample * pass.blocks + block) * N * N;
-  NormSums<T> sums;
-  for (Index row = 0; row < N; ++row) {
-    for (Index pixel = row * N; pixel < (row + 1) * N; ++pixel) {
-      T x = load<T>(cotangent, pixel);
-      if (part == Part::last) x = x + load<T>(g, pixel);
-      const T z = load<T>(a.z, pixel);
-      const T kept = keep(is_positive(a.scale * z + a.shift), x);
-      store(g, pixel, kept);
-      sums.add(kept, inverse * z + centre);
-    }
-    if (part != Part::first) sums.flush(pass, task, block);
-  }
-}
-
-// The cotangent of z, through the batch norm.
-template <class T>
-Place norm_cotangent(const UnitPass& pass, Index task, Index halo, ThreadState& thread) {
-  const Index N = pass.N;
-  const Grid grid{N, halo};
-  for (Index i = 0; i < pass.images * pass.blocks; ++i) {
-    const Index block = i % pass.blocks;
-    const Index before = task * pass.images * pass.blocks + i;
-    const Place g = pass.state.cotangents[pass.unit.level].place() + before * N * N;
-    const Place z = pass.own.z.place() + before * N * N;
-    const Place out = thread.cotangent_z.place() + i * grid.pixels();
-    Norm& norm = pass.own.norm;
-    const T scale = norm.at<T>(Norm::scale, block), slope = norm.at<T>(Norm::slope, block);
-    const T offset = norm.at<T>(Norm::offset, block);
-    for (Index column = 0; column < N; ++column)
-      for (Index row = 0; row < N; ++row) {
-        const Index pixel = column * N + row;
-        store(out, grid.at(column, row),
-              scale * load<T>(g, pixel) + slope * load<T>(z, pixel) + offset);
-      }
-    fill_halos(out, grid, pass.plan.is_circular, kIsDual<T>);
-  }
-  return thread.cotangent_z.place();
-}
-
-// From the cotangent of a unit's input to those of the activations it was assembled from.
-template <class T>
-void scatter(const UnitPass& pass, Index task, ThreadState& thread) {
-  const Unit& unit = pass.unit;
-  const Index N = pass.N, count = pass.blocks_in();
-  const Place spare = thread.spare.place();
-  for (Index i = 0; i < pass.images * count; ++i) {
-    const Index sample = task * pass.images + i / count, block = i % count;
-    const Place in = thread.cotangent_in.place() + i * N * N;
-    if (unit.source == Unit::Source::activation) {
-      absorb<T>(pass, task, unit.from, sample, block, in, Part::only);
-    } else if (unit.source == Unit::Source::pooled) {
-      unpool(activation<T>(pass.plan, pass.state, unit.from, sample, block), in, spare, N);
-      absorb<T>(pass, task, unit.from, sample, block, spare, Part::last);
-    } else if (block < pass.blocks) {
-      absorb<T>(pass, task, unit.skip, sample, block, in, Part::first);
-    } else {
-      downsample<T>(in, spare, N / 2);
-      absorb<T>(pass, task, unit.from, sample, block - pass.blocks, spare, Part::only);
-    }
-  }
-}
 
 void clear_sums(const UnitPass& pass, Index task) {
   std::fill_n(&pass.sum(task, 0, 0), 4 * pass.blocks, Wide{});
 }
 
-// How many partial gradients of a kernel a task gives: by the product rule two of the derivative.
+// How many partial gradients of a kernel a task gives: one, but by the product rule two of the
+// derivative, unless the input of the convolution is the network's and has no tangent.
 template <class T>
-constexpr Index kParts = kIsDual<T> ? 2 : 1;
+Index parts_a_task(const UnitPass& pass) {
+  return kIsDual<T> && pass.unit.source != Unit::Source::input ? 2 : 1;
+}
 
 template <class T>
 void pull_back_task(const UnitPass& pass, Index task, ThreadState& thread) {
   UnitCalls& calls = thread.calls[pass.index];
   const Index size = pass.plan.kernel_size(pass.unit);
-  float* const part = pass.state.kernel_parts.data()->channel + task * kParts<T> * size;
+  float* const part = pass.state.kernel_parts.data()->channel + task * parts_a_task<T>(pass) * size;
   clear_sums(pass, task);
   const bool is_first = pass.unit.source == Unit::Source::input;
   const Place z = norm_cotangent<T>(pass, task, is_first ? 0 : 1, thread);
-  if (is_first)  // the second part is another's product with an input that has no tangent
+  if (is_first)
     return calls.gradient(pass.plain_input(task), kIsDual<T> ? z.tangent : z.value, part);
   const Place a = assemble<T>(pass, task, 0, thread), kernel = pass.own.transposed.place();
   const Place in = thread.cotangent_in.place();
@@ -207,7 +117,7 @@ void pull_back_output(const UnitPass& last, Index task, Index sample, BatchRef u
 }
 
 void add_output_parts(const UnetPlan& plan, const UnetState& state, BatchRef asked, VectorOut out) {
-  const Index pixels = plan.N * plan.N, biases = plan.parameters - plan.output_channels;
+  const Index pixels = plan.N * plan.N;
   out.tail(plan.output_channels * (plan.filters + 1)).setZero();
   for (Index sample = 0; sample < state.samples; ++sample)
     for (Index o = 0; o < plan.output_channels; ++o) {
@@ -216,7 +126,7 @@ void add_output_parts(const UnetPlan& plan, const UnetState& state, BatchRef ask
         out[plan.output() + o * plan.filters + c] +=
             state.output_parts[part + c / kChannels][c % kChannels];
       const Real* const g = asked.col(sample).data() + o * pixels;
-      for (Index pixel = 0; pixel < pixels; ++pixel) out[biases + o] += g[pixel];
+      for (Index pixel = 0; pixel < pixels; ++pixel) out[plan.output_biases() + o] += g[pixel];
     }
 }
 
@@ -236,8 +146,7 @@ void pull_back(const UnetPlan& plan, UnetState& state, BatchRef u, BatchRef du, 
     for_each_task(pass.tasks, [&](Index task, int thread) {
       pull_back_task<T>(pass, task, state.threads[thread]);
     });
-    const bool is_single = i == 0 || !kIsDual<T>;
-    add_kernel_parts(pass, is_single ? pass.tasks : 2 * pass.tasks, out);
+    add_kernel_parts(pass, pass.tasks * parts_a_task<T>(pass), out);
     if (i > 0) finish_norm<T>(pass, pass.unit.from, out);
   }
 }

@@ -146,7 +146,7 @@ void write_output(const UnetPlan& plan, UnetState& state, BatchOut x) {
   const Index last = static_cast<Index>(plan.units.size()) - 1, pixels = plan.N * plan.N;
   for_each_task(state.samples, [&](Index sample, int) {
     for (Index o = 0; o < plan.output_channels; ++o) {
-      const Dual<float> bias = state.output_biases[o];
+      const Dual<Real> bias = state.output_biases[o];
       Real* const out = x.col(sample).data() + o * pixels;
       std::fill_n(out, pixels, kIsDual<T> ? bias.tangent : bias.value);
       for (Index block = 0; block < plan.blocks(); ++block) {
@@ -202,7 +202,8 @@ Vector unet_statistics(const UnetPlan& plan, UnetState& state, VectorRef theta) 
   return all;
 }
 
-void unet_infer(const UnetPlan& plan, UnetState& state, VectorRef theta, VectorRef statistics, BatchRef in) {
+void unet_infer(const UnetPlan& plan, UnetState& state, VectorRef theta, VectorRef statistics,
+                BatchRef in) {
   read_input(plan, state, in);
   Index at = 0;
   for (std::size_t i = 0; i < plan.units.size(); ++i) {

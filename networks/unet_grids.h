@@ -102,7 +102,9 @@ void unpool(const Activation<T>& a, const Place& coarse, const Place& fine, Inde
 template <class T>
 void upsample(const Place& coarse, const Place& out, const Grid& grid) {
   const Index N = grid.N / 2;
-  const auto next = [N](Index i) { return std::clamp(i % 2 ? i / 2 + 1 : i / 2 - 1, Index{0}, N - 1); };
+  const auto next = [N](Index i) {
+    return std::clamp(i % 2 ? i / 2 + 1 : i / 2 - 1, Index{0}, N - 1);
+  };
   for (Index column = 0; column < grid.N; ++column) {
     const Place near = coarse + column / 2 * N, far = coarse + next(column) * N;
     for (Index row = 0; row < grid.N; ++row) {

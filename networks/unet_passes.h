@@ -8,7 +8,8 @@ namespace isoline {
 
 // All z of the batch, and the norms by its statistics, or by given ones (2 · filters · units).
 void unet_forward(const UnetPlan& plan, UnetState& state, BatchRef in);
-void unet_infer(const UnetPlan& plan, UnetState& state, VectorRef theta, VectorRef statistics, BatchRef in);
+void unet_infer(const UnetPlan& plan, UnetState& state, VectorRef theta, VectorRef statistics,
+                BatchRef in);
 void unet_output(const UnetPlan& plan, UnetState& state, BatchOut x);
 
 // Tangents of all z and norms, from those of the kernels.

@@ -79,7 +79,7 @@ std::vector<Block> UnetPlan::layout() const {
     blocks.push_back({norm(unit) + filters, filters, 1, Block::Kind::norm});
   }
   blocks.push_back({output(), 1, filters * output_channels, Block::Kind::convolution});
-  blocks.push_back({parameters - output_channels, output_channels, 1, Block::Kind::bias});
+  blocks.push_back({output_biases(), output_channels, 1, Block::Kind::bias});
   return blocks;
 }
 

@@ -47,6 +47,7 @@ struct UnetPlan {
 
   Index biases(const Unit& unit) const { return unit.offset + filters * unit.in * 9; }
   Index norm(const Unit& unit) const { return biases(unit) + filters; }  // γ, then β
+  Index output_biases() const { return parameters - output_channels; }
   Index output() const { return parameters - output_channels * (filters + 1); }
 
   std::vector<Block> layout() const;

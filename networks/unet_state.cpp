@@ -98,37 +98,37 @@ void UnetState::fit(const UnetPlan& plan, Index batch, bool with_tangents) {
   for (Index i = 0; i < wanted; ++i) threads.push_back(make_thread(plan));
 }
 
-void UnetState::set_kernels(const UnetPlan& plan, VectorRef theta, bool is_tangent) {
-  const auto array = [&](const Place& place) { return is_tangent ? place.tangent : place.value; };
+void UnetState::set_value(const UnetPlan& plan, VectorRef theta) {
+  set_kernels(plan, theta, &Place::value, &Dual<Real>::value);
+  for (Index o = 0; o < plan.output_channels; ++o)
+    output_biases[o].value = theta[plan.output_biases() + o];
+}
+
+void UnetState::set_tangent(const UnetPlan& plan, VectorRef v) {
+  set_kernels(plan, v, &Place::tangent, &Dual<Real>::tangent);
+  for (Index o = 0; o < plan.output_channels; ++o)
+    output_biases[o].tangent = v[plan.output_biases() + o];
+}
+
+void UnetState::set_kernels(const UnetPlan& plan, VectorRef theta, float* Place::*array,
+                            Real Dual<Real>::*number) {
   for (std::size_t i = 0; i < units.size(); ++i) {
     const Unit& unit = plan.units[i];
-    float* const kernel = array(units[i].kernel.place());
-    float* const transposed = array(units[i].transposed.place());
+    float* const kernel = units[i].kernel.place().*array;
+    float* const transposed = units[i].transposed.place().*array;
     plan.for_each_weight(unit, [&](Index weight, Index at, Index at_transposed) {
       kernel[at] = static_cast<float>(theta[weight]);
       if (unit.source != Unit::Source::input) transposed[at_transposed] = kernel[at];
     });
     for (Index c = 0; c < plan.filters; ++c) {
-      Norm& norm = units[i].norm;
-      (is_tangent ? norm.gamma[c].tangent : norm.gamma[c].value) = theta[plan.norm(unit) + c];
-      (is_tangent ? norm.beta[c].tangent : norm.beta[c].value) =
-          theta[plan.norm(unit) + plan.filters + c];
+      units[i].norm.gamma[c].*number = theta[plan.norm(unit) + c];
+      units[i].norm.beta[c].*number = theta[plan.norm(unit) + plan.filters + c];
     }
   }
-  const Index biases = plan.parameters - plan.output_channels;
-  for (Index o = 0; o < plan.output_channels; ++o) {
+  for (Index o = 0; o < plan.output_channels; ++o)
     for (Index c = 0; c < plan.filters; ++c)
-      array(output.place())[o * plan.channels() + c] =
+      (output.place().*array)[o * plan.channels() + c] =
           static_cast<float>(theta[plan.output() + o * plan.filters + c]);
-    (is_tangent ? output_biases[o].tangent : output_biases[o].value) =
-        static_cast<float>(theta[biases + o]);
-  }
 }
-
-void UnetState::set_value(const UnetPlan& plan, VectorRef theta) {
-  set_kernels(plan, theta, false);
-}
-
-void UnetState::set_tangent(const UnetPlan& plan, VectorRef v) { set_kernels(plan, v, true); }
 
 }  // namespace isoline

@@ -81,8 +81,8 @@ struct UnetState : Scratch {
   std::vector<UnitState> units;
   std::vector<Pixels> cotangents;  // one a level: of the activation that is due
   std::vector<float> input;        // (samples · channels · (N+2)²), the only one that is plain
-  Pixels output;                   // the last, 1×1 kernel: (output channels · blocks)
-  std::vector<Dual<float>> output_biases;
+  Pixels output;                   // the last kernel, 1×1: (output channels · blocks)
+  std::vector<Dual<Real>> output_biases;
   std::vector<ThreadState> threads;
   std::vector<Pixel> kernel_parts;  // gradients of one kernel, task by task
   std::vector<Wide> kernel_sum;     // of them all
@@ -98,7 +98,8 @@ struct UnetState : Scratch {
   Index samples_a_task(const UnetPlan& plan, Index level) const;
 
  private:
-  void set_kernels(const UnetPlan& plan, VectorRef theta, bool is_tangent);
+  void set_kernels(const UnetPlan& plan, VectorRef theta, float* Place::*array,
+                   Real Dual<Real>::*number);
   ThreadState make_thread(const UnetPlan& plan) const;
 };
 
