@@ -60,7 +60,7 @@ Mask is_positive(const T& x) {
   return value_of(x) > 0;
 }
 
-inline Wide widened(const Lane& x) { return __builtin_convertvector(x, Wide); }
+inline void accumulate(const Lane& x, Wide& sum) { sum += __builtin_convertvector(x, Wide); }
 
 // An array of pixels and, where there are any, their tangents.
 struct Place {

@@ -48,7 +48,7 @@ void add_kernel_parts(const UnitPass& pass, Index parts, VectorOut out) {
   float* const first = state.kernel_parts.data()->channel;
   for_each_task(pixels, [&](Index pixel, int) {
     Wide sum = {};
-    for (Index i = 0; i < parts; ++i) sum += widened(lane(first, i * pixels + pixel));
+    for (Index i = 0; i < parts; ++i) accumulate(lane(first, i * pixels + pixel), sum);
     state.kernel_sum[pixel] = sum;
   });
   const bool is_first = pass.unit.source == Unit::Source::input;
@@ -108,7 +108,7 @@ void pull_back_output(const UnitPass& last, Index task, Index sample, BatchRef u
           store(spare, pixel, o == 0 ? weights * g : load<T>(spare, pixel) + weights * g);
           of_row += asked_of(g * a(pixel));
         }
-        sum += widened(of_row);
+        accumulate(of_row, sum);
       }
       last.state.output_parts[(sample * channels + o) * last.blocks + block] = sum;
     }

@@ -16,11 +16,11 @@ struct NormSums {
     row_x = row_x + g * x;
   }
   void flush(const UnitPass& pass, Index task, Index block) {
-    pass.sum(task, block, 0) += widened(value_of(row));
-    pass.sum(task, block, 1) += widened(value_of(row_x));
+    accumulate(value_of(row), pass.sum(task, block, 0));
+    accumulate(value_of(row_x), pass.sum(task, block, 1));
     if constexpr (kIsDual<T>) {
-      pass.sum(task, block, 2) += widened(row.tangent);
-      pass.sum(task, block, 3) += widened(row_x.tangent);
+      accumulate(row.tangent, pass.sum(task, block, 2));
+      accumulate(row_x.tangent, pass.sum(task, block, 3));
     }
     row = row_x = T{};
   }

@@ -44,7 +44,7 @@ void add_moments(const UnitPass& pass, Index task) {
     Lane row = {};
     Wide sum = {}, squares = {};
     const auto add_to = [&row](Wide& total) {
-      total += widened(row);
+      accumulate(row, total);
       row = Lane{};
     };
     for_each_row(
@@ -119,8 +119,8 @@ void convolve_tangents(const UnitPass& pass) {
             row_x += x.tangent * (inverse * x.value + centre);
           },
           [&] {
-            sum += widened(row);
-            sum_x += widened(row_x);
+            accumulate(row, sum);
+            accumulate(row_x, sum_x);
             row = row_x = Lane{};
           });
       pass.sum(task, block, 0) = sum;
