@@ -5,6 +5,7 @@ find_package(fmt 9 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(NLopt 2.7 REQUIRED)
 find_package(Threads REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
 
 # isoline_library(target names header version): an imported target for a library without a package.
 function(isoline_library target names header)
@@ -21,6 +22,7 @@ endfunction()
 # Named directly, not through the system's BLAS alternatives, which differ between machines.
 isoline_library(Isoline::lapacke "openblas;lapacke" lapacke.h)
 isoline_library(Isoline::fftw "fftw3" fftw3.h)
+isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package wants OpenCL
 isoline_library(Isoline::random123 "" Random123/philox.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
 
@@ -33,5 +35,9 @@ find_file(ISOLINE_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js REQ
 
 # The versions a record names.
 file(STRINGS ${Isoline__fftw_INCLUDE}/fftw3.h _fftw REGEX "FFTW_VERSION" LIMIT_COUNT 1)
+file(STRINGS ${Isoline__onednn_INCLUDE}/oneapi/dnnl/dnnl_version.h _lines REGEX "VERSION_(MAJOR|MINOR|PATCH) ")
+string(REGEX REPLACE "[^0-9;]" "" _lines "${_lines}")
+list(JOIN _lines "." _onednn)
 set(ISOLINE_LIBRARIES "Eigen ${Eigen3_VERSION}" "Ceres ${Ceres_VERSION}" "NLopt ${NLopt_VERSION}"
-    "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}")
+    "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}"
+    "oneDNN ${_onednn}")

@@ -1,6 +1,7 @@
 // Threads of the libraries: one before main, more where a request says so.
 #include "core/threads.h"
 
+#include <omp.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -34,7 +35,19 @@ void start_single_threaded(char** arguments) {
 }
 
 void set_library_threads(int threads) {
-  if (threads > 1) openblas_set_num_threads(threads);
+  if (threads <= 1) return;
+  openblas_set_num_threads(threads);
+  omp_set_num_threads(threads);
 }
+
+int library_threads() { return omp_get_max_threads(); }
+
+void run_tasks(Index tasks, const std::function<void(Index task, int thread)>& work) {
+#pragma omp parallel for schedule(dynamic)
+  for (Index task = 0; task < tasks; ++task) work(task, omp_get_thread_num());
+}
+
+OneThread::OneThread() : threads_(omp_get_max_threads()) { omp_set_num_threads(1); }
+OneThread::~OneThread() { omp_set_num_threads(threads_); }
 
 }  // namespace isoline

@@ -2,6 +2,10 @@
 // the program sets the environment and starts itself again, once, before anything else.
 #pragma once
 
+#include <functional>
+
+#include "core/array.h"
+
 namespace isoline {
 
 // Returns at once where the environment already asks for one thread; else replaces this process.
@@ -9,5 +13,28 @@ void start_single_threaded(char** arguments);
 
 // Raises the libraries' threads in a worker, from the request.
 void set_library_threads(int threads);
+int library_threads();
+
+// Calls work(task, thread) once for every task in [0, tasks), on all threads of the libraries. Who
+// takes which task is left to chance, so nothing may depend on it. The only door to OpenMP, whose
+// threads begin with the first call: never before a fork.
+void run_tasks(Index tasks, const std::function<void(Index task, int thread)>& work);
+
+template <class Work>
+void for_each_task(Index tasks, const Work& work) {
+  run_tasks(tasks, std::cref(work));  // a reference, for which nothing is allocated
+}
+
+// While it lives, OpenMP grants one thread.
+class OneThread {
+ public:
+  OneThread();
+  ~OneThread();
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int threads_;
+};
 
 }  // namespace isoline

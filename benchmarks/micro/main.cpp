@@ -12,6 +12,7 @@ int main(int count, char** arguments) {
   isoline::micro::register_libraries();
   isoline::micro::register_transforms();
   isoline::micro::register_isolation();
+  isoline::micro::register_unet();
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -48,5 +48,6 @@ void register_steps();
 void register_libraries();
 void register_transforms();
 void register_isolation();
+void register_unet();
 
 }  // namespace isoline::micro
