@@ -9,6 +9,7 @@
 #include "benchmarks/preview.h"
 #include "benchmarks/runner.h"
 #include "benchmarks/sheets.h"
+#include "benchmarks/soundness.h"
 #include "benchmarks/suite.h"
 #include "core/json.h"
 #include "core/spec.h"
@@ -155,6 +156,7 @@ void run(const RunArguments& given, Session& session) {
                      .command = session.command()};
   if (!given.memory.empty()) options.limits.memory_bytes = parse_memory(given.memory);
   if (!given.quiet) options.progress = Progress::style_of(STDERR_FILENO);
+  require_sound(session.catalog(), requests);
   if (given.is_dry) return print_plan(session, requests, out, options.jobs);
   Store store(out);
   store.plan(suite.name, planned_cells(requests));

@@ -8,6 +8,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/execute.h"
 #include "benchmarks/isolate.h"
+#include "benchmarks/soundness.h"
 #include "benchmarks/suite.h"
 #include "benchmarks/trained.h"
 
@@ -62,6 +63,7 @@ void show(const Trace& trace, std::int64_t iterations, const char* end) {
 
 void train(const TrainArguments& given, Session& session) {
   const Request request = request_of(given, session.catalog());
+  require_sound(session.catalog(), {request});
   Worker worker;
   constexpr double kForever = 1e9;
   worker.start([&](Trace& trace) { train_and_write(session.catalog(), request, given.out, trace); },

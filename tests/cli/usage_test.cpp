@@ -12,7 +12,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run", "report", "list", "describe", "check", "validate", "tune", "completion"}) {
+       {"run", "report", "list", "describe", "check", "validate", "tune", "train", "infer", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;

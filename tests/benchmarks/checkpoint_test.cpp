@@ -1,0 +1,77 @@
+// A run that was stopped and gone on leaves the trace of one that was not, bit for bit.
+#include <gtest/gtest.h>
+
+#include "benchmarks/execute.h"
+#include "benchmarks/suite.h"
+#include "core/json.h"
+#include "tests/temporary_folder.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+Request request_of(const std::string& problem, const std::string& optimizer) {
+  const Suite suite{.name = "mine",
+                    .title = "",
+                    .blocks = {{.problems = {problem},
+                                .optimizers = {optimizer},
+                                .budget = {.iterations = 30, .target = 0}}}};
+  return expand(catalog(), suite, {}).at(0);
+}
+
+Json trace_of(const Request& request, Checkpoint checkpoint) {
+  const auto trace = std::make_unique<Trace>();
+  execute(catalog(), request, *trace, std::move(checkpoint));
+  Json record = without_timings(to_json(record_of(request, *trace)));
+  record.erase("provenance");
+  return record;
+}
+
+// Asked to stop at every step, so that it goes on as often as it has iterations.
+Json trace_in_pieces(const Request& request, const fs::path& file) {
+  Json record;
+  int pieces = 0;
+  do {
+    Checkpoint checkpoint(file, "cell", 0);
+    if (pieces > 0) std::raise(SIGTERM);
+    record = trace_of(request, std::move(checkpoint));
+  } while (++pieces < 100 && record.at("status") == "running");
+  return record;
+}
+
+class Stopped : public testing::TestWithParam<const char*> {};
+
+TEST_P(Stopped, AndGoneOnGivesTheSameTrace) {
+  const TemporaryFolder folder;
+  const Request request =
+      request_of("sine[mode=learn,xi=4,batch=5,network=mlp[layers=6]]", GetParam());
+  const Json whole = trace_of(request, {});
+  ASSERT_EQ(whole.at("status"), "budget") << whole.at("message");
+  EXPECT_EQ(trace_in_pieces(request, folder.path() / "state"), whole);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Stopped,
+                         testing::Values("adam", "adadelta", "momentum", "gd", "rmsprop",
+                                         "sip[inverse=newton,proxy=l1]", "supervised", "adahessian",
+                                         "hessian-free", "kfac", "hig", "levenberg-marquardt"));
+
+TEST(Checkpoint, OfAnotherCellOrDamagedIsLeftAlone) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "state";
+  const Request request = request_of("exponential[mode=learn,batch=5]", "adam");
+  const Json whole = trace_of(request, {});
+  for (const std::string text :
+       {"", "isoline.checkpoint/1 other\n", "isoline.checkpoint/1 cell\nshort"}) {
+    write_text(file, text);
+    EXPECT_EQ(trace_of(request, Checkpoint(file, "cell", 1e9)), whole) << text;
+  }
+}
+
+}  // namespace
+}  // namespace isoline

@@ -1,0 +1,91 @@
+// Arrays in files: NumPy's format and text.
+#include "core/npy.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "core/errors.h"
+#include "core/json.h"
+#include "core/number_file.h"
+#include "tests/temporary_folder.h"
+
+namespace isoline {
+namespace {
+
+// The bytes of numpy.save for the array [[1, 2, 3], [4, 5, 6]] as '<f4' in column-major order, the
+// header as numpy 1.24 writes it.
+std::string by_numpy() {
+  std::string header = "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }";
+  header.append(118 - 1 - header.size(), ' ').push_back('\n');
+  std::string bytes("\x93NUMPY\x01\x00\x76\x00", 10);
+  bytes += header;
+  for (const float value : {1.F, 4.F, 2.F, 5.F, 3.F, 6.F}) {
+    char raw[4];
+    std::memcpy(raw, &value, 4);
+    bytes.append(raw, 4);
+  }
+  return bytes;
+}
+
+TEST(Npy, ReadsWhatNumpyWrites) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "a.npy", by_numpy());
+  const NumberArray array = read_npy(folder.path() / "a.npy");
+  EXPECT_EQ(array.shape, (std::vector<Index>{2, 3}));
+  EXPECT_EQ(array.values, (std::vector<Real>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(Npy, SurvivesTheRoundTripAtEveryRank) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.npy";
+  for (const std::vector<Index>& shape : {std::vector<Index>{4}, {2, 2}, {1, 2, 2}, {0, 7}}) {
+    Index count = 1;
+    for (const Index size : shape) count *= size;
+    NumberArray array{shape, {}};
+    for (Index i = 0; i < count; ++i) array.values.push_back(0.1 * static_cast<Real>(i));
+    write_npy(file, array);
+    EXPECT_EQ(read_npy(file).values, array.values);
+    EXPECT_EQ(read_npy(file).shape, shape);
+    EXPECT_EQ(read_text(file).find('\n') % 64, 63U);  // numbers begin at a multiple of 64
+  }
+}
+
+TEST(Npy, RefusesWhatItCannotTakeWithOneSentence) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.npy";
+  const auto complaint = [&](const std::string& bytes) -> std::string {
+    write_text(file, bytes);
+    try {
+      read_npy(file);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string good = by_numpy();
+  EXPECT_NE(complaint("hello").find("no .npy file"), std::string::npos);
+  EXPECT_NE(complaint(good.substr(0, good.size() - 3)).find("bytes of numbers"), std::string::npos);
+  std::string complex = good;
+  complex.replace(complex.find("<f4"), 3, "<c8");
+  EXPECT_NE(complaint(complex).find("'<c8'"), std::string::npos);
+  std::string infinite = good;
+  const float nan = NAN;
+  std::memcpy(infinite.data() + infinite.size() - 4, &nan, 4);
+  EXPECT_NE(complaint(infinite).find("not finite"), std::string::npos);
+}
+
+TEST(Csv, IsReadWithOrWithoutAHeaderAndRefusesHoles) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.csv";
+  write_text(file, "a,b\n1, 2\n3,4e1\r\n");
+  EXPECT_EQ(read_numbers(file).values, (std::vector<Real>{1, 2, 3, 40}));
+  EXPECT_EQ(read_numbers(file).shape, (std::vector<Index>{2, 2}));
+  for (const std::string text : {"1,2\n3\n", "1,2\n3,nan\n", "1,2\n3,x\n"}) {
+    write_text(file, text);
+    EXPECT_THROW(read_numbers(file), UsageError) << text;
+  }
+}
+
+}  // namespace
+}  // namespace isoline
