@@ -38,8 +38,8 @@ void multiply(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scalar>::In 
   const bool left = form == Form::AH_B, right = form == Form::A_BH;
   const Index m = left ? A.cols() : A.rows(), k = left ? A.rows() : A.cols();
   const Index n = right ? B.rows() : B.cols();
-  require(C.rows() == m && C.cols() == n && k == (right ? B.cols() : B.rows()),
-          "the matrices of a product do not fit");
+  if (C.rows() != m || C.cols() != n || k != (right ? B.cols() : B.rows()))
+    throw UsageError("the matrices of a product do not fit");  // `require` would make its text
   gemm(flag(left), flag(right), as_int(m), as_int(n), as_int(k), A.data(), stride(A), B.data(),
        stride(B), keep, C.data(), stride(C));
 }

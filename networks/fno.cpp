@@ -166,7 +166,7 @@ void register_fno(NetworkRegistry& registry) {
   registry.add({.name = "fno",
                 .title = "Fourier neural operator",
                 .source = "Li, Kovachki, Azizzadenesheli, Liu, Bhattacharya, Stuart, Anandkumar "
-                          "(2021), eq. 4 and 5",
+                          "(2021)",
                 .note =
                     "The two-dimensional operator of the authors' code with one field as input; "
                     "single precision, its modes by dense products.",

@@ -101,7 +101,7 @@ std::vector<Block> Perceptron<Scalar>::layout() const {
   return blocks;
 }
 
-// PyTorch's: W and b ~ U(±1/√w_{l−1}). Glorot, Bengio (2010), eq. 16, as Keras has it:
+// PyTorch's: W and b ~ U(±1/√w_{l−1}). Glorot, Bengio (2010), as Keras has it:
 // W ~ U(±√(6/(w_{l−1} + w_l))), b = 0.
 template <class Scalar>
 Vector Perceptron<Scalar>::start(RandomStream& stream) const {

@@ -11,6 +11,7 @@ int main(int count, char** arguments) {
   isoline::micro::register_steps();
   isoline::micro::register_libraries();
   isoline::micro::register_transforms();
+  isoline::micro::register_networks();
   isoline::micro::register_isolation();
   isoline::micro::register_unet();
   benchmark::Initialize(&count, arguments);

@@ -47,6 +47,7 @@ void register_metering();
 void register_steps();
 void register_libraries();
 void register_transforms();
+void register_networks();
 void register_isolation();
 void register_unet();
 
