@@ -51,8 +51,8 @@ int run(int count, char** arguments) {
   app.footer(kExamples);
   app.set_version_flag("--version", "isoline " + version());
   app.require_subcommand(1);
-  for (const auto add : {add_run, add_report, add_list, add_describe, add_check, add_validate,
-                         add_tune, add_completion})
+  for (const auto add : {add_run, add_report, add_merge, add_list, add_describe, add_check,
+                         add_validate, add_tune, add_completion})
     add(app, session);
   try {
     const std::string wrong = unknown_verb(app, count, arguments);

@@ -12,7 +12,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run", "report", "list", "describe", "check", "validate", "tune", "completion"}) {
+       {"run", "report", "merge", "list", "describe", "check", "validate", "tune", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
@@ -58,6 +58,8 @@ TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
            {"check rosenbrok", "did you mean 'rosenbrock'"},
            {"validate nowhere", "nowhere"},
            {"report nowhere", "nowhere"},
+           {"merge nowhere --out results", "nowhere"},
+           {"merge .", "--out"},
            {"completion fish", "fish"},
            {"list problms", "problms"}}) {
     const Finished result = shell("./isoline " + command);
