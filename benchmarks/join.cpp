@@ -25,6 +25,12 @@ Json result_of(const Json& record) {
   return result;
 }
 
+Json build_provenance(const Json& record) {
+  Json provenance = record.at("provenance");
+  provenance.erase("run");
+  return provenance;
+}
+
 // Runs that ended by themselves before those that a clock ended, then the latest; the text decides
 // what is left. The list of timings is joined apart.
 auto rank_of(const Json& record) {
@@ -74,12 +80,12 @@ std::string first_differences(const Json& a, const Json& b) {
 JoinedRecord join_records(const Json& a, const Json& b) {
   if (!is_nondeterministic(a) && !is_nondeterministic(b)) {
     const Json left = result_of(a), right = result_of(b);
-    if (left != right) return {Json(), first_differences(left, right)};
+    if (left != right) return {Json(), first_differences(left, right), false};
   }
   Json joined = rank_of(a) < rank_of(b) ? b : a;
   joined["repeat_wall_seconds"] =
       joined_timings(a.at("repeat_wall_seconds"), b.at("repeat_wall_seconds"));
-  return {joined, ""};
+  return {joined, "", build_provenance(a) != build_provenance(b)};
 }
 
 Json join_plans(const Json& a, const Json& b) {

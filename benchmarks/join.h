@@ -12,6 +12,7 @@ namespace isoline {
 struct JoinedRecord {
   Json record;
   std::string difference;
+  bool is_provenance_other = false;  // that of the run aside
 };
 JoinedRecord join_records(const Json& a, const Json& b);
 

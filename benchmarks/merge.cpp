@@ -42,7 +42,7 @@ Groups files_of(const std::vector<fs::path>& folders, const fs::path& part) {
   return groups;
 }
 
-// Without a flush a file: the folder gets its name only after one flush of all.
+// Without a flush of each: the folder gets its name only after one of all.
 void save(const fs::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
@@ -52,8 +52,7 @@ void save(const fs::path& path, const std::string& text) {
 
 void flush(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  ::syncfs(descriptor);
-  ::close(descriptor);
+  ::syncfs(descriptor), ::close(descriptor);
 }
 
 void share(std::size_t count, const std::function<void(std::size_t)>& work) {
@@ -85,14 +84,9 @@ class Merge {
     merge_part("components",
                [this](const std::string& name, const Group& files) { sheet(name, files); });
     merge_plans();
-    if (other_provenance_ > 0)
-      outcome_.remarks.push_back(fmt::format(
-          "{} records agree but for timings and provenance; the latest run's provenance is kept",
-          other_provenance_.load()));
-    if (other_sheets_ > 0)
-      outcome_.remarks.push_back(
-          fmt::format("{} component sheets differ between the folders; one of each is kept",
-                      other_sheets_.load()));
+    remark(other_provenance_,
+           "records agree but for timings and provenance; the latest run's provenance is kept");
+    remark(other_sheets_, "component sheets differ between the folders; one of each is kept");
     disputed_.merge(newly_disputed_);
     write_conflicts();
     outcome_.united = united_;
@@ -102,6 +96,10 @@ class Merge {
   }
 
  private:
+  void remark(std::size_t count, const char* what) {
+    if (count > 0) outcome_.remarks.push_back(fmt::format("{} {}", count, what));
+  }
+
   void merge_part(const char* part,
                   const std::function<void(const std::string&, const Group&)>& one) {
     fs::create_directories(out_ / part);
@@ -130,7 +128,7 @@ class Merge {
     if (texts.empty()) return;
     const bool is_record = name.ends_with(".json");
     if (texts.size() == 1) return keep(name, texts[0], is_record);
-    if (!is_record)  // pictures beside the records
+    if (!is_record)
       return dispute(name, fmt::format("{}: its copies differ in {}", name, parents(files)));
     join(name, files, texts);
   }
@@ -145,7 +143,7 @@ class Merge {
           return dispute(
               name, fmt::format("{} ({}): the results in {} differ at {}", title_of(joined), name,
                                 parents(files), both.difference));
-        other_provenance_ += i == 1 && provenance_of(joined) != provenance_of(other);
+        other_provenance_ += i == 1 && both.is_provenance_other;
         joined = std::move(both.record);
       }
       ++united_;
@@ -154,12 +152,6 @@ class Merge {
       dispute(name, fmt::format("{}: its copies in {} differ and are no records: {}", name,
                                 parents(files), error.what()));
     }
-  }
-
-  static Json provenance_of(const Json& record) {
-    Json provenance = record.at("provenance");
-    provenance.erase("run");
-    return provenance;
   }
 
   // Sheets describe components and are no results: of two wordings the lesser text stays, and the
@@ -174,7 +166,7 @@ class Merge {
   void merge_plans() {
     Group files;
     for (const fs::path& folder : folders_)
-      if (fs::exists(folder / "plan.json")) files.push_back(folder / "plan.json");
+      if (const fs::path file = folder / "plan.json"; fs::exists(file)) files.push_back(file);
     const std::vector<std::string> texts = texts_of(files);
     if (texts.empty()) return;
     if (texts.size() == 1) return save(out_ / "plan.json", texts[0]);

@@ -11,8 +11,8 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Finished program = shell("./isoline --help");
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
-  for (const std::string verb :
-       {"run", "report", "merge", "list", "describe", "check", "validate", "tune", "completion"}) {
+  for (const std::string verb : {"run", "report", "compare", "merge", "list", "describe", "check",
+                                 "validate", "tune", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
@@ -58,6 +58,9 @@ TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
            {"check rosenbrok", "did you mean 'rosenbrock'"},
            {"validate nowhere", "nowhere"},
            {"report nowhere", "nowhere"},
+           {"compare nowhere .", "nowhere"},
+           {"compare . . --tolerance -1", "--tolerance"},
+           {"compare . . --json --markdown", "--json"},
            {"merge nowhere --out results", "nowhere"},
            {"merge .", "--out"},
            {"completion fish", "fish"},
