@@ -88,7 +88,7 @@ class Runner {
   };
 
   std::vector<Pending> find_pending(const std::vector<Request>& requests) {
-    std::vector<Pending> pending;
+    std::vector<std::pair<std::size_t, Pending>> rounds;
     for (const Request& request : requests) {
       std::optional<Record> done = store_.find(request);
       if (options_.force) done.reset();
@@ -103,8 +103,12 @@ class Runner {
             origin.value("dirty", true) || origin.value("commit", "") != provenance()["commit"];
         continue;
       }
-      for (std::size_t i = have; i < wanted; ++i) pending.push_back({&request, done});
+      for (std::size_t i = have; i < wanted; ++i) rounds.push_back({i - have, {&request, done}});
     }
+    // Repetitions go round all cells, so that those of one cell see how the machine drifts.
+    std::ranges::stable_sort(rounds, {}, [](const auto& entry) { return entry.first; });
+    std::vector<Pending> pending;
+    for (auto& [round, entry] : rounds) pending.push_back(std::move(entry));
     return pending;
   }
 

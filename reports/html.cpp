@@ -9,6 +9,7 @@
 
 #include "reports/contour.h"
 #include "reports/curves.h"
+#include "reports/learned.h"
 #include "reports/readings.h"
 #include "reports/report.h"
 #include "reports/text.h"
@@ -166,6 +167,7 @@ std::string html_report(const Comparison& c) {
                                        {"matrices", panes_html(c, "Work", matrix_html)},
                                        {"profile", profile_html(c)},
                                        {"details", details_html(c)},
+                                       {"learned", learned_html(c)},
                                        {"figures", figures_html(drawn)},
                                        {"problems", problems_html(c)},
                                        {"families", families_html(c)},

@@ -2,7 +2,11 @@
 // times, so that two reports can be compared.
 #include "core/json.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "reports/readings.h"
 #include "reports/report.h"
@@ -32,12 +36,26 @@ Json by_tolerance(const std::array<Spread, kTolerances.size()>& spreads) {
   return json;
 }
 
+// Which requests stand behind a pair, so that two reports compare like with like.
+std::string asked_digest(const Comparison& c, const Cell& cell) {
+  std::set<std::string> cells;
+  for (const std::size_t run : cell.runs) cells.insert(c.runs[run].record->cell);
+  return digest(fmt::format("{}", fmt::join(cells, " ")));
+}
+
+std::set<std::string> builds_of(const Comparison& c, const Cell& cell) {
+  std::set<std::string> builds;
+  for (const std::size_t run : cell.runs) builds.insert(c.runs[run].record->build);
+  return builds;
+}
+
 Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   Json json{{"problem", c.problems[p].spec}, {"optimizer", c.optimizers[s].label},
             {"planned", cell.planned},       {"runs", cell.runs.size()},
             {"failed", cell.failed},         {"statuses", to_json(cell.statuses)},
-            {"privileges", cell.privileges}};
+            {"privileges", cell.privileges}, {"asked", asked_digest(c, cell)},
+            {"builds", builds_of(c, cell)}};
   if (!cell.inapplicable.empty()) json["inapplicable"] = cell.inapplicable;
   if (!cell.is_measured()) return json;
   json["figures"] = {{"work", by_tolerance(cell.work)}, {"loss", to_json(cell.loss)}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "reports/learned.h"
 #include "reports/readings.h"
 #include "reports/report.h"
 #include "reports/text.h"
@@ -114,7 +115,7 @@ std::string markdown_report(const Comparison& c) {
   text += is_large ? "\n<details><summary>Every problem and optimizer</summary>\n" : "";
   text += matrices(c);
   text += is_large ? "\n</details>\n" : "";
-  return text + failures(c);
+  return text + learned_markdown(c) + failures(c);
 }
 
 }  // namespace isoline

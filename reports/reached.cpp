@@ -1,6 +1,8 @@
 // Reads what each tolerance took off the hits of a record, or else off its curve.
 #include "reports/reached.h"
 
+#include <cmath>
+
 namespace isoline {
 namespace {
 
@@ -40,7 +42,8 @@ BestKnown::BestKnown(const Study& study) {
 
 Real BestKnown::minimum(const Record& record) const {
   if (record.minimum) return *record.minimum;
-  return least_.at({record.request.problem.spec, record.request.seed});
+  const auto found = least_.find({record.request.problem.spec, record.request.seed});
+  return found == least_.end() ? std::nan("") : found->second;
 }
 
 void fill_reached(Run& run, const BestKnown& best) {

@@ -13,7 +13,8 @@ namespace isoline {
 class BestKnown {
  public:
   explicit BestKnown(const Study& study);
-  Real minimum(const Record& record) const;  // declared, else the best known
+  // Declared, else the best known; not-a-number where no run of its problem and seed is.
+  Real minimum(const Record& record) const;
 
  private:
   std::map<std::pair<std::string, std::uint64_t>, Real> least_;

@@ -31,15 +31,8 @@ std::string right(std::string text, std::size_t width) {
   return std::string(width > own ? width - own : 0, ' ') + std::move(text);
 }
 
-// No escape sequence from a record reaches the terminal.
-std::string printable(std::string text) {
-  for (char& letter : text)
-    if (static_cast<unsigned char>(letter) < ' ' || letter == 127) letter = '?';
-  return text;
-}
-
 std::string name_of_spec(const std::string& spec) {
-  std::string name = printable(shown_spec(spec));
+  std::string name = terminal_text(shown_spec(spec));
   return name.size() > kMostNames ? name.substr(0, kMostNames - 3) + "..." : name;
 }
 
@@ -125,7 +118,7 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
   const Cell& cell = c.cell(p, s);
   std::string line = "  " + left(label_of(c.optimizers[s]), width);
   if (cell.runs.empty()) return line + "  missing\n";
-  if (!cell.is_measured()) return line + "  n/a: " + printable(cell.inapplicable) + "\n";
+  if (!cell.is_measured()) return line + "  n/a: " + terminal_text(cell.inapplicable) + "\n";
   const Spread& work = cell.work[kTightest];
   line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
@@ -143,7 +136,8 @@ std::string every_cell(const Comparison& c) {
     width = std::max(width, width_of(label_of(optimizer)));
   std::string text;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    text += fmt::format("\n{}\n{}", printable(shown_spec(c.problems[p].spec)), left("", width + 2));
+    text +=
+        fmt::format("\n{}\n{}", terminal_text(shown_spec(c.problems[p].spec)), left("", width + 2));
     text += "  runs  to 1e-1    1e-3    1e-6       ms        loss  status\n";
     for (const std::size_t s : ranking(c, p)) text += line_of(c, p, s, width);
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
@@ -169,7 +163,8 @@ std::string failure_lines(const Comparison& c) {
   for (const Unreadable& file : c.study->unreadable)
     lines.push_back(fmt::format("unreadable: {}: {}", file.file.string(), file.reason));
   std::string text;
-  for (std::size_t i = 0; i < lines.size() && i < kMost; ++i) text += printable(lines[i]) + "\n";
+  for (std::size_t i = 0; i < lines.size() && i < kMost; ++i)
+    text += terminal_text(lines[i]) + "\n";
   if (lines.size() > kMost) text += fmt::format("and {} more\n", lines.size() - kMost);
   return text.empty() ? "" : "\n" + text;
 }
@@ -185,12 +180,12 @@ std::string terminal_table(const Comparison& c) {
   for (const OptimizerAxis& optimizer : c.optimizers)
     has_privileges = has_privileges || !optimizer.privileges.empty();
   std::string text = headline(c) + "\n";
-  if (!c.missing.empty()) text += wrapped("INCOMPLETE: " + printable(missing_text(c)));
+  if (!c.missing.empty()) text += wrapped("INCOMPLETE: " + terminal_text(missing_text(c)));
   if (cells <= kFewCells)
     text += every_cell(c);
   else
     text += standings(c) + best_of_each(c) + "\n";
-  for (const std::string& sentence : verdict(c)) text += wrapped(printable(sentence));
+  for (const std::string& sentence : verdict(c)) text += wrapped(terminal_text(sentence));
   if (has_privileges) text += "† sees what others do not.\n";
   return text + failure_lines(c);
 }

@@ -165,6 +165,13 @@ std::string csv_field(std::string_view text) {
   return quoted + '"';
 }
 
+std::string terminal_text(std::string_view text) {
+  std::string safe(text);
+  for (char& letter : safe)
+    if (static_cast<unsigned char>(letter) < ' ' || letter == 127) letter = '?';
+  return safe;
+}
+
 std::string shell_word(std::string_view text) {
   std::string word = "'";
   for (const char letter : text) word += letter == '\'' ? "'\\''" : std::string(1, letter);

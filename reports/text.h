@@ -27,6 +27,7 @@ std::string html_text(std::string_view text);
 std::string markdown_text(std::string_view text);
 std::string latex_text(std::string_view text);
 std::string csv_field(std::string_view text);
+std::string terminal_text(std::string_view text);  // no escape sequence passes
 std::string shell_word(std::string_view text);
 
 }  // namespace isoline

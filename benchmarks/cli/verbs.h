@@ -34,6 +34,8 @@ class Session {
 
 void add_run(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
+void add_compare(CLI::App& app, Session& session);
+void add_merge(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
 void add_describe(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);

@@ -102,6 +102,34 @@ TEST_F(Run, AReportOfAPartialPlanSaysHowMuchIsThere) {
   EXPECT_TRUE(contains(read_text(out / "report" / "index.html"), "2 of 3 cells"));
 }
 
+// Two runs of one build agree; a loss raised by 5 % in one cell, and a cell taken away, do not
+// pass.
+TEST_F(Run, CompareAndMergeSeeOneChangedCell) {
+  shell(kMatrix + "--no-report");
+  shell("mv out again");
+  shell(kMatrix + "--no-report");
+  const Finished same = shell("./isoline compare out again");
+  EXPECT_EQ(same.exit_code, 0) << same.out;
+  EXPECT_TRUE(contains(same.out, "3 cells in both: 3 equal")) << same.out;
+  EXPECT_EQ(shell("./isoline merge out again --out both").exit_code, 0);
+  EXPECT_EQ(shell("./isoline validate both").exit_code, 0);
+  EXPECT_EQ(count_records(shell.folder() / "both"), 3U);
+  for (const auto& entry : fs::directory_iterator(out / "runs")) {
+    Json record = read_json(entry.path());
+    if (record.at("request").at("optimizer").at("name") != "gd") continue;
+    record["summary"]["loss"] = 1.05 * real_of(record["summary"]["loss"]);
+    write_text(entry.path(), record.dump());
+  }
+  const Finished worse = shell("./isoline compare again out --json");
+  EXPECT_EQ(worse.exit_code, 2) << worse.out;
+  EXPECT_EQ(parse_json(worse.out, "comparison").at("differences").size(), 1U) << worse.out;
+  const Finished conflict = shell("./isoline merge out again --out torn");
+  EXPECT_EQ(conflict.exit_code, 2);
+  EXPECT_TRUE(contains(conflict.err, "brown-dennis × gd")) << conflict.err;
+  EXPECT_EQ(count_records(shell.folder() / "torn"), 2U);
+  EXPECT_EQ(shell("./isoline compare again torn").exit_code, 4);
+}
+
 TEST_F(Run, ValidateFindsWhatIsWrongAndExitsTwo) {
   shell(kMatrix + "--no-report");
   const fs::path victim = fs::directory_iterator(out / "runs")->path();

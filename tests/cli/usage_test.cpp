@@ -12,7 +12,8 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run", "report", "list", "describe", "check", "validate", "tune", "train", "infer", "completion"}) {
+       {"run", "report", "list", "describe", "check", "validate", "tune", "train", "infer", "merge",
+        "compare", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
@@ -58,6 +59,11 @@ TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
            {"check rosenbrok", "did you mean 'rosenbrock'"},
            {"validate nowhere", "nowhere"},
            {"report nowhere", "nowhere"},
+           {"compare nowhere .", "nowhere"},
+           {"compare . . --tolerance -1", "--tolerance"},
+           {"compare . . --json --markdown", "--json"},
+           {"merge nowhere --out results", "nowhere"},
+           {"merge .", "--out"},
            {"completion fish", "fish"},
            {"list problms", "problms"}}) {
     const Finished result = shell("./isoline " + command);

@@ -48,7 +48,15 @@ TEST_P(EveryNetwork, PullbackIsTheAdjointOfPushforward) {
   EXPECT_LE(std::abs(u.cwiseProduct(Jv).sum() - v.dot(JTu)), at.rounding() * scale);
 }
 
+// Thousands of kinks, each felt by every sample, lie within any step that single precision resolves:
+// such a network is held to a reference of its own.
+bool are_differences_blurred(const Network& network) {
+  return network.has_kinks() && network.is_single_precision() &&
+         !network.has_independent_samples();
+}
+
 TEST_P(EveryNetwork, PushforwardIsTheChangeOfForward) {
+  if (are_differences_blurred(*network)) GTEST_SKIP() << "kinks";
   const Real gap =
       at.gap([&](Real h, const Vector& v) { return at.forward_at(at.theta() + h * v, at.in()); },
              [&](const Vector& v) { return at.push(v); });
@@ -57,11 +65,21 @@ TEST_P(EveryNetwork, PushforwardIsTheChangeOfForward) {
 
 TEST_P(EveryNetwork, CurvatureIsTheChangeOfPullback) {
   if (!network->has_curvature()) GTEST_SKIP() << "no second derivatives";
+  if (are_differences_blurred(*network)) GTEST_SKIP() << "kinks";
   const Matrix u = at.cotangent(), du = at.cotangent();
   const Real gap =
       at.gap([&](Real h, const Vector& v) { return at.pull_at(at.theta() + h * v, u + h * du); },
              [&](const Vector& v) { return at.curvature(v, u, du); });
   EXPECT_LE(gap, at.difference_limit());
+}
+
+TEST_P(EveryNetwork, CurvatureIsSymmetric) {
+  if (!network->has_curvature()) GTEST_SKIP() << "no second derivatives";
+  const Matrix u = at.cotangent(), none = 0 * u;
+  const Vector v = at.direction(), w = at.direction();
+  const Vector Hv = at.curvature(v, u, none), Hw = at.curvature(w, u, none);
+  const Real scale = Hv.norm() * w.norm() + Hw.norm() * v.norm();
+  EXPECT_LE(std::abs(w.dot(Hv) - v.dot(Hw)), at.rounding() * scale);
 }
 
 TEST_P(EveryNetwork, JacobianHasThePullbacksAsRows) {

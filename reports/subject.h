@@ -1,0 +1,41 @@
+// What two results can have in common, in the one form in which they are compared: a cell of two
+// record folders, or a pair of problem and optimizer in two reports.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "reports/reached.h"
+
+namespace isoline {
+
+// Less is better.
+struct Quantity {
+  std::string group;  // "work" of "work to 1e-3"
+  std::string name;
+  Real value = kNever;
+  Real scale = 0;  // where rounding is measured from: the value at the start
+};
+
+struct Subject {
+  std::string key;               // what joins two results
+  std::string title;             // "heat × gd, seed 3"
+  std::string state;             // "target"; "target 3, crashed 1"
+  int badness = 0;               // of the state: the greater the worse
+  std::size_t lost = 0;          // runs that went wrong or no longer apply
+  std::set<std::string> builds;  // of its records
+  std::string asked;             // digest of what was asked, where the key does not tell
+  std::vector<Quantity> quantities;
+  std::string trace;          // digest of all that is deterministic in it; empty: unknown
+  std::vector<Real> seconds;  // repetitions
+  std::string processor;
+  bool is_nondeterministic = false;  // a clock or a kill ended it
+};
+
+// `reference` sets f_L where a problem declares none, so that both sides have the same targets.
+std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference);
+std::vector<Subject> subjects_of_report(const Json& report);  // schema isoline.report/1
+
+}  // namespace isoline

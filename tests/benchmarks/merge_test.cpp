@@ -1,0 +1,175 @@
+// The union of result folders obeys the laws of a union, and never chooses between results.
+#include "benchmarks/merge.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "benchmarks/resources.h"
+#include "core/errors.h"
+#include "core/json.h"
+#include "core/random.h"
+#include "core/schema.h"
+#include "tests/reports/fixture.h"
+#include "tests/temporary_folder.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Contents = std::map<std::string, std::string>;  // text by path within the folder
+
+Contents contents_of(const fs::path& folder) {
+  Contents all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      all[fs::relative(entry.path(), folder).string()] = read_text(entry.path());
+  return all;
+}
+
+// Merges into new folders that live as long as this.
+class Merger {
+ public:
+  fs::path operator()(const std::vector<fs::path>& folders) {
+    const fs::path out = owned_.path() / std::to_string(count_++);
+    last = merge_folders(folders, out);
+    return out;
+  }
+  MergeOutcome last;
+
+ private:
+  TemporaryFolder owned_;
+  int count_ = 0;
+};
+
+// A folder of random cells out of twelve: timings, start and provenance differ between folders, and
+// so does the result of cell 11, which is in conflict wherever two folders have it.
+void fill(const ResultFolder& folder, std::uint64_t number) {
+  RandomStream random(number, "merge", "folder");
+  std::vector<Record> records;
+  for (std::uint64_t cell = 0; cell < 12; ++cell) {
+    if (random.uniform() < 0.4) continue;
+    Record record = record_of({.seed = cell});
+    record.provenance["run"]["started"] = std::to_string(random.uniform());
+    record.provenance["processor"] = random.uniform() < 0.5 ? "one" : "another";
+    record.summary.wall_seconds = random.uniform();
+    for (int i = 0; i < 3; ++i)  // of ten values, so that some are in several lists
+      record.repeat_wall_seconds.push_back(std::floor(10 * random.uniform()) / 10);
+    std::ranges::sort(record.repeat_wall_seconds);
+    if (cell == 10) record.is_nondeterministic = random.uniform() < 0.5;
+    if (cell >= 10) record.summary.loss = random.uniform();
+    if (cell == 10 && !record.is_nondeterministic) record.summary.loss = 0.5;
+    folder.add(record);
+    records.push_back(record);
+  }
+  if (number % 4 != 0) folder.add(plan_of(records));
+  folder.add(Sheet{.kind = "problem",
+                   .name = "square",
+                   .spec = "square",
+                   .title = number % 3 == 0 ? "A title" : "Another",
+                   .options_text = "[]"});
+}
+
+TEST(Merge, IsAssociativeCommutativeAndIdempotentConflictsIncluded) {
+  std::size_t conflicts = 0, united = 0;
+  for (std::uint64_t trial = 0; trial < 8; ++trial) {
+    const ResultFolder a, b, c;
+    fill(a, 3 * trial), fill(b, 3 * trial + 1), fill(c, 3 * trial + 2);
+    Merger merged;
+    const Contents all = contents_of(merged({a.path(), b.path(), c.path()}));
+    conflicts += merged.last.conflicts.size();
+    united += merged.last.united;
+    EXPECT_TRUE(contents_of(merged({c.path(), a.path(), b.path()})) == all) << trial;
+    const fs::path ab = merged({a.path(), b.path()}), bc = merged({b.path(), c.path()});
+    EXPECT_TRUE(contents_of(merged({ab, c.path()})) == all) << trial;
+    EXPECT_TRUE(contents_of(merged({a.path(), bc})) == all) << trial;
+    EXPECT_TRUE(contents_of(merged({a.path(), a.path()})) == contents_of(a.path())) << trial;
+    EXPECT_TRUE(contents_of(merged({ab, b.path()})) == contents_of(ab)) << trial;
+  }
+  EXPECT_GE(conflicts, 2U) << "the trials must meet some";
+  EXPECT_GE(united, 20U);
+}
+
+// {1, 1, 2} and {1, 3}: 1 twice, as in the folder that has it most often.
+TEST(Merge, TimingsAreUnitedAndSorted) {
+  Record record = record_of({});
+  const ResultFolder a, b;
+  record.repeat_wall_seconds = {1, 1, 2};
+  a.add(record);
+  record.repeat_wall_seconds = {1, 3};
+  b.add(record);
+  Merger merged;
+  const fs::path out = merged({a.path(), b.path()});
+  EXPECT_EQ(record_from_json(read_json(out / "runs" / record.file_name())).repeat_wall_seconds,
+            (std::vector<Real>{1, 1, 2, 3}));
+  EXPECT_EQ(merged.last.united, 1U);
+  EXPECT_TRUE(merged.last.conflicts.empty());
+}
+
+TEST(Merge, AConflictNamesTheCellAndIsLeftOutForGood) {
+  Record record = record_of({.problem = "heat[N=8]", .seed = 4});
+  const ResultFolder a, b;
+  a.add(record);
+  record.summary.loss *= 1.05;
+  b.add(record);
+  b.add(record_of({.seed = 5}));
+  Merger merged;
+  const fs::path out = merged({a.path(), b.path()});
+  ASSERT_EQ(merged.last.conflicts.size(), 1U);
+  for (const char* part : {"heat[N=8] × gd, seed 4", "/summary/loss", "differ"})
+    EXPECT_NE(merged.last.conflicts[0].find(part), std::string::npos) << merged.last.conflicts[0];
+  EXPECT_FALSE(fs::exists(out / "runs" / record.file_name()));
+  EXPECT_EQ(merged.last.records, 1U);
+  const Json schema = parse_json(std::string(builtin_schemas().at("conflicts")), "conflicts");
+  EXPECT_EQ(schema_violations(read_json(out / "conflicts.json"), schema),
+            std::vector<std::string>());
+  const fs::path later = merged({out, a.path()});
+  EXPECT_EQ(merged.last.conflicts.size(), 1U) << "a second merge must not choose either";
+  EXPECT_FALSE(fs::exists(later / "runs" / record.file_name()));
+}
+
+TEST(Merge, OtherBuildsOfACellStandBesideEachOther) {
+  const ResultFolder a, b;
+  a.add(record_of({.work_per_hit = 2, .build = "b0"}));
+  b.add(record_of({.work_per_hit = 3, .build = "b1"}));
+  Merger merged;
+  merged({a.path(), b.path()});
+  EXPECT_EQ(merged.last.records, 2U);
+  EXPECT_TRUE(merged.last.conflicts.empty());
+}
+
+TEST(Merge, ARunThatEndedByItselfStandsBeforeOneThatTheClockEnded) {
+  Record whole = record_of({.started = "2026-01-01T00:00:00Z"});
+  Record cut = record_of({.hits = 5, .status = Status::budget, .started = "2026-02-01T00:00:00Z"});
+  cut.is_nondeterministic = true;
+  const ResultFolder a, b;
+  a.add(whole);
+  b.add(cut);
+  Merger merged;
+  const fs::path out = merged({b.path(), a.path()});
+  EXPECT_TRUE(merged.last.conflicts.empty());
+  EXPECT_EQ(record_from_json(read_json(out / "runs" / whole.file_name())).status, Status::target);
+}
+
+TEST(Merge, ADamagedFileIsNamedAndLeftOut) {
+  const ResultFolder a;
+  a.add(record_of({}));
+  a.add_file("runs/torn.json", R"({"schema": "isoline.run/1", "cell": "a)");
+  Merger merged;
+  const fs::path out = merged({a.path()});
+  ASSERT_EQ(merged.last.unreadable.size(), 1U);
+  EXPECT_NE(merged.last.unreadable[0].find("torn.json"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out / "runs" / "torn.json"));
+}
+
+TEST(Merge, NeverWritesIntoAFolderThatHoldsSomething) {
+  const ResultFolder a, b;
+  a.add(record_of({}));
+  EXPECT_THROW(merge_folders({a.path()}, b.path()), UsageError);
+  EXPECT_THROW(merge_folders({a.path() / "none"}, a.path() / "new"), UsageError);
+  EXPECT_FALSE(fs::exists(a.path() / "new"));
+}
+
+}  // namespace
+}  // namespace isoline

@@ -1,0 +1,134 @@
+// Learning problems: their samples, the laws of these, and the derivatives through a network.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "problems/conformance.h"
+#include "tests/problems/make.h"
+
+namespace isoline {
+namespace {
+
+const std::vector<std::string> kLearned = {
+    "sine[mode=learn,xi=32]", "exponential[mode=learn]",
+    "poisson[mode=learn,N=16,batch=3,network=unet[levels=2]]",
+    "heat[mode=learn,N=16,batch=3,network=unet[levels=2]]", "hig-toy"};
+
+Batch batch_of(const Problem& problem, std::int64_t step) {
+  Batch batch;
+  problem.draw_batch(step, batch);
+  return batch;
+}
+
+TEST(Learning, EachStepHasItsOwnSamplesAndTheSameEveryTime) {
+  for (const std::string& spec : kLearned) {
+    const Problem problem = make(spec, 1), again = make(spec, 1), other = make(spec, 2);
+    EXPECT_EQ(batch_of(problem, 3).target, batch_of(again, 3).target) << spec;
+    EXPECT_NE(batch_of(problem, 3).target, batch_of(other, 3).target) << spec;
+    if (problem.has_fresh_batches())
+      EXPECT_NE(batch_of(problem, 3).target, batch_of(problem, 4).target) << spec;
+    Batch validation;
+    problem.draw_validation(validation);
+    EXPECT_NE(validation.target.col(0), problem.target().col(0)) << spec;
+  }
+}
+
+TEST(Learning, BatchSizesAndSweepsSeeTheSameSamples) {
+  const Problem small = make("sine[mode=learn,batch=4]"), large = make("sine[mode=learn,batch=8]");
+  EXPECT_EQ(batch_of(large, 0).target.leftCols(4), batch_of(small, 0).target);
+  EXPECT_EQ(batch_of(large, 0).target.rightCols(4), batch_of(small, 1).target);
+  EXPECT_EQ(batch_of(make("sine[mode=learn,xi=1]"), 5).target,
+            batch_of(make("sine[mode=learn,xi=64]"), 5).target);
+}
+
+TEST(Learning, OnFiniteDataEveryStepHasAllSamples) {
+  const Problem problem = make("sine[mode=learn,data=37]");
+  EXPECT_FALSE(problem.has_fresh_batches());
+  EXPECT_EQ(problem.samples(), 37);
+  EXPECT_EQ(batch_of(problem, 9).target, problem.target());
+}
+
+TEST(Learning, MethodsOfOneSeedStartAlikeAndSeedsApart) {
+  EXPECT_EQ(make("sine[mode=learn,xi=1]", 3).start(), make("sine[mode=learn,xi=32]", 3).start());
+  EXPECT_NE(make("sine[mode=learn]", 3).start(), make("sine[mode=learn]", 4).start());
+}
+
+// The truth makes the target, and has no error in x.
+TEST(Learning, TruthIsWhatWasObserved) {
+  for (const std::string& spec : kLearned) {
+    const Problem problem = make(spec, 1);
+    const Batch batch = batch_of(problem, 2);
+    Point at;
+    problem.physics_forward(batch.truth, batch, at);
+    EXPECT_LT((at.y - batch.target).norm(), 1e-11 * batch.target.norm()) << spec;  // rounding
+    EXPECT_LT(problem.x_error(batch.truth, batch), 1e-11 * batch.truth.cwiseAbs().sum()) << spec;
+  }
+}
+
+TEST(Learning, ExponentialTargetsAreLogUniform) {
+  Batch validation;
+  make("exponential[mode=learn]").draw_validation(validation);
+  const auto x = validation.truth.array();
+  EXPECT_GE(x.minCoeff(), -12);
+  EXPECT_LE(x.maxCoeff(), 0);
+  const Real error = 12 / std::sqrt(12.0 * 1024);  // of the mean of 1,024 samples
+  EXPECT_NEAR(x.mean(), -6, 4 * error);
+}
+
+TEST(Learning, SineTeachesEveryBranchOfItsInverse) {
+  const Problem problem = make("sine[mode=learn,xi=1,phi=0]");
+  Batch validation;
+  problem.draw_validation(validation);
+  const auto phase = 10 * validation.truth.row(0).array();  // γ z₁ with ξ = 1, φ = 0
+  EXPECT_LT(phase.minCoeff(), -2 * M_PI);
+  EXPECT_GT(phase.maxCoeff(), 2 * M_PI);
+  EXPECT_LE(validation.target.cwiseAbs().maxCoeff(), 1);
+}
+
+// Poisson's inverse is linear and exact: what SIP aims at is the label of supervised training.
+TEST(Learning, PoissonTargetsOfSipAreTheLabels) {
+  const Problem problem = make("poisson[mode=learn,N=16,batch=3,network=unet[levels=2]]");
+  Point at;
+  problem.forward(problem.start(), at);
+  Matrix aimed(problem.inputs(), problem.samples());
+  EXPECT_TRUE(problem.local_inverse(problem.target(), aimed, at).all());
+  const Matrix& label = problem.batch().truth;
+  EXPECT_LT((aimed - label).norm(), 1e-11 * label.norm());  // rounding by the condition of ∇²
+}
+
+TEST(Learning, HeatGivesTheNetworkTheMean) {
+  const Problem problem = make("heat[mode=learn,N=16,batch=3,network=unet[levels=2]]");
+  Point at;
+  problem.forward(problem.start(), at);
+  const auto means = at.x().colwise().mean() - problem.batch().truth.colwise().mean();
+  EXPECT_LT(means.cwiseAbs().maxCoeff(), 1e-6);  // the network is of single precision
+}
+
+TEST(Learning, DerivativesThroughASmoothNetworkHold) {
+  constexpr const char* kNetwork = "network=mlp[layers=5-4,activation=tanh,precision=double]";
+  for (const std::string problem : {"sine", "exponential", "hig-toy"}) {
+    const Problem learned = make(problem + "[mode=learn,batch=6," + kNetwork + "]", 1);
+    RandomStream stream(1, problem, "test");
+    const auto findings = examine(learned, stream);
+    EXPECT_GE(findings.size(), 6U);
+    for (const Finding& finding : findings)
+      EXPECT_TRUE(finding.holds()) << problem << ": " << finding.property << " " << finding.figure;
+  }
+}
+
+TEST(Learning, ToyWatchesItsNeuronsAndItsPath) {
+  const Problem problem = make("hig-toy[lambda=0.01]");
+  EXPECT_EQ(problem.unknowns(), 30);
+  Point at;
+  problem.forward(problem.start(), at);
+  Vector values(4);
+  problem.series().evaluate(at, values);
+  EXPECT_LT(std::abs(values[0]), 1);  // of tanh
+  EXPECT_GT(values[1], 0);
+  Index nearest = 0;
+  (problem.batch().input.row(0).array() - M_PI / 9).abs().minCoeff(&nearest);
+  EXPECT_EQ(values.tail(2), at.y.col(nearest));
+}
+
+}  // namespace
+}  // namespace isoline
