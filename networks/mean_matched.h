@@ -1,19 +1,88 @@
-// placeholder until merged
+// A network whose output has the mean of its input, sample by sample, as heat conserves it:
+//   x = N(in) + mean(in) − mean(N(in))
+// Holl, Koltun, Thuerey (2022), the correction behind the network of the heat experiment. With the
+// projection C = I − 1 1ᵀ/k all products are those of N with C before or behind it.
 #pragma once
+
+#include <memory>
+#include <utility>
+
 #include "networks/network.h"
+
 namespace isoline {
+
 class MeanMatched final : public Network {
  public:
-  explicit MeanMatched(std::unique_ptr<Network> inner) : inner_(std::move(inner)) {}
-  Index parameters() const override { return inner_->parameters(); }
-  Index inputs() const override { return inner_->inputs(); }
-  Index outputs() const override { return inner_->outputs(); }
-  Vector start(RandomStream& s) const override { return inner_->start(s); }
-  std::vector<Block> layout() const override { return inner_->layout(); }
-  void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const override { inner_->forward(theta, in, x, w); }
-  void pushforward(VectorRef v, BatchOut Jv, Workspace& w) const override { inner_->pushforward(v, Jv, w); }
-  void pullback(BatchRef u, VectorOut JTu, Workspace& w) const override { inner_->pullback(u, JTu, w); }
+  explicit MeanMatched(std::unique_ptr<Network> network) : network_(std::move(network)) {
+    require(network_->inputs() == network_->outputs(),
+            "a network that keeps the mean of its input must have as many outputs as inputs");
+  }
+  Index parameters() const override { return network_->parameters(); }
+  Index inputs() const override { return network_->inputs(); }
+  Index outputs() const override { return network_->outputs(); }
+  Vector start(RandomStream& stream) const override { return network_->start(stream); }
+  std::vector<Block> layout() const override { return network_->layout(); }
+  bool has_independent_samples() const override { return network_->has_independent_samples(); }
+  bool is_single_precision() const override { return network_->is_single_precision(); }
+  bool has_kinks() const override { return network_->has_kinks(); }
+  bool has_curvature() const override { return network_->has_curvature(); }
+  bool has_layer_factors() const override { return network_->has_layer_factors(); }
+
+  void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const override {
+    network_->forward(theta, in, x, w.as<Own>().inner);
+    match(in, x);
+  }
+  void pushforward(VectorRef v, BatchOut Jv, Workspace& w) const override {
+    network_->pushforward(v, Jv, w.as<Own>().inner);
+    for (Index b = 0; b < Jv.cols(); ++b) Jv.col(b).array() -= Jv.col(b).mean();
+  }
+  void pullback(BatchRef u, VectorOut JTu, Workspace& w) const override {
+    auto& own = w.as<Own>();
+    network_->pullback(centred(u, own.u), JTu, own.inner);
+  }
+  void curvature(VectorRef v, BatchRef u, BatchRef du, VectorOut out, Workspace& w) const override {
+    auto& own = w.as<Own>();
+    network_->curvature(v, centred(u, own.u), centred(du, own.du), out, own.inner);
+  }
+  void jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) const override {
+    auto& own = w.as<Own>();
+    own.dy_dx = dy_dx;
+    for (Index b = 0; b < dy_dx.cols() / outputs(); ++b) {
+      auto sample = own.dy_dx.middleCols(b * outputs(), outputs());
+      for (Index i = 0; i < sample.rows(); ++i) sample.row(i).array() -= sample.row(i).mean();
+    }
+    network_->jacobian(own.dy_dx, J, own.inner);
+  }
+  void layer_factors(BatchRef u, std::vector<LayerFactor>& out, Workspace& w) const override {
+    auto& own = w.as<Own>();
+    network_->layer_factors(centred(u, own.u), out, own.inner);
+  }
+  Vector statistics(VectorRef theta, BatchRef in, Workspace& w) const override {
+    return network_->statistics(theta, in, w.as<Own>().inner);
+  }
+  void infer(VectorRef theta, VectorRef statistics, BatchRef in, BatchOut x,
+             Workspace& w) const override {
+    network_->infer(theta, statistics, in, x, w.as<Own>().inner);
+    match(in, x);
+  }
+
  private:
-  std::unique_ptr<Network> inner_;
+  struct Own final : Scratch {
+    Workspace inner;
+    Matrix u, du;  // (k, B) cotangents behind C
+    Matrix dy_dx;  // (m, k·B)
+  };
+
+  static void match(BatchRef in, BatchOut x) {
+    for (Index b = 0; b < x.cols(); ++b) x.col(b).array() += in.col(b).mean() - x.col(b).mean();
+  }
+  static const Matrix& centred(BatchRef u, Matrix& out) {
+    out = u;
+    for (Index b = 0; b < out.cols(); ++b) out.col(b).array() -= u.col(b).mean();
+    return out;
+  }
+
+  std::unique_ptr<Network> network_;
 };
-}
+
+}  // namespace isoline

@@ -73,6 +73,7 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"fftw3.h", R"(core/fourier\.cpp|benchmarks/micro/.*\.cpp)"},
     {"lapacke.h", R"(core/decompose\.cpp|benchmarks/micro/.*\.cpp)"},
     {"openblas_config.h", R"(core/decompose\.cpp)"},
+    {"cblas.h", R"(core/product\.cpp|benchmarks/micro/.*\.cpp)"},
     {"oneapi/dnnl/", R"(core/convolution\.cpp|benchmarks/micro/.*\.cpp)"},
     {"Random123/", R"(core/random\.cpp)"},
     {"valijson/", R"(core/schema\.cpp)"},

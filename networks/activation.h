@@ -1,0 +1,116 @@
+// Activations a = s(z) and their first two derivatives, number by number over flat arrays. Arrays
+// are padded by their owner to whole vector registers: a remainder would be computed by other code,
+// and a sample's bits would depend on its place.
+//   relu max(0, z),  tanh,  sigmoid 1/(1 + e^(−z)),  gelu z Φ(z), Φ the normal distribution
+//   function
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <type_traits>
+
+#include "core/array.h"
+
+namespace isoline {
+
+enum class Activation { relu, tanh, sigmoid, gelu };
+
+template <class Scalar>
+using Flat = Eigen::Array<Scalar, Eigen::Dynamic, 1>;
+template <class Scalar>
+using FlatRef = const Eigen::Ref<const Flat<Scalar>>&;
+template <class Scalar>
+using FlatOut = Eigen::Ref<Flat<Scalar>>;
+
+// Numbers that fill one vector register, or the Index n rounded up to whole ones.
+template <class Scalar>
+Index whole_registers(Index n) {
+  constexpr Index kLanes = Eigen::internal::packet_traits<Scalar>::size;
+  return (n + kLanes - 1) / kLanes * kLanes;
+}
+
+// φ(z) = e^(−z²/2)/√2π
+template <class Scalar>
+auto normal_density(FlatRef<Scalar> z) {
+  constexpr auto kHeight = Scalar(std::numbers::inv_sqrtpi / std::numbers::sqrt2);
+  return kHeight * (Scalar(-0.5) * z.square()).exp();
+}
+
+// out = Φ(z), in double by the C library; in float by Hastings' rational form (Abramowitz, Stegun
+// (1964), 7.1.26), whose error of 7.5e-8 is that of the type, and which vectorizes.
+template <class Scalar>
+void normal_distribution(FlatRef<Scalar> z, FlatOut<Scalar> out) {
+  if constexpr (std::is_same_v<Scalar, double>) {
+    out = z.unaryExpr([](double t) { return 0.5 * std::erfc(-t / std::numbers::sqrt2); });
+  } else {
+    constexpr float kScale = 0.3275911F / std::numbers::sqrt2_v<float>;
+    out = (1 + kScale * z.abs()).inverse();
+    out =
+        0.5F * (-0.5F * z.square()).exp() * out *
+        (0.254829592F +
+         out * (-0.284496736F + out * (1.421413741F + out * (-1.453152027F + out * 1.061405429F))));
+    out = (z > 0).select(1 - out, out);
+  }
+}
+
+// a = s(z)
+template <class Scalar>
+void activate(Activation kind, FlatRef<Scalar> z, FlatOut<Scalar> a) {
+  switch (kind) {
+    case Activation::relu:
+      a = (z < 0).select(Scalar(0), z);  // not max, which would hide a nan
+      break;
+    case Activation::tanh:
+      a = z.tanh();
+      break;
+    case Activation::sigmoid:
+      a = (1 + (-z).exp()).inverse();
+      break;
+    case Activation::gelu:
+      normal_distribution<Scalar>(z, a);
+      a *= z;
+      break;
+  }
+}
+
+// g = s'(z) g, given a = s(z) too; `room` is as long.
+template <class Scalar>
+void multiply_by_slope(Activation kind, FlatRef<Scalar> z, FlatRef<Scalar> a, FlatOut<Scalar> g,
+                       FlatOut<Scalar> room) {
+  switch (kind) {
+    case Activation::relu:
+      g = (a > 0).select(g, Scalar(0));
+      break;
+    case Activation::tanh:
+      g *= 1 - a.square();
+      break;
+    case Activation::sigmoid:
+      g *= a * (1 - a);
+      break;
+    case Activation::gelu:
+      normal_distribution<Scalar>(z, room);
+      g *= room + z * normal_density<Scalar>(z);
+      break;
+  }
+}
+
+// g = s''(z) g
+template <class Scalar>
+void multiply_by_bend(Activation kind, FlatRef<Scalar> z, FlatRef<Scalar> a, FlatOut<Scalar> g) {
+  switch (kind) {
+    case Activation::relu:
+      g.setZero();
+      break;
+    case Activation::tanh:
+      g *= -2 * a * (1 - a.square());
+      break;
+    case Activation::sigmoid:
+      g *= a * (1 - a) * (1 - 2 * a);
+      break;
+    case Activation::gelu:
+      g *= (2 - z.square()) * normal_density<Scalar>(z);
+      break;
+  }
+}
+
+}  // namespace isoline

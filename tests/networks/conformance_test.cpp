@@ -1,0 +1,156 @@
+// What every registered network must satisfy, at its default options and some others.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/spec.h"
+#include "tests/networks/examination.h"
+
+namespace isoline {
+namespace {
+
+constexpr Index kSamples = 5;
+constexpr Real kDenseEntries = 4e6;  // of a Jacobian that is formed row by row
+
+std::vector<std::string> specs() {
+  std::vector<std::string> all = {"mlp[activation=tanh,layers=7]",
+                                  "mlp[activation=sigmoid,layers=16-64-16,precision=double]",
+                                  "mlp[activation=gelu,init=glorot]",
+                                  "mlp[activation=gelu,precision=double]",
+                                  "mlp[activation=relu,precision=double,layers=9-5]",
+                                  "mlp[activation=tanh,precision=double,init=glorot]"};
+  for (const std::string& name : network_registry().names()) all.push_back(name);
+  return all;
+}
+
+// From vectors to vectors where it can, from grids to grids elsewhere.
+std::unique_ptr<Network> make(const std::string& spec) {
+  try {
+    return make_network(spec, {.inputs = 2, .outputs = 3});
+  } catch (const UsageError&) {
+    return make_network(spec, {.inputs = 256, .outputs = 256, .grid = 16});
+  }
+}
+
+class EveryNetwork : public ::testing::TestWithParam<std::string> {
+ protected:
+  const std::unique_ptr<Network> network = make(GetParam());
+  RandomStream stream{1, "network", "conformance"};
+  NetworkExamination at{*network, kSamples, stream};
+};
+
+TEST_P(EveryNetwork, PullbackIsTheAdjointOfPushforward) {
+  const Vector v = at.direction();
+  const Matrix u = at.cotangent(), Jv = at.push(v);
+  const Vector JTu = at.pull(u);
+  const Real scale = u.norm() * Jv.norm() + v.norm() * JTu.norm();
+  EXPECT_LE(std::abs(u.cwiseProduct(Jv).sum() - v.dot(JTu)), at.rounding() * scale);
+}
+
+TEST_P(EveryNetwork, PushforwardIsTheChangeOfForward) {
+  const Real gap =
+      at.gap([&](Real h, const Vector& v) { return at.forward_at(at.theta() + h * v, at.in()); },
+             [&](const Vector& v) { return at.push(v); });
+  EXPECT_LE(gap, at.difference_limit());
+}
+
+TEST_P(EveryNetwork, CurvatureIsTheChangeOfPullback) {
+  if (!network->has_curvature()) GTEST_SKIP() << "no second derivatives";
+  const Matrix u = at.cotangent(), du = at.cotangent();
+  const Real gap =
+      at.gap([&](Real h, const Vector& v) { return at.pull_at(at.theta() + h * v, u + h * du); },
+             [&](const Vector& v) { return at.curvature(v, u, du); });
+  EXPECT_LE(gap, at.difference_limit());
+}
+
+TEST_P(EveryNetwork, JacobianHasThePullbacksAsRows) {
+  constexpr Index kRows = 2;
+  const Index n = network->parameters(), k = network->outputs();
+  if (Real(kRows * kSamples * n) > kDenseEntries) GTEST_SKIP() << "too large";
+  const Matrix dy_dx = stream.normal_vector(kRows * k * kSamples).reshaped(kRows, k * kSamples);
+  const Matrix J = at.jacobian(dy_dx);
+  Matrix rows(kRows * kSamples, n);
+  for (Index b = 0; b < kSamples; ++b) {
+    for (Index i = 0; i < kRows; ++i) {
+      Matrix u = Matrix::Zero(k, kSamples);
+      u.col(b) = dy_dx.row(i).segment(b * k, k);
+      rows.row(b * kRows + i) = at.pull(u);
+    }
+  }
+  EXPECT_LE((J - rows).norm(), at.rounding() * rows.norm());
+}
+
+TEST_P(EveryNetwork, LayerFactorsMakeTheGradient) {
+  if (!network->has_layer_factors()) GTEST_SKIP() << "no dense layers";
+  const Matrix u = at.cotangent();
+  const Vector g = at.pull(u);
+  const std::vector<Block> blocks = network->layout();
+  for (const LayerFactor& factor : at.factors(u)) {
+    const Block& W = blocks.at(static_cast<std::size_t>(factor.weight));
+    const Block& b = blocks.at(static_cast<std::size_t>(factor.bias));
+    const Matrix product = factor.cotangents * factor.inputs.transpose();
+    const Vector sum = factor.cotangents.rowwise().sum();
+    EXPECT_LE((product.reshaped() - g.segment(W.offset, W.rows * W.columns)).norm(),
+              at.rounding() * product.norm());
+    EXPECT_LE((sum - g.segment(b.offset, b.rows)).norm(), at.rounding() * g.norm());
+  }
+}
+
+TEST_P(EveryNetwork, LayoutCoversTheParametersOnceInOrder) {
+  Index next = 0;
+  for (const Block& block : network->layout()) {
+    EXPECT_EQ(block.offset, next);
+    next += block.rows * block.columns;
+  }
+  EXPECT_EQ(next, network->parameters());
+}
+
+TEST_P(EveryNetwork, TreatsEachSampleAsIfItWereAlone) {
+  if (!network->has_independent_samples()) GTEST_SKIP() << "depends on its batch";
+  for (Index b = 0; b < kSamples; ++b)
+    EXPECT_LE((at.forward_at(at.theta(), at.in().col(b)) - at.x().col(b)).norm(),
+              at.rounding() * at.x().col(b).norm());
+}
+
+TEST_P(EveryNetwork, GivesTheSameBitsTwiceWhereverThetaLies) {
+  const Matrix u = at.cotangent();
+  const Vector g = at.pull(u);
+  EXPECT_EQ(at.pull(u), g);
+  EXPECT_EQ(at.pull_at(at.theta(), u), g);
+  for (Index offset = 1; offset < 8; offset += 3) {
+    Vector shifted(at.theta().size() + 8);
+    shifted.segment(offset, at.theta().size()) = at.theta();
+    const auto theta = shifted.segment(offset, at.theta().size());
+    EXPECT_EQ(at.forward_at(theta, at.in()), at.x()) << offset;
+    EXPECT_EQ(at.pull_at(theta, u), g) << offset;
+  }
+}
+
+TEST_P(EveryNetwork, StartsFromItsStreamAlone) {
+  RandomStream first(3, "network", "start"), second(3, "network", "start"),
+      other(4, "network", "start");
+  const Vector start = network->start(first);
+  ASSERT_EQ(start.size(), network->parameters());
+  EXPECT_EQ(start, network->start(second));
+  EXPECT_NE(start, network->start(other));
+  EXPECT_TRUE(is_finite(start));
+}
+
+TEST_P(EveryNetwork, SaysWhatItIs) {
+  const NetworkEntry& entry = network_registry().at(parse_spec(GetParam()).name);
+  EXPECT_FALSE(entry.title.empty());
+  EXPECT_FALSE(entry.source.empty());
+  for (const OptionField& option : entry.options) EXPECT_FALSE(option.doc.empty()) << option.name;
+}
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  std::ranges::replace_if(
+      name, [](char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryNetwork, ::testing::ValuesIn(specs()), test_name);
+
+}  // namespace
+}  // namespace isoline

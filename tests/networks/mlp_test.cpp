@@ -1,0 +1,135 @@
+// The multilayer perceptron: what its name promises, and its Jacobian against the one by pullbacks.
+#include <gtest/gtest.h>
+
+#include "networks/network.h"
+
+namespace isoline {
+namespace {
+
+std::unique_ptr<Network> make(const std::string& options, Index inputs, Index outputs) {
+  return make_network("mlp[" + options + "]", {.inputs = inputs, .outputs = outputs});
+}
+
+// Published counts: Holl, Koltun, Thuerey (2022), exponential and sine problems; Schnell, Holl,
+// Thuerey (2022), toy example, oscillators and linear chain.
+TEST(Perceptron, HasThePublishedNumbersOfParameters) {
+  EXPECT_EQ(make("layers=16-64-16,activation=sigmoid", 1, 1)->parameters(), 2177);
+  EXPECT_EQ(make("layers=32-64-32", 2, 2)->parameters(), 4354);
+  EXPECT_EQ(make("layers=7,activation=tanh", 1, 2)->parameters(), 30);
+  EXPECT_EQ(make("layers=20-20-20", 4, 96)->parameters(), 2956);
+  EXPECT_EQ(make("layers=20-20-20,activation=tanh", 4, 24)->parameters(), 1444);
+}
+
+TEST(Perceptron, BadLayersAreAUsageError) {
+  for (const char* layers : {"", "-", "32-", "-32", "32--64", "0", "3.5", "32x64", "32 64", "1e3",
+                             "-7", "99999999999999999999"})
+    EXPECT_THROW(make(std::string("layers=") + layers, 1, 1), UsageError) << layers;
+}
+
+// x = W₂ s(W₁ in + b₁) + b₂ written out, with θ in the declared order.
+TEST(Perceptron, IsItsFormula) {
+  const Vector theta{{0.5, -1.0, 2.0, 0.25, -0.75, 0.1, -0.2, 1.5, -0.5, 0.3}};
+  const Matrix W1 = theta.head(4).reshaped(2, 2), W2 = theta.segment(6, 2).reshaped(1, 2);
+  const Vector in{{0.7, -0.4}}, z = W1 * in + theta.segment(4, 2);
+  const auto expected = [&](Real (*s)(Real)) { return (W2 * z.unaryExpr(s))[0] + theta[8]; };
+  const auto actual = [&](const std::string& activation) {
+    Workspace w;
+    Matrix x(1, 1);
+    make("layers=2,precision=double,activation=" + activation, 2, 1)
+        ->forward(theta.head(9), in, x, w);
+    return x(0, 0);
+  };
+  EXPECT_NEAR(actual("relu"), expected([](Real t) { return std::max(t, 0.0); }), 1e-15);
+  EXPECT_NEAR(actual("tanh"), expected([](Real t) { return std::tanh(t); }), 1e-15);
+  EXPECT_NEAR(actual("sigmoid"), expected([](Real t) { return 1 / (1 + std::exp(-t)); }), 1e-15);
+  EXPECT_NEAR(actual("gelu"), expected([](Real t) { return t * std::erfc(-t / std::sqrt(2)) / 2; }),
+              1e-15);
+}
+
+// What a network gives in both precisions at one θ.
+struct Twice {
+  explicit Twice(const std::string& activation) {
+    for (const char* precision : {"float", "double"}) {
+      const auto network = make("activation=" + activation + ",precision=" + precision, 2, 2);
+      RandomStream stream(1, "mlp", "test");
+      const Vector theta = network->start(stream);
+      const Matrix in = 3 * stream.normal_vector(200).reshaped(2, 100),
+                   u = stream.normal_vector(200).reshaped(2, 100);
+      Workspace w;
+      x.emplace_back(2, 100);
+      g.emplace_back(theta.size());
+      network->forward(theta, in, x.back(), w);
+      network->pullback(u, g.back(), w);
+    }
+  }
+  std::vector<Matrix> x;
+  std::vector<Vector> g;
+};
+
+TEST(Perceptron, FloatAgreesWithDoubleToItsPrecision) {
+  for (const char* activation : {"relu", "tanh", "sigmoid", "gelu"}) {
+    const Twice twice(activation);
+    EXPECT_LE((twice.x[0] - twice.x[1]).norm(), 1e-6 * twice.x[1].norm()) << activation;
+    EXPECT_LE((twice.g[0] - twice.g[1]).norm(), 1e-5 * twice.g[1].norm()) << activation;
+    EXPECT_NE(twice.x[0], twice.x[1]) << activation << ": both are of one precision";
+  }
+}
+
+TEST(Perceptron, JacobianIsTheOneByPullbacks) {
+  for (const char* options : {"precision=double", "precision=double,activation=gelu,layers=7-3"}) {
+    constexpr Index kRows = 3, kSamples = 11;
+    const auto network = make(options, 4, 2);
+    RandomStream stream(1, "mlp", "test");
+    const Vector theta = network->start(stream);
+    const Matrix in = stream.normal_vector(4 * kSamples).reshaped(4, kSamples);
+    const Matrix dy_dx = stream.normal_vector(6 * kSamples).reshaped(kRows, 2 * kSamples);
+    Matrix x(2, kSamples), fast(kRows * kSamples, theta.size()), slow = fast;
+    Workspace w;
+    network->forward(theta, in, x, w);
+    network->jacobian(dy_dx, fast, w);
+    network->Network::jacobian(dy_dx, slow, w);
+    EXPECT_LE((fast - slow).norm(), 1e-14 * slow.norm());  // rounding in double
+  }
+}
+
+// A sample's bits may not depend on its place: neither on the batch before it nor on where vector
+// registers end.
+TEST(Perceptron, EqualSamplesGetEqualBits) {
+  for (const char* activation : {"relu", "tanh", "sigmoid", "gelu"}) {
+    const auto network = make(std::string("layers=7-5,activation=") + activation, 3, 2);
+    RandomStream stream(1, "mlp", "test");
+    const Vector theta = network->start(stream), sample = stream.normal_vector(3);
+    for (const Index samples : {1, 2, 15, 16, 37}) {
+      Matrix x(2, samples);
+      Workspace w;
+      network->forward(theta, sample.replicate(1, samples), x, w);
+      for (Index b = 1; b < samples; ++b) EXPECT_EQ(x.col(b), x.col(0)) << activation << b;
+    }
+  }
+}
+
+TEST(Perceptron, DoesNotHideWhatIsNotFinite) {
+  for (const char* activation : {"relu", "tanh", "sigmoid", "gelu"}) {
+    const auto network = make(std::string("activation=") + activation, 1, 1);
+    Workspace w;
+    Matrix x(1, 1);
+    const Matrix in = Matrix::Constant(1, 1, std::nan(""));
+    network->forward(Vector::Ones(network->parameters()), in, x, w);
+    EXPECT_FALSE(is_finite(x)) << activation;
+  }
+}
+
+// Bounds of the two initial distributions, and biases of zero where they are asked for.
+TEST(Perceptron, StartsAsPyTorchOrKerasDo) {
+  RandomStream stream(1, "mlp", "test");
+  const Vector torch = make("layers=400", 100, 1)->start(stream);
+  EXPECT_NEAR(torch.head(400 * 101).cwiseAbs().maxCoeff(), 1 / std::sqrt(100.0), 1e-4);
+  EXPECT_NEAR(torch.tail(401).cwiseAbs().maxCoeff(), 1 / std::sqrt(400.0), 1e-3);
+  const Vector glorot = make("layers=400,init=glorot", 100, 1)->start(stream);
+  EXPECT_NEAR(glorot.head(40'000).cwiseAbs().maxCoeff(), std::sqrt(6.0 / 500), 1e-4);
+  EXPECT_EQ(glorot.segment(40'000, 400).norm(), 0);
+  EXPECT_EQ(glorot[glorot.size() - 1], 0);
+}
+
+}  // namespace
+}  // namespace isoline
