@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/decompose.h"
+#include "core/product.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline {
@@ -20,7 +21,7 @@ struct HalfInverse {
   struct State {
     Linearization at;
     Svd svd;
-    Matrix gram;  // (r, r), r = min(m·B, n); its lower half
+    Matrix gram;  // (r, r), r = min(m·B, n)
     SymmetricEigen eigen;
     Matrix g;                     // (m, B)
     Vector right, along, result;  // (r), in the singular basis, and back
@@ -41,11 +42,8 @@ struct HalfInverse {
   bool step_by_gram(const Matrix& J, Vector& theta, State& s) const {
     const bool is_wide = J.rows() < J.cols();
     const Index r = is_wide ? J.rows() : J.cols();
-    s.gram.setZero(r, r);
-    if (is_wide)
-      s.gram.selfadjointView<Eigen::Lower>().rankUpdate(J);
-    else
-      s.gram.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
+    s.gram.resize(r, r);
+    product(is_wide ? Form::A_BH : Form::AH_B, J, J, s.gram);
     if (!symmetric_eigen(s.gram, s.eigen)) return false;
     const auto g = s.g.reshaped();
     if (is_wide)

@@ -4,7 +4,7 @@
 
 #include <lapacke.h>
 
-#include <map>
+#include <memory>
 
 namespace isoline::micro {
 namespace {
@@ -152,18 +152,24 @@ struct LocalInverse {
   }
 };
 
+// A std::function must be copied, which what a step has evaluated is not.
+template <class Step>
+BareStep shared(Step step) {
+  return [own = std::make_shared<Step>(std::move(step))](Vector& theta) { (*own)(theta); };
+}
+
 }  // namespace
 
 BareStep bare_step(const std::string& method, const Problem& problem) {
   const bool has_inverse = problem.inverse_kind() != Inverse::none;
-  if (method == "newton") return Newton{{problem}};
-  if (method == "saddle-free-newton") return SaddleFreeNewton{{problem}};
-  if (method == "gauss-newton") return LeastSquares{{problem}};
-  if (method == "levenberg-marquardt") return LeastSquares{{problem}, true};
-  if (method == "hig") return HalfInverse{{problem}};
-  if (method == "inverse-gradient") return InverseGradient{{problem}};
-  if (method == "sip" && has_inverse) return LocalInverse{{problem}};
-  return Descent{{problem}};
+  if (method == "newton") return shared(Newton{{problem}});
+  if (method == "saddle-free-newton") return shared(SaddleFreeNewton{{problem}});
+  if (method == "gauss-newton") return shared(LeastSquares{{problem}});
+  if (method == "levenberg-marquardt") return shared(LeastSquares{{problem}, true});
+  if (method == "hig") return shared(HalfInverse{{problem}});
+  if (method == "inverse-gradient") return shared(InverseGradient{{problem}});
+  if (method == "sip" && has_inverse) return shared(LocalInverse{{problem}});
+  return shared(Descent{{problem}});
 }
 
 }  // namespace isoline::micro

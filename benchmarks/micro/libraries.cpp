@@ -120,7 +120,10 @@ const Library kLibraries[] = {
     {"nlopt-lbfgs", 20, 10, 101, plain_nlopt_lbfgs, true},
 };
 
-void solve(Trial& trial) { drive(*trial.method, trial.meter, trial.problem.start()); }
+void solve(Trial& trial) {
+  Checkpoint nothing;
+  drive(*trial.method, trial.meter, trial.problem.start(), nothing);
+}
 
 // The mean time of solves that starts afresh, by the record's clock or by ours.
 Cost solves_of_ours(const Problem& problem, const Library& library, bool is_recorded) {

@@ -69,6 +69,12 @@ TEST(Persistence, OfEveryMethodOnFiniteData) {
   expect_same_for_every_method(learned_affine(2, 2));  // fewer residuals than parameters
 }
 
+TEST(Persistence, OfEveryMethodOnAMultilayerPerceptron) {
+  const std::string tiny = "sine[mode=learn,xi=3,network=mlp[layers=5-4],batch=6";
+  expect_same_for_every_method(published(tiny + "]"));
+  expect_same_for_every_method(published(tiny + ",data=6]"));
+}
+
 TEST(Persistence, OfEveryMethodOnADirectProblem) {
   expect_same_for_every_method(published("broyden-tridiagonal"));
 }
