@@ -31,19 +31,18 @@ class ByProblem final : public Inversion {
   Matrix wanted_;  // (m, B)
 };
 
-// H = V diag(S) Vᵀ of symmetric H, for the sizes that a Jacobi rotation makes diagonal at once:
-// with ρ = (H₁₁ − H₀₀)/2H₀₁ its tangent is t = 1/(ρ ± √(1 + ρ²)); Golub, Van Loan (2013), symmetric
-// Schur.
+// H = V diag(S) Vᵀ of symmetric H, for the sizes that a Jacobi rotation makes diagonal at once: its
+// tangent is t = 2H₀₁/(d ± √(d² + 4H₀₁²)), d = H₁₁ − H₀₀; Golub, Van Loan (2013), symmetric Schur.
 struct Pair {
   Eigen::Matrix2d V;
   Eigen::Vector2d S;
 
   bool decompose(const Eigen::Matrix2d& H) {
-    const Real across = H(0, 1), rho = (H(1, 1) - H(0, 0)) / (2 * across);
-    const Real t =
-        across == 0 ? 0 : std::copysign(1, rho) / (std::abs(rho) + std::sqrt(1 + rho * rho));
+    const Real twice = 2 * H(0, 1), d = H(1, 1) - H(0, 0);
+    const Real root = std::sqrt(d * d + twice * twice);
+    const Real t = twice == 0 ? 0 : twice / (d < 0 ? d - root : d + root);
     const Real cosine = 1 / std::sqrt(1 + t * t), sine = t * cosine;
-    S << H(0, 0) - t * across, H(1, 1) + t * across;
+    S << H(0, 0) - t * H(0, 1), H(1, 1) + t * H(0, 1);
     V << cosine, sine, -sine, cosine;
     return true;
   }
@@ -82,13 +81,18 @@ class ByNewton final : public Inversion {
   void step_all(const Matrix& dy_dx, Matrix& found) const {
     const Index k = found.rows();
     Eigen::Matrix<Real, K, K> H(k, k);
-    Eigen::Matrix<Real, K, 1> along(k);
+    Eigen::Matrix<Real, K, 1> row(k), slope(k), along(k);
     Eigenbasis basis;
     for (Index b = 0; b < found.cols(); ++b) {
-      const auto J = dy_dx.middleCols<K>(b * k, k);  // (m, k)
-      H = bend_.middleCols<K>(b * k, k) + J.transpose().lazyProduct(J);
+      H = bend_.middleCols<K>(b * k, k);
+      slope.setZero();
+      for (Index i = 0; i < misfit_.rows(); ++i) {
+        row = dy_dx.block<1, K>(i, b * k, 1, k).transpose();
+        H.noalias() += row.lazyProduct(row.transpose());
+        slope += misfit_(i, b) * row;
+      }
       if (!basis.decompose(H)) continue;
-      along = basis.V.transpose() * J.transpose().lazyProduct(misfit_.col(b));
+      along.noalias() = basis.V.transpose() * slope;
       const Real mean = geometric_mean(basis.S);
       for (Index i = 0; i < k; ++i)
         along[i] = saddle_free_length(along[i], basis.S[i], mean, max_loss_change_);

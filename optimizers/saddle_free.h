@@ -23,9 +23,9 @@ Real geometric_mean(const Curvatures& S) {
 // The way against the gradient is this, with the sign of the slope g̃ᵢ; no curvature, no step.
 inline Real saddle_free_length(Real slope, Real curvature, Real mean, Real max_loss_change) {
   if (slope == 0 || curvature == 0) return 0;
-  const Real newton = std::abs(slope / curvature);
-  const Real limit = max_loss_change / std::abs(slope);
-  return std::copysign(curvature > mean ? newton : std::min(newton, limit), slope);
+  const Real size = std::abs(curvature);
+  const bool is_within = slope * slope <= max_loss_change * size;  // |g̃/S| ≤ Δ/|g̃|
+  return curvature > mean || is_within ? slope / size : max_loss_change / slope;
 }
 
 }  // namespace isoline

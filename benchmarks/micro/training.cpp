@@ -10,7 +10,8 @@
 namespace isoline::micro {
 namespace {
 
-constexpr int kSteps = 20, kPairs = 201;
+// A few steps at a time, or the scheduler of a busy machine would interrupt each reading.
+constexpr int kSteps = 4, kPairs = 601;
 
 // A method that has taken its first steps, which size its state.
 struct Underway {
