@@ -36,7 +36,10 @@ Component complete_problem(const Catalog& catalog, const std::string& name, cons
 }
 
 Component complete_optimizer(const Catalog& catalog, const std::string& name, const Json& options) {
-  return complete(catalog.optimizers.at(name), options);
+  const OptimizerEntry& entry = catalog.optimizers.at(name);
+  Component optimizer = complete(entry, options);
+  entry.make(optimizer.options, catalog.optimizers);  // refuses a bad optimizer inside another
+  return optimizer;
 }
 
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed) {

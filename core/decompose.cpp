@@ -47,6 +47,12 @@ bool symmetric_eigen(const Matrix& A, SymmetricEigen& out) {
                         as_int(A.rows()), out.lambda.data()) == 0;
 }
 
+bool solve_positive_definite(Matrix& A, Matrix& B) {
+  if (!is_finite(A) || !is_finite(B)) return false;
+  return LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', as_int(A.rows()), as_int(B.cols()), A.data(),
+                       as_int(A.rows()), B.data(), as_int(B.rows())) == 0;
+}
+
 bool solve_square(const Matrix& A, const Vector& b, Vector& x) {
   if (!is_finite(A) || !is_finite(b)) return false;
   Matrix lu = A;

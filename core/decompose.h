@@ -23,6 +23,10 @@ struct SymmetricEigen {
 bool symmetric_eigen(const Matrix& A,
                      SymmetricEigen& out);  // A = V diag(λ) Vᵀ; false: no convergence
 
+// B ← A⁻¹ B by Cholesky, A (n, n) symmetric and overwritten, its lower half alone read, B (n, r);
+// false where A is not positive definite.
+bool solve_positive_definite(Matrix& A, Matrix& B);
+
 // x = A⁻¹ b by LU with partial pivoting, A (n, n); false when A is exactly singular.
 bool solve_square(const Matrix& A, const Vector& b, Vector& x);
 

@@ -3,6 +3,7 @@
 
 #include <Random123/philox.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -53,6 +54,15 @@ Vector RandomStream::uniform_vector(Index n, Real low, Real high) {
   Vector drawn(n);
   for (Real& value : drawn) value = uniform(low, high);
   return drawn;
+}
+
+void RandomStream::signs(VectorOut out) {
+  constexpr Index kBits = 64;
+  for (Index first = 0; first < out.size(); first += kBits) {
+    std::uint64_t bits = next();
+    for (Index i = first; i < std::min(first + kBits, out.size()); ++i, bits >>= 1)
+      out[i] = 2 * static_cast<Real>(bits & 1U) - 1;
+  }
 }
 
 }  // namespace isoline

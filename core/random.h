@@ -24,6 +24,7 @@ class RandomStream {
   Real normal();                      // N(0, 1), by Box and Muller
   Vector normal_vector(Index n);      // (n) independent N(0, 1)
   Vector uniform_vector(Index n, Real low, Real high);
+  void signs(VectorOut out);  // each −1 or 1 with equal chance
 
  private:
   std::uint64_t next();

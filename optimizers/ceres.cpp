@@ -1,7 +1,6 @@
 // The door to Ceres (Agarwal, Mierle et al., ceres-solver.org): its trust-region methods on r = (y
-// − y*)/√B, with dense QR, and its line searches on L. Ceres keeps its own loop; each of its
-// iterations, rejected ones too, is reported to the meter. All its tolerances are zero, so that of
-// its own it stops only where a step changes nothing in floating point.
+// − y*)/√B, with dense QR, and its line searches on L. Each iteration of its own loop, rejected or
+// not, is reported to the meter. Its tolerances are zero: it stops where a step changes nothing.
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
@@ -192,6 +191,7 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .note = m.note,
           .needs = {Oracle::forward, Oracle::jacobian},
           .is_input_scale_invariant = m.is_input_scale_invariant,
+          .needs_same_samples = true,
           .most_unknowns = 4096,
           .most_rank = 2048,  // dense QR
           .make = [m](const Json&, const OptimizerRegistry&) {
@@ -231,6 +231,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
           .formula = method.formula,
           .source = method.source,
           .needs = {Oracle::forward, Oracle::pullback},
+          .needs_same_samples = true,
           .most_unknowns = method.most_unknowns,
           .make = [direction = method.direction](const Json&, const OptimizerRegistry&) {
             ceres::GradientProblemSolver::Options options;

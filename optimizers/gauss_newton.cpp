@@ -13,7 +13,7 @@ namespace {
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 
 struct GaussNewton {
-  Real rate = 1;
+  Real rate = 1, cutoff = 0;
 
   struct State {
     Linearization at;
@@ -26,7 +26,7 @@ struct GaussNewton {
     s.residual = (s.at.y() - f.target()).reshaped();
     const Matrix& J = s.at.jacobian();
     const Real rounding = kEpsilon * static_cast<Real>(std::max(J.rows(), J.cols()));
-    if (!least_squares(J, s.residual, rounding, s.step)) {
+    if (!least_squares(J, s.residual, std::max(cutoff, rounding), s.step)) {
       f.claim("the Jacobian or the residual is not finite");
       return Status::stalled;
     }
@@ -35,7 +35,11 @@ struct GaussNewton {
   }
 };
 
-void fields(GaussNewton& o, auto& field) { field("rate", o.rate, above(0), "step length η"); }
+void fields(GaussNewton& o, auto& field) {
+  field("rate", o.rate, above(0), "step length η");
+  field("cutoff", o.cutoff, between(0, 1),
+        "pivots up to this share of the first count as zero; at least those within rounding do");
+}
 
 }  // namespace
 
@@ -46,7 +50,9 @@ void register_gauss_newton(OptimizerRegistry& registry) {
        .family = Family::curvature,
        .formula = "θ ← θ − η J⁺ (y − y*)",
        .source = "Gauss (1809); Nocedal, Wright (2006), eq. 10.23",
-       .note = "Without safeguards. Acts on the residual y − y*, whatever the loss.",
+       .note =
+           "Without safeguards. Acts on the residual y − y*, whatever the loss. The Jacobian of a "
+           "network in single precision is noise below some 1e-6 of its largest: see cutoff.",
        .needs = {Oracle::forward, Oracle::jacobian},
        .is_input_scale_invariant = true,
        .most_rank = 2048}));

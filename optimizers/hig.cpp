@@ -1,13 +1,19 @@
 // Half-inverse gradients, Schnell, Holl, Thuerey (2022): Δθ = −η V Λ^(−κ) Uᵀ g over the
 // stacked Jacobian J = U Λ Vᵀ and g = ∂L/∂y. κ = 1 is Gauss-Newton, ½ the published method, −1
 // gradient descent. Singular values not above the cut-off, relative to the largest, are discarded.
+// Where the cut-off is far above rounding, by the smaller Gram matrix, whose eigenvalues are σ²:
+// Δθ = −η V Λ^(−κ−1) Vᵀ Jᵀ g from JᵀJ, or −η Jᵀ U Λ^(−κ−1) Uᵀ g from JJᵀ; else by the SVD of J.
 #include <cmath>
 
 #include "core/decompose.h"
+#include "core/product.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline {
 namespace {
+
+// Squared, σ is known to about 1e-8 of the largest.
+constexpr Real kLeastCutoffOfGram = 1e-7;
 
 struct HalfInverse {
   Real rate = 1, kappa = 0.5, cutoff = 1e-6;
@@ -15,26 +21,58 @@ struct HalfInverse {
   struct State {
     Linearization at;
     Svd svd;
-    Matrix g;      // (m, B)
-    Vector along;  // (r), in the singular basis
+    Matrix gram;  // (r, r), r = min(m·B, n)
+    SymmetricEigen eigen;
+    Matrix g;                     // (m, B)
+    Vector right, along, result;  // (r), in the singular basis, and back
   };
   static void persist(State&, Archive&) {}  // all of it is scratch
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
     s.at.cotangent(s.g);
-    if (!thin_svd(s.at.jacobian(), s.svd)) {
-      f.claim("the Jacobian has no singular values in finite numbers");
-      return Status::stalled;
-    }
-    s.along.noalias() = s.svd.U.transpose() * s.g.reshaped();
-    for (Index i = 0; i < s.along.size(); ++i) s.along[i] *= filter(s.svd.sigma[i], s.svd.sigma[0]);
-    theta.noalias() -= rate * s.svd.Vt.transpose() * s.along;
-    return Status::running;
+    const Matrix& J = s.at.jacobian();
+    const bool is_known =
+        cutoff >= kLeastCutoffOfGram ? step_by_gram(J, theta, s) : step_by_svd(J, theta, s);
+    if (is_known) return Status::running;
+    f.claim("the Jacobian has no singular values in finite numbers");
+    return Status::stalled;
   }
 
-  Real filter(Real sigma, Real largest) const {
-    return sigma > cutoff * largest ? std::pow(sigma, -kappa) : 0;
+  bool step_by_gram(const Matrix& J, Vector& theta, State& s) const {
+    const bool is_wide = J.rows() < J.cols();
+    const Index r = is_wide ? J.rows() : J.cols();
+    s.gram.resize(r, r);
+    product(is_wide ? Form::A_BH : Form::AH_B, J, J, s.gram);
+    if (!symmetric_eigen(s.gram, s.eigen)) return false;
+    const auto g = s.g.reshaped();
+    if (is_wide)
+      s.right = g;
+    else
+      s.right.noalias() = J.transpose() * g;
+    s.along.noalias() = s.eigen.V.transpose() * s.right;
+    const Real largest = std::sqrt(std::max(s.eigen.lambda[r - 1], Real(0)));
+    for (Index i = 0; i < r; ++i)
+      s.along[i] *= filter(std::sqrt(std::max(s.eigen.lambda[i], Real(0))), largest, kappa + 1);
+    s.result.noalias() = s.eigen.V * s.along;
+    if (is_wide)
+      theta.noalias() -= rate * (J.transpose() * s.result);
+    else
+      theta -= rate * s.result;
+    return true;
+  }
+
+  bool step_by_svd(const Matrix& J, Vector& theta, State& s) const {
+    if (!thin_svd(J, s.svd)) return false;
+    s.along.noalias() = s.svd.U.transpose() * s.g.reshaped();
+    for (Index i = 0; i < s.along.size(); ++i)
+      s.along[i] *= filter(s.svd.sigma[i], s.svd.sigma[0], kappa);
+    theta.noalias() -= rate * s.svd.Vt.transpose() * s.along;
+    return true;
+  }
+
+  Real filter(Real sigma, Real largest, Real exponent) const {
+    return sigma > cutoff * largest ? std::pow(sigma, -exponent) : 0;
   }
 };
 
@@ -55,9 +93,11 @@ void register_hig(OptimizerRegistry& registry) {
        .formula = "θ ← θ − η V Λ^(−κ) Uᵀ g,  J = U Λ Vᵀ,  g = ∂L/∂y",
        .source = "Schnell, Holl, Thuerey (2022)",
        .note =
-           "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2).",
+           "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2). "
+           "By the smaller Gram matrix for cut-offs of 1e-7 and more, else by the SVD of J.",
        .needs = {Oracle::forward, Oracle::jacobian},
-       .most_rank = 2048}));
+       .most_rank = 2048,
+       .revision = 2}));
 }
 
 }  // namespace isoline

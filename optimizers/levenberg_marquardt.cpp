@@ -1,7 +1,9 @@
 // Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978) and the gain-ratio
 // rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
 // column of J has had. By QR of the augmented matrix (J; √μ D), which the normal equations' squared
-// condition number would spoil. Steps that do not lower ‖r‖ are rejected and the damping is raised.
+// condition number would spoil; where J is wide, as the shortest (z, w) with JD⁻¹ z + √μ w = −r,
+// d = D⁻¹ z, which is the same d. Steps that do not lower ‖r‖ are rejected and the damping is
+// raised. On fresh samples at every step J and r are those of the step's own.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,32 +20,39 @@ struct LevenbergMarquardt {
   Real initial_damping = 1e-4;
 
   struct State {
-    Linearization at, trial;
-    Vector step, candidate, scale;  // (n), D
-    Vector Jd;                      // (m·B)
-    Matrix augmented;               // (m·B + n, n)
-    Vector right;                   // (m·B + n)
-    Real damping = 0, growth = 2;   // μ, and its factor at the next rejection
+    Matrix augmented;  // (m·B + n, n) with J on top, or (m·B, n + m·B) with JD⁻¹ left
+    Vector right;      // −r, with n zeros below where J is not wide
+    Vector scale;      // (n) D
+    Real damping = 0, growth = 2;  // μ, and its factor at the next rejection
     bool has_point = false;
+    Linearization at, trial;
+    Vector solved, step, candidate;  // (z, w) or d, (n)
+    Vector Jd;                       // (m·B)
   };
+  static void persist(State& s, Archive& archive) {
+    archive(s.augmented, s.right, s.scale, s.damping, s.growth, s.has_point);
+  }
 
   State init(Meter& f, const Vector& theta) const {
+    const Index rows = f.residuals(), n = theta.size();
     State s;
-    s.scale = Vector::Zero(theta.size());
-    s.augmented.setZero(f.residuals() + theta.size(), theta.size());
-    s.right.setZero(f.residuals() + theta.size());
+    s.scale = Vector::Zero(n);
+    if (rows < n)
+      s.augmented.setZero(rows, n + rows), s.right.setZero(rows);
+    else
+      s.augmented.setZero(rows + n, n), s.right.setZero(rows + n);
     s.damping = initial_damping;
     return s;
   }
 
   Status step(Meter& f, Vector& theta, State& s) const {
-    if (!s.has_point) {
+    if (!s.has_point || f.has_fresh_batches()) {
       f.linearize(theta, s.at);
       accept(f, s);
     }
-    if (!solve(s)) return Status::stalled;
+    if (!solve(f, s)) return Status::stalled;
     s.candidate = theta + s.step;
-    if (s.candidate == theta) return Status::converged;
+    if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
     const Real gain = gain_ratio(f, s);
     if (!(gain > 0)) {
@@ -54,7 +63,7 @@ struct LevenbergMarquardt {
     }
     theta = s.candidate;
     std::swap(s.at, s.trial);
-    accept(f, s);
+    if (!f.has_fresh_batches()) accept(f, s);
     s.damping *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
     s.growth = 2;
     return Status::running;
@@ -64,22 +73,37 @@ struct LevenbergMarquardt {
   void accept(Meter& f, State& s) const {
     const Matrix& J = s.at.jacobian();
     s.right.head(J.rows()) = (f.target() - s.at.y()).reshaped();
-    s.augmented.topRows(J.rows()) = J;
     s.scale = s.scale.cwiseMax(J.colwise().norm().transpose());
+    if (J.rows() < J.cols()) {  // a parameter that has done nothing yet has no scale, and no step
+      for (Index j = 0; j < J.cols(); ++j)
+        s.augmented.col(j) = J.col(j) / (s.scale[j] > 0 ? s.scale[j] : 1);
+    } else {
+      s.augmented.topRows(J.rows()) = J;
+    }
     s.has_point = true;
   }
 
-  bool solve(State& s) const {
-    const Index n = s.scale.size();
-    s.augmented.bottomRows(n).diagonal() = std::sqrt(s.damping) * s.scale;
-    return least_squares(s.augmented, s.right, kEpsilon, s.step);
+  // d, and J d
+  bool solve(Meter& f, State& s) const {
+    const Index rows = f.residuals(), n = s.scale.size();
+    const Real root = std::sqrt(s.damping);
+    if (rows < n) {
+      s.augmented.rightCols(rows).diagonal().setConstant(root);
+      if (!least_squares(s.augmented, s.right, kEpsilon, s.solved)) return false;
+      s.step = (s.scale.array() > 0).select(s.solved.head(n).cwiseQuotient(s.scale), 0);
+      s.Jd.noalias() = s.augmented.leftCols(n) * s.solved.head(n);
+    } else {
+      s.augmented.bottomRows(n).diagonal() = root * s.scale;
+      if (!least_squares(s.augmented, s.right, kEpsilon, s.step)) return false;
+      s.Jd.noalias() = s.augmented.topRows(rows) * s.step;
+    }
+    return true;
   }
 
   // Actual over predicted decrease of ½‖r‖², the latter ½‖J d‖² + μ‖D d‖² without cancellation.
-  Real gain_ratio(Meter& f, State& s) const {
+  Real gain_ratio(Meter& f, const State& s) const {
     const Real before = 0.5 * s.right.squaredNorm();
     const Real after = 0.5 * (s.trial.y() - f.target()).squaredNorm();
-    s.Jd.noalias() = s.at.jacobian() * s.step;
     const Real predicted =
         0.5 * s.Jd.squaredNorm() + s.damping * s.scale.cwiseProduct(s.step).squaredNorm();
     return (before - after) / predicted;
@@ -102,8 +126,8 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
                                          .note = "A rejected candidate is an iteration too.",
                                          .needs = {Oracle::forward, Oracle::jacobian},
                                          .is_input_scale_invariant = true,
-                                         .most_unknowns = 4096,
-                                         .most_rank = 2048}));
+                                         .most_rank = 2048,
+                                         .revision = 2}));
 }
 
 }  // namespace isoline

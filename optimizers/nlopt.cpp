@@ -1,7 +1,6 @@
 // The door to NLopt (Johnson, github.com/stevengj/nlopt), on L. NLopt keeps its own loop; each new
-// best evaluation is an iteration, the best point the result. Its tolerances are off but for steps
-// below the rounding of θ; a search long without a new best is stopped: some would shrink a simplex
-// for ever. Its word on its success is recorded, not believed: it reports success on plateaus.
+// best evaluation is an iteration. Its tolerances are off but for steps below the rounding of θ; a
+// search long without a new best is stopped. It reports success on plateaus: its word is recorded.
 #include <nlopt.h>
 
 #include <algorithm>
@@ -176,6 +175,7 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .note = m.note,
           .needs = needs,
           .is_input_scale_invariant = m.is_input_scale_invariant,
+          .needs_same_samples = true,
           .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
           .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
           .revision = m.is_luksans() ? 2 : 1,
@@ -184,9 +184,9 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           }};
 }
 
-// What minimize_lbfgs hands through NLopt. Luksan's first trial step is the whole gradient, and his
-// test of convergence is ‖∇f‖ ≤ 1e-8: both make sense in units of the start, f₀ for the misfit and
-// Polyak's step f₀/‖∇f₀‖ for lengths, which also keeps the first step on the branch of the start.
+// What minimize_lbfgs hands through NLopt. Luksan's first trial step, the whole gradient, and his
+// test ‖∇f‖ ≤ 1e-8 make sense in units of the start: f₀, and Polyak's step f₀/‖∇f₀‖ for lengths,
+// which also keeps the first step on the branch of the start.
 struct Minimization {
   const ValueAndGradient& f;
   const LbfgsLimits& limits;

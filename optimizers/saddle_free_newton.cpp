@@ -1,13 +1,9 @@
 // Saddle-free Newton with a limit on the change of loss, Holl, Koltun, Thuerey (2022), sine
-// problem; |H|⁻¹ after Dauphin et al. (2014). With H = V diag(S) Vᵀ and g̃ = Vᵀ∇L, the step
-// along the i-th eigenvector is −η sign(g̃ᵢ) |g̃ᵢ/Sᵢ|, and where Sᵢ is not above S̄ at most Δ/|g̃ᵢ|. S̄,
-// the root of |S₁S₂| in the published script, is the geometric mean of |S| for any n; the script's
+// problem, as saddle_free.h has it: θ ← θ − η V d, H = V diag(S) Vᵀ. The published script's
 // transposed V is corrected.
-#include <algorithm>
-#include <cmath>
-
 #include "core/decompose.h"
 #include "optimizers/optimizer.h"
+#include "optimizers/saddle_free.h"
 
 namespace isoline {
 namespace {
@@ -30,18 +26,11 @@ struct SaddleFreeNewton {
       return Status::stalled;
     }
     s.along.noalias() = s.eigen.V.transpose() * s.gradient;
-    const Real mean = std::exp(s.eigen.lambda.array().abs().log().mean());  // S̄; 0 if any S is
+    const Real mean = geometric_mean(s.eigen.lambda);
     for (Index i = 0; i < s.along.size(); ++i)
-      s.along[i] = signed_length(s.along[i], s.eigen.lambda[i], mean);
+      s.along[i] = saddle_free_length(s.along[i], s.eigen.lambda[i], mean, max_loss_change);
     theta.noalias() -= rate * s.eigen.V * s.along;
     return Status::running;
-  }
-
-  Real signed_length(Real slope, Real curvature, Real mean) const {
-    if (slope == 0 || curvature == 0) return 0;
-    const Real newton = std::abs(slope / curvature);
-    const Real limit = max_loss_change / std::abs(slope);
-    return std::copysign(curvature > mean ? newton : std::min(newton, limit), slope);
   }
 };
 
@@ -63,7 +52,8 @@ void register_saddle_free_newton(OptimizerRegistry& registry) {
        .source = "Holl, Koltun, Thuerey (2022), published script; Dauphin et al. (2014)",
        .note = "S̄ is the geometric mean of |S|; directions without curvature stay.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
-       .most_unknowns = 2048}));
+       .most_unknowns = 2048,
+       .revision = 2}));
 }
 
 }  // namespace isoline

@@ -1,116 +1,111 @@
 // Scale-invariant physics training, Holl, Koltun, Thuerey (2022), algorithm 1: pull the target back
-// through the physics by its local inverse, x̃ = P⁻¹(y + Δy; x) with Δy = η (y* − y), then take one
+// through the physics by its local inverse, x̃ = P⁻¹(y + Δy; x) with Δy = η (y* − y), then take a
 // step of the network's optimizer on (1/B) Σ ½‖x − x̃‖², x̃ held. With the identity network and unit
-// rates it is x ← x̃, the inverse-simulator update. A damped or estimated inverse does not undo P,
-// so the step is taken in x: x̃ = x + η (P⁻¹(y*; x) − x). A sample whose inverse fails keeps its x,
-// and so teaches nothing in this step.
+// rates it is x ← x̃, the inverse-simulator update. Several steps of the inversion may be taken for
+// one of the network, each from the x̃ of the last, and several of the network for one x̃ (theorem
+// 3).
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
-#include "optimizers/lbfgs.h"
-#include "optimizers/optimizer.h"
+#include "optimizers/inversion.h"
+#include "optimizers/network_descent.h"
 
 namespace isoline {
 namespace {
 
 struct Options {
-  Real step = 1;
+  Real step = 1, max_loss_change = 0.2;
   std::string inverse = "auto", network_optimizer = "auto", proxy = "l2";
-  Index inverse_evaluations = 200;
+  Index inverse_evaluations = 200, inner_steps = 1, network_steps = 1;
 };
 
 void fields(Options& o, auto& field) {
   field("step", o.step, above(0), "step length η toward y*");
-  field("inverse", o.inverse, Choices{"auto", "analytic", "lbfgs"},
-        "local inverse: the problem's own, or numerical; auto: the former where there is one");
-  field("network-optimizer", o.network_optimizer, Choices{},
-        "gradient rule on the proxy loss; auto: gd[rate=1] for the identity network, else "
-        "adam[rate=1e-3]");
+  field("inverse", o.inverse, Choices{"auto", "analytic", "damped", "newton", "lbfgs"},
+        "local inverse: the problem's own, which damped asks to be a damped one; a saddle-free "
+        "Newton step; or L-BFGS; auto: the problem's own where there is one, else L-BFGS");
+  field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
   field("proxy", o.proxy, Choices{"l2", "l1"}, "proxy loss: ½‖x − x̃‖² or Σ|x − x̃|");
+  field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion an update");
+  field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
+  field("max-loss-change", o.max_loss_change, above(0),
+        "of inverse=newton: limit Δ on the linear change of a sample's loss along a direction of "
+        "low or negative curvature");
   field("inverse-evaluations", o.inverse_evaluations, between(1, 1e6),
-        "most evaluations of the numerical inversion in a step");
+        "of inverse=lbfgs: most evaluations in a step");
 }
 
-bool is_analytic(const Options& options, Inverse kind) {
-  return options.inverse == "analytic" || (options.inverse == "auto" && kind != Inverse::none);
+bool uses_own_inverse(const Options& o, Inverse kind) {
+  if (o.inverse == "auto") return kind != Inverse::none;
+  return o.inverse == "analytic" || o.inverse == "damped";
+}
+
+std::unique_ptr<Inversion> make_inversion(const Options& o, Inverse kind) {
+  if (uses_own_inverse(o, kind)) return inversion_by_problem(o.step);
+  if (o.inverse == "newton") return inversion_by_newton(o.step, o.max_loss_change);
+  return inversion_by_lbfgs(o.step, o.inverse_evaluations);
 }
 
 class Sip final : public Optimizer {
  public:
   Sip(const Options& options, const OptimizerRegistry& registry)
-      : options_(options), registry_(registry) {
-    if (options.network_optimizer != "auto")
-      descent_ = make_descent(registry, options.network_optimizer);
-  }
+      : options_(options), descent_(registry, options.network_optimizer) {}
 
-  void start(Meter& f, const Vector& theta) override {
-    if (options_.network_optimizer == "auto")
-      descent_ =
-          make_descent(registry_, f.has_identity_network() ? "gd[rate=1]" : "adam[rate=1e-3]");
-    descent_->start(theta.size());
-    gradient_.resize(theta.size());
+  void start(Meter& f, const Vector&) override {
+    inversion_ = make_inversion(options_, f.inverse_kind());
+    descent_.start(f);
   }
 
   Status step(Meter& f, Vector& theta) override {
     f.linearize(theta, at_);
-    found_ = at_.x();
-    if (is_analytic(options_, f.inverse_kind()))
-      invert_by_problem(f);
-    else
-      invert_by_descent(f);
-    pull_ = at_.x() - found_;
-    if (options_.proxy == "l1") pull_ = pull_.cwiseSign();
-    pull_ /= static_cast<Real>(f.samples());
-    at_.network_pullback(pull_, gradient_);
-    descent_->update(gradient_, theta);
+    inversion_->invert(f, at_, found_);
+    for (Index i = 1; i < options_.inner_steps && !f.is_spent(); ++i) {
+      f.linearize_physics(found_, inner_);
+      inversion_->invert(f, inner_, found_);
+    }
+    const Proxy proxy = options_.proxy == "l1" ? Proxy::l1 : Proxy::l2;
+    descent_.approach(found_, proxy, at_, theta);
+    for (Index i = 1; i < options_.network_steps && !f.is_spent(); ++i) {
+      f.linearize(theta, at_);
+      descent_.approach(found_, proxy, at_, theta);
+    }
     return Status::running;
   }
 
+  bool persist(Archive& archive) override { return descent_.persist(archive); }
+
  private:
-  void invert_by_problem(Meter& f) {
-    const bool undoes_physics = f.inverse_kind() == Inverse::exact;
-    wanted_ = f.target();
-    if (undoes_physics) wanted_ = at_.y() + options_.step * (f.target() - at_.y());
-    const Success success = at_.local_inverse(wanted_, found_);
-    if (!undoes_physics) found_ = at_.x() + options_.step * (found_ - at_.x());
-    for (Index b = 0; b < success.size(); ++b)
-      if (!success[b]) found_.col(b) = at_.x().col(b);
-  }
-
-  // min ½‖P(x) − ỹ‖² from the current x, all samples at once, to the rounding of ỹ.
-  void invert_by_descent(Meter& f) {
-    constexpr Real kRelativeMisfit = 1e-14;
-    wanted_ = at_.y() + options_.step * (f.target() - at_.y());
-    const Index k = found_.rows(), samples = found_.cols();
-    flat_ = found_.reshaped();
-    const auto misfit = [&](VectorRef x, VectorOut gradient) {
-      f.linearize_physics(Eigen::Map<const Matrix>(x.data(), k, samples), trial_);
-      misfit_ = trial_.y() - wanted_;
-      trial_.physics_pullback(misfit_, Eigen::Map<Matrix>(gradient.data(), k, samples));
-      return 0.5 * misfit_.squaredNorm();
-    };
-    minimize_lbfgs(misfit,
-                   {.evaluations = options_.inverse_evaluations,
-                    .enough = 0.5 * kRelativeMisfit * kRelativeMisfit * wanted_.squaredNorm(),
-                    .is_over = [&] { return f.is_spent(); }},
-                   flat_);
-    found_ = flat_.reshaped(k, samples);
-  }
-
   const Options options_;
-  const OptimizerRegistry& registry_;
-  std::unique_ptr<Descent> descent_;
-  Linearization at_, trial_;
-  Matrix wanted_, misfit_;  // (m, B) ỹ, and P(x) − ỹ during descent
-  Matrix found_, pull_;     // (k, B) x̃ and the proxy's gradient in x
-  Vector flat_;             // (k·B) x̃ during descent
-  Vector gradient_;         // (n)
+  std::unique_ptr<Inversion> inversion_;
+  NetworkDescent descent_;
+  Linearization at_, inner_;
+  Matrix found_;  // (k, B) x̃
 };
 
-OracleSet needs_for(const Json& options, const Problem& problem) {
+OracleSet needs_for(const Json& json, const Problem& problem) {
+  const auto options = read_options<Options>(json);
   OracleSet needs{Oracle::forward, Oracle::network};
-  needs.add(is_analytic(read_options<Options>(options), problem.inverse_kind()) ? Oracle::inverse
-                                                                                : Oracle::pullback);
+  if (uses_own_inverse(options, problem.inverse_kind())) {
+    needs.add(Oracle::inverse);
+  } else if (options.inverse == "newton") {
+    needs.add(Oracle::sensitivity);
+    needs.add(Oracle::curvature);
+  } else {
+    needs.add(Oracle::pullback);
+  }
   return needs;
+}
+
+std::string objection(const Json& json, const Problem& problem) {
+  constexpr Index kMostInputs = 8;
+  const std::string inverse = read_options<Options>(json).inverse;
+  if (inverse == "damped" && problem.inverse_kind() != Inverse::damped)
+    return "inverse=damped, and the physics has an inverse, but not a damped one";
+  if (inverse == "newton" && problem.inputs() > kMostInputs)
+    return fmt::format("inverse=newton is for up to {} inputs of the physics, which has {}",
+                       kMostInputs, problem.inputs());
+  return "";
 }
 
 }  // namespace
@@ -122,14 +117,16 @@ void register_sip(OptimizerRegistry& registry) {
                 .formula = "x̃ = P⁻¹(y + η (y* − y); x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
                 .source = "Holl, Koltun, Thuerey (2022), algorithm 1",
                 .note =
-                    "The inverse is the problem's own or found by L-BFGS; where it is damped or "
-                    "an estimate, x̃ = x + η (P⁻¹(y*; x) − x). The problem's own inverse is a "
-                    "privilege; the numerical one is not.",
+                    "The inverse is the problem's own, a saddle-free Newton step with exact second "
+                    "derivatives, or found by L-BFGS; where it is damped or an estimate, x̃ = x + "
+                    "η (P⁻¹(y*; x) − x), and for Newton x + η U. The problem's own inverse and its "
+                    "second derivatives are privileges; L-BFGS is not.",
                 .needs = {Oracle::forward, Oracle::network},
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
                 .revision = 2,
                 .needs_for = needs_for,
+                .objection = objection,
                 .make = [](const Json& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Sip>(read_options<Options>(options), known);

@@ -14,7 +14,7 @@ void DensePhysics::forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const {
 }
 
 const Matrix& DensePhysics::saved_jacobian(Workspace& w) const {
-  w.saved.resize(1);
+  w.saved.resize(2);
   Matrix& J = w.saved[0];
   if (w.saved_is_current) return J;
   J.setZero(outputs_, inputs_ * w.x.cols());
@@ -41,6 +41,16 @@ void DensePhysics::curvature(BatchRef u, BatchOut out, Workspace& w) const {
   out.setZero();
   for (Index b = 0; b < u.cols(); ++b)
     second(w.x.col(b), u.col(b), out.middleCols(b * inputs_, inputs_));
+}
+
+void DensePhysics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const {
+  w.saved.resize(2);
+  Matrix& H = w.saved[1];  // (k, k), of one sample
+  for (Index b = 0; b < u.cols(); ++b) {
+    H.setZero(inputs_, inputs_);
+    second(w.x.col(b), u.col(b), H);
+    out.col(b).noalias() = H * v.col(b);
+  }
 }
 
 Success DensePhysics::local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const {

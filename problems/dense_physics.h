@@ -22,6 +22,7 @@ class DensePhysics : public Physics {
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const final;
   void jacobian(BatchOut J, Workspace& w) const final;
   void curvature(BatchRef u, BatchOut out, Workspace& w) const final;
+  void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const final;
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const final;
 
  private:

@@ -42,6 +42,9 @@ class Exponential final : public Physics {
     for (Index b = 0; b < u.cols(); ++b)
       out.middleCols(b * n_, n_).diagonal() = w.saved[0].col(b).cwiseProduct(u.col(b));
   }
+  void curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const override {
+    out = w.saved[0].cwiseProduct(u).cwiseProduct(v);
+  }
 
   Inverse inverse_kind() const override { return Inverse::exact; }
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {

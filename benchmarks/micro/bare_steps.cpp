@@ -4,7 +4,7 @@
 
 #include <lapacke.h>
 
-#include <map>
+#include <memory>
 
 namespace isoline::micro {
 namespace {
@@ -152,10 +152,10 @@ struct LocalInverse {
   }
 };
 
-// A point, and so a step, can be moved but not copied, as std::function demands.
+// A std::function must be copied, which what a step has evaluated is not.
 template <class Step>
 BareStep shared(Step step) {
-  return [kept = std::make_shared<Step>(std::move(step))](Vector& theta) { (*kept)(theta); };
+  return [own = std::make_shared<Step>(std::move(step))](Vector& theta) { (*own)(theta); };
 }
 
 }  // namespace

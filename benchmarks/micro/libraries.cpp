@@ -120,7 +120,7 @@ const Library kLibraries[] = {
     {"nlopt-lbfgs", 20, 10, 101, plain_nlopt_lbfgs, true},
 };
 
-void solve(Trial& trial) { 
+void solve(Trial& trial) {
   Checkpoint nothing;
   drive(*trial.method, trial.meter, trial.problem.start(), nothing);
 }

@@ -9,6 +9,7 @@ int main(int count, char** arguments) {
   isoline::start_single_threaded(arguments);
   isoline::micro::register_metering();
   isoline::micro::register_steps();
+  isoline::micro::register_training();
   isoline::micro::register_libraries();
   isoline::micro::register_transforms();
   isoline::micro::register_networks();

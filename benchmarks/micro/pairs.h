@@ -45,6 +45,7 @@ void register_pair(const std::string& name, int pairs, const Goal& goal,
 // One call a file.
 void register_metering();
 void register_steps();
+void register_training();
 void register_libraries();
 void register_transforms();
 void register_networks();

@@ -26,20 +26,25 @@ inline Budget endless() {
   return {.iterations = std::numeric_limits<std::int64_t>::max(), .target = 0};
 }
 
-inline std::unique_ptr<Optimizer> make_method(const std::string& name) {
-  const Component method = complete_optimizer(catalog(), name, Json::object());
-  return catalog().optimizers.at(name).make(method.options, catalog().optimizers);
+inline Component complete_method(const std::string& text) {
+  const Spec spec = parse_spec(text);
+  return complete_optimizer(catalog(), spec.name, options_of(spec));
 }
 
-inline OracleSet needs(const std::string& name, const Problem& problem) {
-  const Component method = complete_optimizer(catalog(), name, Json::object());
-  return needs_of(catalog().optimizers.at(name), method.options, problem);
+inline std::unique_ptr<Optimizer> make_method(const std::string& text) {
+  const Component method = complete_method(text);
+  return catalog().optimizers.at(method.name).make(method.options, catalog().optimizers);
+}
+
+inline OracleSet needs(const std::string& text, const Problem& problem) {
+  const Component method = complete_method(text);
+  return needs_of(catalog().optimizers.at(method.name), method.options, problem);
 }
 
 // A method under way on a problem that outlives it.
 struct Trial {
-  Trial(const Problem& f, const std::string& name, const Budget& budget)
-      : problem(f), method(make_method(name)), meter(f, budget, needs(name, f), trace) {}
+  Trial(const Problem& f, const std::string& spec, const Budget& budget)
+      : problem(f), method(make_method(spec)), meter(f, budget, needs(spec, f), trace) {}
 
   const Problem& problem;
   Trace trace;

@@ -51,6 +51,16 @@ TEST(Decompose, SquareSystemsAreSolvedAndSingularOnesRefused) {
 }
 
 // Of all minimizers of ‖x1 + x2 − 2‖ the shortest is (1, 1).
+TEST(Decompose, PositiveDefiniteSystemsAreSolvedInPlaceAndOthersRefused) {
+  const Matrix root = random_matrix(4, 4), A = root * root.transpose() + Matrix::Identity(4, 4);
+  Matrix factored = A, B = random_matrix(4, 3);
+  const Matrix right = B;
+  ASSERT_TRUE(solve_positive_definite(factored, B));
+  EXPECT_LT((A * B - right).norm(), kRound);
+  factored = -A;
+  EXPECT_FALSE(solve_positive_definite(factored, B));
+}
+
 TEST(Decompose, LeastSquaresTakesTheShortestMinimizer) {
   Vector x;
   ASSERT_TRUE(least_squares(Matrix::Ones(3, 2), Vector::Constant(3, 2), 1e-12, x));

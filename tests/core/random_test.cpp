@@ -36,5 +36,14 @@ TEST(RandomStream, UniformAndNormalHaveTheirMoments) {
   EXPECT_NEAR(normal.squaredNorm() / kDraws, 1, 5 * std::sqrt(2.0) / root);
 }
 
+TEST(RandomStream, SignsAreFairAndOfBothKinds) {
+  constexpr Index kCount = 100001;  // no multiple of what one draw yields
+  Vector z(kCount);
+  RandomStream(1, "test", "signs").signs(z);
+  EXPECT_TRUE((z.cwiseAbs().array() == 1).all());
+  EXPECT_LT(std::abs(z.mean()), 4 / std::sqrt(kCount));  // four standard deviations
+  EXPECT_LT(std::abs(z.head(kCount - 1).dot(z.tail(kCount - 1)) / kCount), 4 / std::sqrt(kCount));
+}
+
 }  // namespace
 }  // namespace isoline

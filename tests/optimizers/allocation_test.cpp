@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "tests/optimizers/run.h"
+#include "tests/optimizers/trial_problems.h"
 
 namespace {
 std::int64_t allocations = 0;  // plain: one thread
@@ -27,8 +28,9 @@ namespace {
 // FFTW allocates inside of a transform what we cannot give it.
 bool transforms(const std::string& problem) { return problem == "poisson" || problem == "heat"; }
 
-std::int64_t allocations_of_steps(const Problem& problem, const OptimizerEntry& entry) {
-  const Json options = complete_options(entry.options, entry.name, Json::object());
+std::int64_t allocations_of_steps(const Problem& problem, const std::string& spec) {
+  const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
+  const Json options = options_of_spec(entry, spec);
   const auto method = entry.make(options, optimizers());
   const auto trace = std::make_unique<Trace>();
   Meter meter(problem, iterations(1000), needs_of(entry, options, problem), *trace);
@@ -51,9 +53,17 @@ TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
     const Problem problem = problem_entry.make(options, Draw(0, problem_name));
     for (const auto& [name, entry] : optimizers()) {
       if (entry.family != Family::first_order) continue;
-      EXPECT_EQ(allocations_of_steps(problem, entry), 0) << problem_name << " × " << name;
+      EXPECT_EQ(allocations_of_steps(problem, name), 0) << problem_name << " × " << name;
     }
   }
+}
+
+// A local inverse returns its successes, an array of its own.
+TEST(Allocation, TrainingStepsAllocateNothingOnceWarm) {
+  const Problem problem = learned_affine(6);
+  for (const char* spec : {"sip[inverse=newton]", "sip[inverse=newton,inner-steps=2]", "supervised",
+                           "rescaled", "rescaled[by=truth]", "adahessian", "hessian-free", "kfac"})
+    EXPECT_EQ(allocations_of_steps(problem, spec), 0) << spec;
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace isoline {
 class Linear final : public DensePhysics {
  public:
   explicit Linear(Matrix M) : DensePhysics(M.cols(), M.rows()), M_(std::move(M)) {}
-  void value(VectorRef x, VectorOut y) const override { y = M_ * x; }
+  void value(VectorRef x, VectorOut y) const override { y.noalias() = M_ * x; }
   void derivative(VectorRef, BatchOut J) const override { J = M_; }
   bool has_curvature() const override { return true; }
   void second(VectorRef, VectorRef, BatchOut) const override {}
@@ -98,6 +98,66 @@ inline Problem learned_line(bool with_impossible_sample = false) {
                   .network = std::make_unique<Line>(),
                   .input = input,
                   .minimum = 0});
+}
+
+// x = W in + b, the least network of one dense layer.
+class Affine final : public Network {
+ public:
+  Affine(Index inputs, Index outputs) : inputs_(inputs), outputs_(outputs) {}
+  Index parameters() const override { return outputs_ * (inputs_ + 1); }
+  Index inputs() const override { return inputs_; }
+  Index outputs() const override { return outputs_; }
+  Vector start(RandomStream& stream) const override { return stream.normal_vector(parameters()); }
+  std::vector<Block> layout() const override {
+    return {{0, outputs_, inputs_, Block::Kind::weight},
+            {outputs_ * inputs_, outputs_, 1, Block::Kind::bias}};
+  }
+  void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const override {
+    w.x = in;
+    pushforward(theta, x, w);
+  }
+  void pushforward(VectorRef v, BatchOut Jv, Workspace& w) const override {
+    Jv.noalias() = Eigen::Map<const Matrix>(v.data(), outputs_, inputs_) * w.x;
+    Jv.colwise() += v.tail(outputs_);
+  }
+  void pullback(BatchRef u, VectorOut JTu, Workspace& w) const override {
+    Eigen::Map<Matrix>(JTu.data(), outputs_, inputs_).noalias() = u * w.x.transpose();
+    JTu.tail(outputs_) = u.rowwise().sum();
+  }
+  bool has_curvature() const override { return true; }
+  void curvature(VectorRef, BatchRef, BatchRef du, VectorOut out, Workspace& w) const override {
+    pullback(du, out, w);
+  }
+  bool has_layer_factors() const override { return true; }
+  void layer_factors(BatchRef u, std::vector<LayerFactor>& out, Workspace& w) const override {
+    out.resize(1);
+    out[0].weight = 0;
+    out[0].bias = 1;
+    out[0].inputs = w.x;
+    out[0].cotangents = u;
+  }
+
+ private:
+  Index inputs_, outputs_;
+};
+
+// Learns x = (1 + in₀, 2 − in₁) for y = M x; `data` 0: fresh samples at each step.
+inline Problem learned_affine(Index batch, Index data = 0) {
+  auto network = std::make_unique<Affine>(2, 2);
+  RandomStream start(1, "trial", "start");
+  const auto draw = [](RandomStream& stream, Index b, Batch& to) {
+    to.input.col(b) << stream.uniform(-1, 1), stream.uniform(-1, 1);
+    to.truth.col(b) << 1 + to.input(0, b), 2 - to.input(1, b);
+    to.target.col(b) = easy_matrix() * to.truth.col(b);
+  };
+  const auto stream = [](std::string_view purpose) { return RandomStream(1, "trial", purpose); };
+  Vector theta = network->start(start);
+  return Problem({.physics = std::make_unique<Linear>(easy_matrix()),
+                  .start = std::move(theta),
+                  .network = std::move(network),
+                  .minimum = 0,
+                  .x_error = [](BatchRef x, const Batch& to) { return (x - to.truth).norm(); },
+                  .samples = {.batch = batch, .data = data, .stream = stream, .draw = draw}});
 }
 
 }  // namespace isoline

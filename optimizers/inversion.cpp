@@ -1,0 +1,154 @@
+// The ways to invert a physics: by its own inverse, by Newton's method, by L-BFGS.
+#include "optimizers/inversion.h"
+
+#include <cmath>
+
+#include "core/decompose.h"
+#include "optimizers/lbfgs.h"
+#include "optimizers/saddle_free.h"
+
+namespace isoline {
+namespace {
+
+class ByProblem final : public Inversion {
+ public:
+  explicit ByProblem(Real step) : step_(step) {}
+
+  // A sample whose inverse fails keeps its x, and so teaches nothing.
+  void invert(Meter& f, Linearization& at, Matrix& found) override {
+    const bool undoes_physics = f.inverse_kind() == Inverse::exact;
+    wanted_ = f.target();
+    if (undoes_physics) wanted_ = at.y() + step_ * (f.target() - at.y());
+    found = at.x();
+    const Success success = at.local_inverse(wanted_, found);
+    if (!undoes_physics) found = at.x() + step_ * (found - at.x());
+    for (Index b = 0; b < success.size(); ++b)
+      if (!success[b]) found.col(b) = at.x().col(b);
+  }
+
+ private:
+  Real step_;
+  Matrix wanted_;  // (m, B)
+};
+
+// H = V diag(S) Vᵀ of symmetric H, for the sizes that a Jacobi rotation makes diagonal at once: its
+// tangent is t = 2H₀₁/(d ± √(d² + 4H₀₁²)), d = H₁₁ − H₀₀; Golub, Van Loan (2013), symmetric Schur.
+struct Pair {
+  Eigen::Matrix2d V;
+  Eigen::Vector2d S;
+
+  bool decompose(const Eigen::Matrix2d& H) {
+    const Real twice = 2 * H(0, 1), d = H(1, 1) - H(0, 0);
+    const Real root = std::sqrt(d * d + twice * twice);
+    const Real t = twice == 0 ? 0 : twice / (d < 0 ? d - root : d + root);
+    const Real cosine = 1 / std::sqrt(1 + t * t), sine = t * cosine;
+    S << H(0, 0) - t * H(0, 1), H(1, 1) + t * H(0, 1);
+    V << cosine, sine, -sine, cosine;
+    return true;
+  }
+};
+struct Single {
+  Eigen::Matrix<Real, 1, 1> V{1}, S{0};
+
+  bool decompose(const Eigen::Matrix<Real, 1, 1>& H) { return S = H, true; }
+};
+struct General {
+  SymmetricEigen eigen;
+  Matrix& V = eigen.V;
+  Vector& S = eigen.lambda;
+
+  bool decompose(const Matrix& H) { return symmetric_eigen(H, eigen); }
+};
+
+class ByNewton final : public Inversion {
+ public:
+  ByNewton(Real step, Real max_loss_change) : step_(step), max_loss_change_(max_loss_change) {}
+
+  void invert(Meter& f, Linearization& at, Matrix& found) override {
+    const Index k = at.x().rows();
+    misfit_ = at.y() - f.target();
+    bend_.resize(k, at.x().size());
+    at.curvature(misfit_, bend_);
+    const Matrix& dy_dx = at.sensitivity();
+    found = at.x();
+    if (k == 1) return step_all<1, Single>(dy_dx, found);
+    if (k == 2) return step_all<2, Pair>(dy_dx, found);
+    step_all<Eigen::Dynamic, General>(dy_dx, found);
+  }
+
+ private:
+  template <int K, class Eigenbasis>
+  void step_all(const Matrix& dy_dx, Matrix& found) const {
+    const Index k = found.rows();
+    Eigen::Matrix<Real, K, K> H(k, k);
+    Eigen::Matrix<Real, K, 1> row(k), slope(k), along(k);
+    Eigenbasis basis;
+    for (Index b = 0; b < found.cols(); ++b) {
+      H = bend_.middleCols<K>(b * k, k);
+      slope.setZero();
+      for (Index i = 0; i < misfit_.rows(); ++i) {
+        row = dy_dx.block<1, K>(i, b * k, 1, k).transpose();
+        H.noalias() += row.lazyProduct(row.transpose());
+        slope += misfit_(i, b) * row;
+      }
+      if (!basis.decompose(H)) continue;
+      along.noalias() = basis.V.transpose() * slope;
+      const Real mean = geometric_mean(basis.S);
+      for (Index i = 0; i < k; ++i)
+        along[i] = saddle_free_length(along[i], basis.S[i], mean, max_loss_change_);
+      if (is_finite(along)) found.col(b).noalias() -= step_ * (basis.V * along);
+    }
+  }
+
+  Real step_, max_loss_change_;
+  Matrix misfit_;  // (m, B) P(x) − y*
+  Matrix bend_;    // (k, k·B) Σᵢ (P(x) − y*)ᵢ ∇²Pᵢ
+};
+
+class ByLbfgs final : public Inversion {
+ public:
+  ByLbfgs(Real step, Index most_evaluations) : step_(step), most_evaluations_(most_evaluations) {}
+
+  // To the rounding of what is wanted.
+  void invert(Meter& f, Linearization& at, Matrix& found) override {
+    constexpr Real kRelativeMisfit = 1e-14;
+    wanted_ = at.y() + step_ * (f.target() - at.y());
+    const Index k = at.x().rows(), samples = at.x().cols();
+    flat_ = at.x().reshaped();
+    const auto misfit = [&](VectorRef x, VectorOut gradient) {
+      f.linearize_physics(Eigen::Map<const Matrix>(x.data(), k, samples), trial_);
+      misfit_ = trial_.y() - wanted_;
+      trial_.physics_pullback(misfit_, Eigen::Map<Matrix>(gradient.data(), k, samples));
+      return 0.5 * misfit_.squaredNorm();
+    };
+    minimize_lbfgs(misfit,
+                   {.evaluations = most_evaluations_,
+                    .enough = 0.5 * kRelativeMisfit * kRelativeMisfit * wanted_.squaredNorm(),
+                    .is_over = [&] { return f.is_spent(); }},
+                   flat_);
+    found = flat_.reshaped(k, samples);
+  }
+
+ private:
+  Real step_;
+  Index most_evaluations_;
+  Linearization trial_;
+  Matrix wanted_, misfit_;  // (m, B)
+  Vector flat_;             // (k·B)
+};
+
+}  // namespace
+
+std::unique_ptr<Inversion> inversion_by_problem(Real step) {
+  return std::make_unique<ByProblem>(step);
+}
+
+std::unique_ptr<Inversion> inversion_by_newton(Real step, Real max_loss_change) {
+  return std::make_unique<ByNewton>(step, max_loss_change);
+}
+
+std::unique_ptr<Inversion> inversion_by_lbfgs(Real step, Index most_evaluations) {
+  return std::make_unique<ByLbfgs>(step, most_evaluations);
+}
+
+}  // namespace isoline

@@ -1,0 +1,72 @@
+// Gradients rescaled to unit length in x, Holl, Koltun, Thuerey (2022), Fig. 2: the network is
+// drawn to x̃ = x − sign(∂L/∂x), component by component, by (1/B) Σ ½‖x − x̃‖². The published script
+// takes the sign from the known solution, x̃ = x + sign(x* − x), which for a monotone P is the same.
+#include <nlohmann/json.hpp>
+
+#include "optimizers/network_descent.h"
+
+namespace isoline {
+namespace {
+
+struct Options {
+  std::string by = "gradient", network_optimizer = "auto";
+};
+void fields(Options& o, auto& field) {
+  field("by", o.by, Choices{"gradient", "truth"},
+        "where the sign comes from: −∂L/∂x, or x* − x, a privilege");
+  field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
+}
+
+class Rescaled final : public Optimizer {
+ public:
+  Rescaled(const Options& options, const OptimizerRegistry& registry)
+      : is_by_truth_(options.by == "truth"), descent_(registry, options.network_optimizer) {}
+  void start(Meter& f, const Vector&) override { descent_.start(f); }
+  Status step(Meter& f, Vector& theta) override {
+    f.linearize(theta, at_);
+    if (is_by_truth_) {
+      slope_ = at_.x() - f.truth();
+    } else {
+      at_.cotangent(g_);
+      slope_.resizeLike(at_.x());
+      at_.physics_pullback(g_, slope_);
+    }
+    found_ = at_.x() - slope_.cwiseSign();
+    descent_.approach(found_, Proxy::l2, at_, theta);
+    return Status::running;
+  }
+  bool persist(Archive& archive) override { return descent_.persist(archive); }
+
+ private:
+  const bool is_by_truth_;
+  NetworkDescent descent_;
+  Linearization at_;
+  Matrix g_;              // (m, B)
+  Matrix slope_, found_;  // (k, B) ∂L/∂x, x̃
+};
+
+OracleSet needs_for(const Json& options, const Problem&) {
+  OracleSet needs{Oracle::forward, Oracle::network};
+  needs.add(read_options<Options>(options).by == "truth" ? Oracle::truth : Oracle::pullback);
+  return needs;
+}
+
+}  // namespace
+
+void register_rescaled(OptimizerRegistry& registry) {
+  registry.add({.name = "rescaled",
+                .title = "Rescaled gradients",
+                .family = Family::inversion,
+                .formula = "x̃ = x − sign(∂L/∂x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
+                .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
+                .note = "by=truth takes the sign from x* − x, as the published script does.",
+                .needs = {Oracle::forward, Oracle::network},
+                .options = option_table<Options>(),
+                .needs_for = needs_for,
+                .make = [](const Json& options,
+                           const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
+                  return std::make_unique<Rescaled>(read_options<Options>(options), known);
+                }});
+}
+
+}  // namespace isoline
