@@ -7,7 +7,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "benchmarks/rates.h"
 #include "core/json.h"
+#include "core/spec.h"
 
 namespace isoline {
 namespace {
@@ -28,9 +30,35 @@ Real cauchy_step(const Problem& problem) {
   return gradient.squaredNorm() / pushed.cwiseProduct(curved).sum();
 }
 
+constexpr const char* kNested = "network-optimizer";
+
+// The pair's options in the tables, the tuned one set: by itself or in the network's optimizer.
+Json with_value(const OptimizerEntry& entry, Json options, const std::string& option, Real value) {
+  const bool has_own = std::ranges::any_of(
+      entry.options, [&](const OptionField& field) { return field.name == option; });
+  const bool can_nest = std::ranges::any_of(
+      entry.options, [](const OptionField& field) { return field.name == kNested; });
+  if (has_own || !can_nest) {
+    options[option] = value;
+    return options;
+  }
+  const std::string inner = parse_spec(options.value(kNested, "adam")).name;
+  options[kNested] = fmt::format("{}[{}={}]", inner == "auto" ? "adam" : inner, option, value);
+  return options;
+}
+
+Real published_value(const Json& options, const std::string& option) {
+  if (options.contains(option)) return options[option];
+  if (!options.contains(kNested)) return 1;
+  const Json inner = options_of(parse_spec(options[kNested].get<std::string>()));
+  return inner.contains(option) ? std::stod(inner[option].get<std::string>()) : 1;
+}
+
 // The unit in a process of its own; 1 where it cannot be had.
-Real unit_of(const Catalog& catalog, const TuningGrid& grid, const Component& problem) {
+Real unit_of(const Catalog& catalog, const TuningGrid& grid, const Component& problem,
+             const Json& published) {
   if (grid.unit == "one") return 1;
+  if (grid.unit == "published") return published_value(published, grid.option);
   const auto text = isolated_text(
       [&] { return json_number(cauchy_step(make_problem(catalog, problem, 0))).dump(); },
       kUnitSeconds);
@@ -78,18 +106,26 @@ Score score_of(const Store& store, const std::vector<Request>& runs) {
 struct Candidate {
   std::string problem, optimizer;
   std::vector<Real> values;
+  std::vector<Json> options;
   std::vector<std::vector<Request>> runs;
+  bool is_learned = false;
 };
 
 std::vector<Candidate> candidates_of(const Catalog& catalog, const TuningPlan& plan) {
   std::vector<Candidate> candidates;
+  const Rates rates = Rates::builtin();
   for (const Component& problem : plan.problems) {
-    const Real unit = unit_of(catalog, plan.grid, problem);
     for (const std::string& name : plan.optimizers) {
-      Candidate candidate{problem.spec, name, {}, {}};
+      const Rates::Row* row = rates.find(problem, name);
+      const Json published = row ? row->options : Json::object();
+      const Real unit = unit_of(catalog, plan.grid, problem, published);
+      Candidate candidate{.problem = problem.spec, .optimizer = name};
+      candidate.is_learned = problem.options.value("mode", "direct") == "learn";
       for (const Real value : plan.grid.values) {
         candidate.values.push_back(rounded(unit * value));
-        const Json given{{plan.grid.option, candidate.values.back()}};
+        const Json given = with_value(catalog.optimizers.at(name), published, plan.grid.option,
+                                      candidate.values.back());
+        candidate.options.push_back(given);
         std::vector<Request> runs;
         for (const std::uint64_t seed : plan.seeds)
           runs.push_back(
@@ -102,13 +138,22 @@ std::vector<Candidate> candidates_of(const Catalog& catalog, const TuningPlan& p
   return candidates;
 }
 
+Json rounded_all(const std::vector<Real>& values) {
+  Json list = Json::array();
+  for (const Real value : values) list.push_back(json_number(rounded(value)));
+  return list;
+}
+
 // The row of a pair, or null where no value of the grid gave a finite loss.
 Json row_of(const Candidate& candidate, const Store& store, const std::string& option) {
   Json values = Json::array(), scores = Json::array();
   std::size_t best = 0;
   Score least;
+  std::vector<Real> losses;
   for (std::size_t i = 0; i < candidate.values.size(); ++i) {
-    const Score score = score_of(store, candidate.runs[i]);
+    Score score = score_of(store, candidate.runs[i]);
+    if (candidate.is_learned) score.work = INFINITY;
+    losses.push_back(score.loss);
     values.push_back(candidate.values[i]);
     scores.push_back({json_number(score.work), json_number(rounded(score.loss))});
     if (score < least) {
@@ -119,8 +164,11 @@ Json row_of(const Candidate& candidate, const Store& store, const std::string& o
   if (std::isinf(least.loss)) return nullptr;
   return {{"problem", candidate.problem},
           {"optimizer", candidate.optimizer},
-          {"options", {{option, candidate.values[best]}}},
-          {"source", {{"grid", {{option, values}}}, {"score", scores}}}};
+          {"options", candidate.options[best]},
+          {"source",
+           {{"grid", {{option, values}}},
+            {"score", scores},
+            {"best_of", rounded_all(best_of(losses))}}}};
 }
 
 }  // namespace
@@ -141,6 +189,23 @@ TuningGrid parse_grid(const std::string& text, const std::string& unit) {
   for (int i = 0; i < count; ++i)
     grid.values.push_back(low * std::pow(high / low, count > 1 ? Real(i) / (count - 1) : 0));
   return grid;
+}
+
+std::vector<Real> best_of(std::vector<Real> losses) {
+  std::ranges::sort(losses);
+  const auto n = losses.size();
+  std::vector<Real> expected;
+  for (std::size_t b = 1; b <= n; ++b) {
+    // C(n − i, b − 1)/C(n, b) by its ratio from one i to the next, i = 1 … n − b + 1.
+    Real weight = static_cast<Real>(b) / static_cast<Real>(n), sum = 0;
+    for (std::size_t i = 1; i + b <= n + 1; ++i) {
+      sum += weight * losses[i - 1];
+      weight *=
+          static_cast<Real>(n - i - b + 1) / static_cast<Real>(std::max<std::size_t>(1, n - i));
+    }
+    expected.push_back(sum);
+  }
+  return expected;
 }
 
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan, Store& store,

@@ -28,6 +28,10 @@ OptimizerLabels::OptimizerLabels(const Study& study) {
   for (const Record& record : study.runs) {
     const Component& optimizer = record.request.optimizer;
     const std::string& problem = record.request.problem.spec;
+    if (record.request.rates.ends_with("-tuned.json")) {
+      tuned_.emplace(problem, optimizer.spec);
+      continue;
+    }
     if (!record.request.rates.empty()) by_name_.insert(optimizer.name);
     if (seen.emplace(problem, optimizer.spec).second) ++specs[{problem, optimizer.name}];
   }
@@ -35,8 +39,9 @@ OptimizerLabels::OptimizerLabels(const Study& study) {
     if (count > 1) by_name_.erase(where.second);
 }
 
-std::string OptimizerLabels::operator()(const std::string& spec) const {
+std::string OptimizerLabels::operator()(const std::string& problem, const std::string& spec) const {
   std::string name = name_in(spec);
+  if (tuned_.contains({problem, spec})) return name + ", tuned";
   return by_name_.contains(name) ? name : spec;
 }
 
@@ -58,9 +63,10 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
 std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& label) {
   std::map<std::string, std::string> specs;  // by label, any of them
   for (const Record& record : study.runs)
-    specs.emplace(label(record.request.optimizer.spec), record.request.optimizer.spec);
+    specs.emplace(label(record.request.problem.spec, record.request.optimizer.spec),
+                  record.request.optimizer.spec);
   for (const PlannedCell& cell : study.plan.cells)
-    specs.emplace(label(cell.optimizer), cell.optimizer);
+    specs.emplace(label(cell.problem, cell.optimizer), cell.optimizer);
   std::vector<OptimizerAxis> axis;
   for (const auto& [name, spec] : specs)
     axis.push_back({.label = name, .sheet = sheet_of(study, "optimizer", spec), .privileges = {}});

@@ -10,14 +10,16 @@
 namespace isoline {
 
 // Names of optimizers. A file of rates gives one method other options on every problem; the method
-// then keeps one row under its name, unless some problem has two of that name.
+// then keeps one row under its name, unless some problem has two of that name. A method with tuned
+// rates stands beside itself, as "adam, tuned".
 class OptimizerLabels {
  public:
   explicit OptimizerLabels(const Study& study);
-  std::string operator()(const std::string& spec) const;
+  std::string operator()(const std::string& problem, const std::string& spec) const;
 
  private:
-  std::set<std::string> by_name_;  // names that stand for all their specs
+  std::set<std::pair<std::string, std::string>> tuned_;  // problem and optimizer, as specs
+  std::set<std::string> by_name_;                        // names that stand for all their specs
 };
 
 std::vector<ProblemAxis> problem_axis(const Study& study);

@@ -46,7 +46,8 @@ void fill_cells(Comparison& c, const OptimizerLabels& label) {
   for (const Record& record : c.study->runs) {
     Run run{.record = &record,
             .problem = problem.at(record.request.problem.spec),
-            .optimizer = optimizer.at(label(record.request.optimizer.spec)),
+            .optimizer =
+                optimizer.at(label(record.request.problem.spec, record.request.optimizer.spec)),
             .work = {},
             .seconds = {},
             .is_timed_alone = is_timed_alone(record)};
@@ -60,7 +61,8 @@ void fill_cells(Comparison& c, const OptimizerLabels& label) {
       ++c.answered;
     else {
       c.missing.push_back(cell);
-      ++c.cells[problem.at(cell.problem)][optimizer.at(label(cell.optimizer))].planned;
+      ++c.cells[problem.at(cell.problem)][optimizer.at(label(cell.problem, cell.optimizer))]
+            .planned;
     }
   c.planned = c.study->plan.cells.size();
   if (c.planned == 0) c.planned = c.answered = c.runs.size();

@@ -8,6 +8,7 @@
 #include "benchmarks/sheets.h"
 #include "core/json.h"
 #include "core/spec.h"
+#include "networks/network.h"
 
 namespace isoline {
 namespace {
@@ -19,7 +20,8 @@ Sheet sheet_of(Session& session, const Spec& spec) {
   if (catalog.optimizers.contains(spec.name))
     return optimizer_sheet(catalog, complete_optimizer(catalog, spec.name, options_of(spec)));
   std::vector<std::string> known = catalog.problems.names();
-  for (const std::string& name : catalog.optimizers.names()) known.push_back(name);
+  for (const auto& names : {catalog.optimizers.names(), network_registry().names()})
+    known.insert(known.end(), names.begin(), names.end());
   throw UsageError(unknown_name("component", spec.name, known));
 }
 
@@ -38,6 +40,18 @@ void print_options(const Json& options) {
                standard.is_string() ? standard.get<std::string>() : standard.dump(), law,
                option.at("doc").get<std::string>());
   }
+}
+
+void print(const NetworkEntry& network, bool as_json) {
+  const Json options = describe_options(network.options);
+  if (as_json) {
+    const Json json{{"kind", "network"},        {"name", network.name}, {"title", network.title},
+                    {"source", network.source}, {"note", network.note}, {"options", options}};
+    return fmt::print("{}\n", json.dump(2));
+  }
+  fmt::print("{}: {} (network)\n\nSource      {}\n", network.name, network.title, network.source);
+  if (!network.note.empty()) fmt::print("Note        {}\n", network.note);
+  print_options(options);
 }
 
 void print(const Sheet& sheet) {
@@ -67,11 +81,14 @@ void add_describe(CLI::App& app, Session& session) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
-      "describe", "Tell a problem's or an optimizer's formula, options, needs and source");
+      "describe", "Tell the formula, options, needs and source of a problem, network or optimizer");
   verb->add_option("NAME", options->name, "A name of `isoline list`, or a spec")->required();
   verb->add_flag("--json", options->as_json, "As JSON");
   verb->callback([options, &session] {
-    const Sheet sheet = sheet_of(session, parse_spec(options->name));
+    const Spec spec = parse_spec(options->name);
+    if (network_registry().contains(spec.name))
+      return print(network_registry().at(spec.name), options->as_json);
+    const Sheet sheet = sheet_of(session, spec);
     if (options->as_json)
       fmt::print("{}\n", to_json(sheet).dump(2));
     else

@@ -7,6 +7,7 @@
 #include "benchmarks/resources.h"
 #include "benchmarks/suite.h"
 #include "core/json.h"
+#include "networks/network.h"
 
 namespace isoline {
 namespace {
@@ -18,10 +19,13 @@ struct ListOptions {
 
 Json listing(Session& session, const std::string& kind) {
   Json all = Json::object();
-  if (kind != "optimizers" && kind != "suites")
+  if (kind == "all" || kind == "problems")
     for (const auto& [name, entry] : session.catalog().problems)
       all["problems"].push_back({{"name", name}, {"title", entry.title}, {"source", entry.source}});
-  if (kind != "problems" && kind != "suites")
+  if (kind == "all" || kind == "networks")
+    for (const auto& [name, entry] : network_registry())
+      all["networks"].push_back({{"name", name}, {"title", entry.title}, {"source", entry.source}});
+  if (kind == "all" || kind == "optimizers")
     for (const auto& [name, entry] : session.catalog().optimizers)
       all["optimizers"].push_back({{"name", name},
                                    {"title", entry.title},
@@ -52,9 +56,9 @@ void print(const Json& all, bool names_only) {
 
 void add_list(CLI::App& app, Session& session) {
   const auto options = std::make_shared<ListOptions>();
-  CLI::App* verb = app.add_subcommand("list", "List the problems, optimizers and suites");
-  verb->add_option("KIND", options->kind, "problems, optimizers, suites or all")
-      ->check(CLI::IsMember({"problems", "optimizers", "suites", "all"}))
+  CLI::App* verb = app.add_subcommand("list", "List the problems, networks, optimizers and suites");
+  verb->add_option("KIND", options->kind, "problems, networks, optimizers, suites or all")
+      ->check(CLI::IsMember({"problems", "networks", "optimizers", "suites", "all"}))
       ->capture_default_str();
   verb->add_flag("--json", options->as_json, "As JSON");
   verb->add_flag("--names", options->names_only, "Names only, one a line");

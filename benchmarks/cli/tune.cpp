@@ -26,6 +26,12 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
                   .budget = given.budget};
   for (const Spec& spec : parse_specs(given.problem))
     plan.problems.push_back(complete_problem(catalog, spec.name, options_of(spec)));
+  if (given.optimizer.empty()) {
+    plan.optimizers = {"sip"};
+    for (const auto& [name, entry] : catalog.optimizers)
+      if (entry.family == Family::first_order) plan.optimizers.push_back(name);
+    return plan;
+  }
   for (const Spec& spec : parse_specs(given.optimizer)) {
     require(spec.options.empty(),
             fmt::format("name {} without options: the grid sets them", spec.name));
@@ -71,8 +77,9 @@ void tune_and_write(const TuneArguments& given, Session& session) {
   }
   Json rows = result.rows;
   for (const Json& row : rows)
-    fmt::print("{:28} {:24} {}\n", row["problem"].get<std::string>(),
-               row["optimizer"].get<std::string>(), row["options"].dump());
+    fmt::print("{:28} {:24} {}; best of 1, 2, …: {}\n", row["problem"].get<std::string>(),
+               row["optimizer"].get<std::string>(), row["options"].dump(),
+               row["source"]["best_of"].dump());
   if (given.table.empty()) return;
   if (std::filesystem::exists(given.table)) rows = joined(read_json(given.table).at("rows"), rows);
   const Json grid{
@@ -89,12 +96,14 @@ void add_tune(CLI::App& app, Session& session) {
   const auto given = std::make_shared<TuneArguments>();
   CLI::App* verb = app.add_subcommand(
       "tune", "Choose a rate for each pair over a grid, on tuning seeds, with an equal budget");
-  verb->add_option("--problem", given->problem, "Problems, as in `isoline run`")->required();
-  verb->add_option("--optimizer", given->optimizer, "Names of optimizers")->required();
+  verb->add_option("SPEC,--problem", given->problem, "Problems, as in `isoline run`")->required();
+  verb->add_option("--optimizer", given->optimizer,
+                   "Names of optimizers (default: sip and all of first order)");
   verb->add_option("--grid", given->grid, "Option and its values: low..high x count")
       ->capture_default_str();
-  verb->add_option("--unit", given->unit, "Unit of the grid: one, or the problem's Cauchy step")
-      ->check(CLI::IsMember({"one", "cauchy"}))
+  verb->add_option("--unit", given->unit,
+                   "Unit of the grid: one, the problem's Cauchy step, or the published rate")
+      ->check(CLI::IsMember({"one", "cauchy", "published"}))
       ->capture_default_str();
   verb->add_option("--tuning-seeds", given->seeds, "Seeds, apart from those that judge")
       ->capture_default_str();

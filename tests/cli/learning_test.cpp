@@ -1,0 +1,98 @@
+// Training and inference as a user meets them, and what they say to one who is wrong.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/number_file.h"
+#include "tests/cli/shell.h"
+
+namespace isoline {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Train, WritesANetworkThatInfersWhatItLearned) {
+  const Shell shell;
+  for (const std::string name : {"net.json", "net.bin"}) {
+    const Finished trained =
+        shell("./isoline train 'sine[xi=2]' --optimizer sip --iterations 1500 --out " + name);
+    ASSERT_EQ(trained.exit_code, 0) << trained.err;
+    ASSERT_EQ(shell("printf 'y1,y2\\n0.3,-0.5\\n-0.2,0.1\\n' > y.csv").exit_code, 0);
+    const Finished inferred = shell("./isoline infer " + name + " --input y.csv --output x.npy");
+    ASSERT_EQ(inferred.exit_code, 0) << inferred.err;
+    const NumberArray x = read_npy(shell.folder() / "x.npy");
+    EXPECT_EQ(x.shape, (std::vector<Index>{2, 2}));
+    // P of the inferred x, with ξ = 2, φ = 45° and γ = 10, is near what was observed.
+    const Real half = std::sqrt(0.5), z1 = half * (x.values[0] - x.values[1]);
+    EXPECT_NEAR(std::sin(10 * z1 / 2), 0.3, 0.1);
+    EXPECT_NEAR(20 * half * (x.values[0] + x.values[1]), -0.5, 0.1);
+  }
+  const auto as_json = read_text(shell.folder() / "net.json");
+  EXPECT_TRUE(contains(as_json, "isoline.network/1"));
+}
+
+TEST(Train, KeepsTheRunningStatisticsOfBatchNormForPictures) {
+  const Shell shell;
+  const Finished trained = shell(
+      "./isoline train 'poisson[N=16,batch=4,network=unet[levels=2]]' --iterations 5 --out n.bin");
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  NumberArray pictures{{3, 16, 16}, std::vector<Real>(3 * 256)};
+  for (std::size_t i = 0; i < pictures.values.size(); ++i)
+    pictures.values[i] = std::sin(0.1 * static_cast<Real>(i));
+  write_npy(shell.folder() / "y.npy", pictures);
+  ASSERT_EQ(shell("./isoline infer n.bin --input y.npy --output x.npy").exit_code, 0);
+  const NumberArray all = read_npy(shell.folder() / "x.npy");
+  EXPECT_EQ(all.shape, pictures.shape);
+  // Running statistics, so a sample alone gives what it gives among others.
+  NumberArray second{{1, 16, 16}, {pictures.values.begin() + 256, pictures.values.begin() + 512}};
+  write_npy(shell.folder() / "y.npy", second);
+  ASSERT_EQ(shell("./isoline infer n.bin --input y.npy --output x.npy").exit_code, 0);
+  const NumberArray alone = read_npy(shell.folder() / "x.npy");
+  for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(alone.values[i], all.values[256 + i]) << i;
+}
+
+// A command that is wrong, and what the one sentence about it must contain.
+struct Mistake {
+  std::string command, sentence;
+};
+
+TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
+  const Shell shell;
+  ASSERT_EQ(shell("./isoline train sine --iterations 5 --out net.json").exit_code, 0);
+  shell("printf '1,2,3\\n' > wide.csv; printf '1,nan\\n' > holes.csv; printf '1,2\\n' > good.csv");
+  for (const auto& [command, sentence] : std::vector<Mistake>{
+           {"train 'sine[network=unet]' --out x", "unet"},
+           {"train 'poisson[N=20,network=unet]' --out x", "20"},
+           {"train 'sine[network=mlp[layers=a-b]]' --out x", "layers"},
+           {"train 'sine[network=mpl]' --out x", "did you mean 'mlp'"},
+           {"train 'sine[batch=0]' --out x", "batch must be in"},
+           {"train sine --optimizer 'adam[rate=-1]' --out x", "rate must be in"},
+           {"train sine --optimizer 'sip[network-optimizer=adam[rate=-1]]' --out x",
+            "rate must be"},
+           {"train 'sine[mode=direct]' --out x", "nothing to train"},
+           {"train sine --optimizer ceres-lbfgs --out x", "data=N"},
+           {"infer net.json --input wide.csv --output x", "takes 2"},
+           {"infer net.json --input holes.csv --output x.npy", "'nan' is no finite number"},
+           {"infer net.json --input good.csv --output x.txt", ".npy or .csv"},
+           {"infer good.csv --input good.csv --output x.npy", "no trained network"},
+           {"infer net.json --input missing.npy --output x.npy", "missing.npy"}}) {
+    const Finished result = shell("./isoline " + command);
+    EXPECT_EQ(result.exit_code, 1) << command << "\n" << result.err;
+    EXPECT_EQ(count_lines(result.err), 1U) << command << "\n" << result.err;
+    EXPECT_TRUE(contains(result.err, sentence)) << command << "\n" << result.err;
+    for (const char* file : {"x", "x.npy", "x.txt"})
+      EXPECT_FALSE(fs::exists(shell.folder() / file)) << command;
+  }
+}
+
+TEST(Run, OfAWrongNetworkWritesNoFolder) {
+  const Shell shell;
+  const Finished result = shell(
+      "./isoline run --problem 'sine[mode=learn,network=unet]' --optimizer adam --out results/r");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(count_lines(result.err), 1U) << result.err;
+  EXPECT_FALSE(fs::exists(shell.folder() / "results"));
+}
+
+}  // namespace
+}  // namespace isoline
