@@ -18,9 +18,10 @@ bool is_in(const std::string& table, const std::string& origin) {
 }
 
 // Whether a problem's complete options have the values that a row names, as text.
-bool is_for(const Json& row, const Json& complete) {
-  constexpr const char* kMode = "mode";
-  if (!row.contains(kMode) && complete.value(kMode, "direct") != "direct") return false;
+bool is_for(const Json& row, const Component& problem) {
+  const Json& complete = problem.options;
+  const bool is_other_mode = problem.spec.find("mode=") != std::string::npos;
+  if (!row.contains("mode") && is_other_mode) return false;
   for (const auto& [key, wanted] : row.items()) {
     if (!complete.contains(key)) return false;
     const Json& value = complete[key];
@@ -61,7 +62,7 @@ const Rates::Row* Rates::find(const Component& problem, const std::string& optim
   if (rows == rows_.end()) return nullptr;
   const Row* best = nullptr;
   for (const Row& row : rows->second)
-    if (is_in(table, row.origin) && is_for(row.problem, problem.options) &&
+    if (is_in(table, row.origin) && is_for(row.problem, problem) &&
         (!best || row.problem.size() >= best->problem.size()))
       best = &row;
   return best;

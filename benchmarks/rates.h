@@ -22,7 +22,7 @@ class Rates {
     std::string origin;  // file that says so
   };
   // The row for a problem and an optimizer's name, or nullptr. A row is for the problems that have
-  // the options it names, and for direct ones unless it names the mode; the row that names most
+  // the options it names, in their default mode unless it names the mode; the row that names most
   // wins, and the last of these. `table` restricts the search to one file; tables of tuned rates
   // are searched only so.
   const Row* find(const Component& problem, const std::string& optimizer,
