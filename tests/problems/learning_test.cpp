@@ -116,6 +116,15 @@ TEST(Learning, DerivativesThroughASmoothNetworkHold) {
   }
 }
 
+// ½⟨sin² 6t⟩ + ½⟨cos² 9t⟩ over t ∈ [−1, 1] is ½ + sin(18)/72 − sin(12)/48, and the second half
+// alone, what a network leaves that fits y₁ only, is ¼ + sin(18)/72 = 0.2396.
+TEST(Learning, ToyHasThePublishedFloors) {
+  const Problem problem = make("hig-toy[lambda=0.01,data=100000]");
+  const Matrix y = problem.target();
+  EXPECT_NEAR(0.5 * y.row(1).squaredNorm() / 1e5, 0.25 + std::sin(18.0) / 72, 2e-3);  // 1/√1e5
+  EXPECT_NEAR(0.5 * y.squaredNorm() / 1e5, 0.5005, 3e-3);
+}
+
 TEST(Learning, ToyWatchesItsNeuronsAndItsPath) {
   const Problem problem = make("hig-toy[lambda=0.01]");
   EXPECT_EQ(problem.unknowns(), 30);
