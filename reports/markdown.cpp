@@ -5,6 +5,7 @@
 
 #include "reports/readings.h"
 #include "reports/report.h"
+#include "reports/tables_formats.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 
@@ -114,7 +115,7 @@ std::string markdown_report(const Comparison& c) {
   text += is_large ? "\n<details><summary>Every problem and optimizer</summary>\n" : "";
   text += matrices(c);
   text += is_large ? "\n</details>\n" : "";
-  return text + failures(c);
+  return text + statistics_markdown(c) + failures(c);
 }
 
 }  // namespace isoline
