@@ -9,15 +9,6 @@
 
 namespace isoline {
 
-struct StatisticTable {
-  std::string id;       // "data-profile"
-  std::string title;    // "Data profile"
-  std::string reading;  // a sentence on this very data
-  std::string caption;  // what the figures are
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
-};
-
 // In the order of a report; empty where nothing has run.
 std::vector<StatisticTable> statistic_tables(const Comparison& comparison);
 

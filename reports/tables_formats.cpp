@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "reports/tables.h"
+#include "reports/table.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -92,29 +92,27 @@ std::string latex_part(const StatisticTable& table, std::size_t first, std::size
 
 std::string statistics_html(const Comparison& c) {
   std::string html;
-  for (const std::string& sentence : limits_of_evidence(c))
+  for (const std::string& sentence : c.limits)
     html += fmt::format("<li>{}</li>", html_text(sentence));
   if (!html.empty())
     html = "<h3>What cannot be concluded</h3><ul class=remarks>" + html + "</ul>\n";
-  for (const StatisticTable& table : statistic_tables(c)) html += html_of(table);
+  for (const StatisticTable& table : c.tables) html += html_of(table);
   return html;
 }
 
 std::string statistics_markdown(const Comparison& c) {
-  const std::vector<StatisticTable> tables = statistic_tables(c);
-  if (tables.empty()) return "";
+  if (c.tables.empty()) return "";
   std::string text = "\n## Statistics\n\n";
-  for (const std::string& sentence : limits_of_evidence(c))
-    text += "- " + markdown_text(sentence) + "\n";
+  for (const std::string& sentence : c.limits) text += "- " + markdown_text(sentence) + "\n";
   text += "\n";
-  for (const StatisticTable& table : tables) text += markdown_of(table);
+  for (const StatisticTable& table : c.tables) text += markdown_of(table);
   return text;
 }
 
 std::string statistics_latex(const Comparison& c) {
   constexpr std::size_t kMostColumns = 7;  // wider ones are several tables
   std::string text;
-  for (const StatisticTable& table : statistic_tables(c))
+  for (const StatisticTable& table : c.tables)
     for (std::size_t i = 1; i < table.columns.size() && !table.rows.empty(); i += kMostColumns)
       text += latex_part(table, i, std::min(i + kMostColumns, table.columns.size()));
   return text;
@@ -122,7 +120,7 @@ std::string statistics_latex(const Comparison& c) {
 
 std::string statistics_csv(const Comparison& c) {
   std::string text = "table,row,column,value\n";
-  for (const StatisticTable& table : statistic_tables(c))
+  for (const StatisticTable& table : c.tables)
     for (const auto& row : table.rows)
       for (std::size_t i = 1; i < row.size(); ++i)
         text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0]),
@@ -132,14 +130,14 @@ std::string statistics_csv(const Comparison& c) {
 
 nlohmann::json statistics_json(const Comparison& c) {
   nlohmann::json tables = nlohmann::json::array();
-  for (const StatisticTable& table : statistic_tables(c))
+  for (const StatisticTable& table : c.tables)
     tables.push_back({{"id", table.id},
                       {"title", table.title},
                       {"reading", table.reading},
                       {"caption", table.caption},
                       {"columns", table.columns},
                       {"rows", table.rows}});
-  return {{"limits", limits_of_evidence(c)}, {"tables", tables}};
+  return {{"limits", c.limits}, {"tables", tables}};
 }
 
 }  // namespace isoline

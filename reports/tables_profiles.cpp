@@ -40,6 +40,22 @@ std::array<Real, 2> pair_scores(const Costs& costs, std::size_t a, std::size_t b
   return {profile.area(0, kProfileEnd), profile.area(1, kProfileEnd)};
 }
 
+// Who has the greatest value, ties all.
+struct Leading {
+  Real value = -kNever;
+  std::size_t count = 0;
+  std::string name;
+
+  void offer(Real mine, const std::string& label) {
+    if (mine > value) value = mine, count = 0, name = label;
+    count += mine == value;
+  }
+  std::string names() const {
+    if (count == 0) return "by none";
+    return count == 1 ? "by " + name : fmt::format("by {} and {} more", name, count - 1);
+  }
+};
+
 std::string share_text(std::size_t part, std::size_t whole) {
   return whole == 0 ? "" : fmt::format("{:.0f} %", 100 * Real(part) / Real(whole));
 }
@@ -137,8 +153,7 @@ StatisticTable data_profile_table(const Comparison& c) {
       .rows = {}};
   for (const int work : kWork) table.columns.push_back(fmt::format("≤ {}", work));
   for (const char* column : {"at all", "n problems", "failed"}) table.columns.push_back(column);
-  Real best = -1;
-  std::string leader;
+  Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
     std::vector<std::string> row = {optimizer_text(c, s)};
     const std::size_t n = c.optimizers[s].planned;
@@ -148,17 +163,14 @@ StatisticTable data_profile_table(const Comparison& c) {
       for (std::size_t p = 0; p < c.problems.size(); ++p)
         within += c.cell(p, s).work[kTightest].median <= work;
       row.push_back(share_text(within, n));
-      if (work == kWork[2] && n > 0 && Real(within) / Real(n) > best) {
-        best = Real(within) / Real(n);
-        leader = optimizer_text(c, s);
-      }
+      if (work == kWork[2] && n > 0) first.offer(Real(within) / Real(n), optimizer_text(c, s));
     }
     row.push_back(std::to_string(n));
     row.push_back(failed_text(c, s));
     table.rows.push_back(std::move(row));
   }
-  table.reading = fmt::format("Within 1000 forward solves {} solves the largest share, {}.", leader,
-                              percent(std::max(best, 0.0)));
+  table.reading = fmt::format("Largest share solved within 1000 forward solves: {}, {}.",
+                              percent(std::max(first.value, 0.0)), first.names());
   return table;
 }
 
@@ -176,8 +188,7 @@ StatisticTable accuracy_table(const Comparison& c) {
       .rows = {}};
   for (const int digits : kDigits) table.columns.push_back(fmt::format("≥ {}", digits));
   for (const char* column : {"median", "n problems", "failed"}) table.columns.push_back(column);
-  Real best = -kNever;
-  std::string leader = "none";
+  Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
     std::vector<Real> lacking;
     for (std::size_t p = 0; p < c.problems.size(); ++p) {
@@ -191,14 +202,16 @@ StatisticTable accuracy_table(const Comparison& c) {
                          lacking, [digits](Real value) { return -value >= Real(digits); })),
                      lacking.size()));
     const Real median = -median_of(lacking);
-    if (median > best) best = median, leader = optimizer_text(c, s);
+    if (median > -kNever) first.offer(median, optimizer_text(c, s));
     row.push_back(median == -kNever ? "✗" : fmt::format("{:.3g}", median + 0.0));
     row.push_back(std::to_string(lacking.size()));
     row.push_back(failed_text(c, s));
     table.rows.push_back(std::move(row));
   }
-  table.reading = fmt::format("{} gains the most digits in the median over problems: {}.", leader,
-                              best == -kNever ? "none" : fmt::format("{:.3g}", best));
+  table.reading = first.count == 0
+                      ? "No method gains a digit in the median over problems."
+                      : fmt::format("Most digits in the median over problems: {:.3g}, {}.",
+                                    first.value, first.names());
   return table;
 }
 
