@@ -11,6 +11,7 @@
 #include "reports/axes.h"
 #include "reports/reached.h"
 #include "reports/standings.h"
+#include "reports/tables.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -149,6 +150,8 @@ Comparison compare_optimizers(const Study& study) {
   }
   fill_standings(c);
   summarize_runs(c);
+  c.tables = statistic_tables(c);
+  c.limits = limits_of_evidence(c);
   return c;
 }
 

@@ -10,6 +10,7 @@
 
 #include "reports/statistics.h"
 #include "reports/study.h"
+#include "reports/table.h"
 
 namespace isoline {
 
@@ -99,6 +100,8 @@ struct Comparison {
   std::vector<std::uint64_t> seeds;
   std::size_t names = 0;  // of problems, options apart
   bool is_any_timed_together = false;
+  std::vector<StatisticTable> tables;  // in the order of a report; none where nothing has run
+  std::vector<std::string> limits;     // what cannot be concluded, a sentence each
 
   const Cell& cell(std::size_t problem, std::size_t optimizer) const {
     return cells[problem][optimizer];

@@ -12,6 +12,7 @@
 #include "reports/learned.h"
 #include "reports/readings.h"
 #include "reports/report.h"
+#include "reports/tables_formats.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 
@@ -166,6 +167,7 @@ std::string html_report(const Comparison& c) {
                                        {"standings", panes_html(c, "Standings", standings_html)},
                                        {"matrices", panes_html(c, "Work", matrix_html)},
                                        {"profile", profile_html(c)},
+                                       {"statistics", statistics_html(c)},
                                        {"details", details_html(c)},
                                        {"learned", learned_html(c)},
                                        {"figures", figures_html(drawn)},

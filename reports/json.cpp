@@ -10,6 +10,7 @@
 
 #include "reports/readings.h"
 #include "reports/report.h"
+#include "reports/tables_formats.h"
 #include "reports/wording.h"
 
 namespace isoline {
@@ -153,6 +154,7 @@ std::string json_report(const Comparison& c) {
                   {"open_leader", leader_json(c, c.open_leader)},
                   {"optimizers", standings_json(c)},
                   {"profiles", profiles_json(c)},
+                  {"statistics", statistics_json(c)},
                   {"cells", cells}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -6,6 +6,7 @@
 #include "reports/learned.h"
 #include "reports/readings.h"
 #include "reports/report.h"
+#include "reports/tables_formats.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 
@@ -115,7 +116,7 @@ std::string markdown_report(const Comparison& c) {
   text += is_large ? "\n<details><summary>Every problem and optimizer</summary>\n" : "";
   text += matrices(c);
   text += is_large ? "\n</details>\n" : "";
-  return text + learned_markdown(c) + failures(c);
+  return text + learned_markdown(c) + statistics_markdown(c) + failures(c);
 }
 
 }  // namespace isoline

@@ -2,6 +2,7 @@
 #include "reports/report.h"
 
 #include "core/json.h"
+#include "reports/tables_formats.h"
 
 namespace isoline {
 
@@ -11,6 +12,7 @@ void write_report(const Comparison& comparison, const std::filesystem::path& out
   write_text(out / "report.md", markdown_report(comparison));
   write_text(out / "report.tex", latex_report(comparison));
   write_text(out / "report.csv", csv_report(comparison));
+  write_text(out / "statistics.csv", statistics_csv(comparison));
   write_text(out / "report.json", json_report(comparison));
 }
 

@@ -3,6 +3,8 @@
 //   study                           reads the folders
 //   axes, reached, comparison       puts runs into cells and aggregates them: every figure
 //   statistics, standings           medians, profiles, who leads and how sure that is
+//   rank_tests, runtimes            tests by ranks; running times, areas, resamples
+//   tables (tables_*)               the tables of statistics, in every format
 //   curves, contour                 what the plots draw
 //   text, wording, readings         how figures, phrases and whole sentences are written
 //   csv, json, latex, markdown,     one output format each
@@ -17,7 +19,8 @@
 
 namespace isoline {
 
-// Writes index.html, report.md, report.tex, report.csv and report.json; makes the folder.
+// Writes index.html, report.md, report.tex, report.csv, statistics.csv and report.json; makes the
+// folder.
 void write_report(const Comparison& comparison, const std::filesystem::path& out);
 
 std::string html_report(const Comparison& comparison);

@@ -16,7 +16,8 @@ void add_report(CLI::App& app, Session&) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
-      "report", "Write index.html, report.md, report.csv, report.tex and report.json");
+      "report",
+      "Write index.html, report.md, report.tex, report.csv, statistics.csv and report.json");
   verb->add_option("DIR", options->folders, "Result folders of `isoline run`")->required();
   verb->add_option("--out", options->out, "Where to write (default: report/ in the first DIR)");
   verb->callback([options] {

@@ -32,7 +32,8 @@ TEST_F(Run, WritesRecordsAPlanSheetsAndAReportAndSaysWhere) {
   EXPECT_TRUE(contains(result.out, "out/report/index.html")) << result.out;
   EXPECT_EQ(count_records(out), 3U);
   EXPECT_TRUE(fs::exists(out / "plan.json"));
-  for (const char* format : {"index.html", "report.md", "report.csv", "report.tex", "report.json"})
+  for (const char* format :
+       {"index.html", "report.md", "report.csv", "report.tex", "report.json", "statistics.csv"})
     EXPECT_TRUE(fs::exists(out / "report" / format)) << format;
   const Finished validated = shell("./isoline validate out");
   EXPECT_EQ(validated.exit_code, 0) << validated.out;

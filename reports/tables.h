@@ -1,0 +1,39 @@
+// The statistics of a report as tables of text: computed and worded once, so that every format
+// prints the same figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/comparison.h"
+
+namespace isoline {
+
+// In the order of a report; empty where nothing has run.
+std::vector<StatisticTable> statistic_tables(const Comparison& comparison);
+
+// What so few problems, seeds or runs cannot show, a sentence each.
+std::vector<std::string> limits_of_evidence(const Comparison& comparison);
+
+// One each; tables_*.cpp.
+StatisticTable accuracy_table(const Comparison& comparison);
+StatisticTable anytime_table(const Comparison& comparison);
+StatisticTable data_profile_table(const Comparison& comparison);
+StatisticTable flip_table(const Comparison& comparison);
+StatisticTable interval_table(const Comparison& comparison);
+StatisticTable pairwise_table(const Comparison& comparison);
+StatisticTable rank_table(const Comparison& comparison);
+StatisticTable restart_table(const Comparison& comparison);
+StatisticTable signed_rank_table(const Comparison& comparison);
+
+inline constexpr std::size_t kMostTableRows = 40;   // the best optimizers
+inline constexpr std::size_t kMostTablePairs = 10;  // the best of them against each other
+
+// What the tables share.
+std::size_t shown_optimizers(const Comparison& comparison, std::size_t most);
+std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"
+std::string failed_text(const Comparison& comparison, std::size_t optimizer);     // "2/80"
+// Median work to the tightest tolerance where planned; costs[p][s].
+Costs tightest_costs(const Comparison& comparison);
+
+}  // namespace isoline
