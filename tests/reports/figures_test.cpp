@@ -1,0 +1,135 @@
+// The papers' figures and the tables of learned problems, from records made by hand.
+#include "reports/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core/json.h"
+#include "reports/learned.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+struct Learned {
+  Real xi = 1;
+  std::string optimizer;
+  std::uint64_t seed = 0;
+  Real x_error = 1, loss = 1;
+};
+
+Record learned(const Learned& given) {
+  const std::string spec = "sine[xi=" + std::to_string(static_cast<int>(given.xi)) + ",mode=learn]";
+  Record record = record_of({.problem = spec, .optimizer = given.optimizer, .seed = given.seed});
+  record.request.problem.name = "sine";
+  record.request.problem.options = {{"mode", "learn"}, {"xi", given.xi}, {"phi", 45}};
+  record.curve.x_error.assign(record.curve.iteration.size(), given.x_error);
+  record.summary.x_error = given.x_error;
+  record.summary.loss = given.loss;
+  record.cell = digest(spec + given.optimizer + std::to_string(given.seed));
+  return record;
+}
+
+Sheet sine_sheet(std::vector<Panel> panels) {
+  return {.kind = "problem",
+          .name = "sine",
+          .spec = "sine[xi=1,mode=learn]",
+          .options_text = "[]",
+          .inverse = "exact",
+          .panels = std::move(panels)};
+}
+
+class Figures : public testing::Test {
+ protected:
+  std::vector<Figure> drawn(const std::vector<Record>& records, const Panel& panel) {
+    for (const Record& record : records) folder.add(record);
+    folder.add(sine_sheet({panel}));
+    folder.add(plan_of(records));
+    study = read_study({folder.path()});
+    comparison = compare_optimizers(study);
+    return figures(comparison);
+  }
+
+  ResultFolder folder;
+  Study study;
+  Comparison comparison;
+};
+
+// The median over seeds over ξ, divided by ξ: by hand 2/1, 8/2, 12/4.
+TEST_F(Figures, SweepIsTheMedianErrorAtTheEndOverTheOption) {
+  std::vector<Record> records;
+  for (const auto& [xi, errors] :
+       std::map<Real, std::vector<Real>>{{1, {1, 2, 9}}, {2, {8, 7, 9}}, {4, {12, 12, 10}}})
+    for (std::size_t seed = 0; seed < errors.size(); ++seed)
+      records.push_back(
+          learned({.xi = xi, .optimizer = "sip", .seed = seed, .x_error = errors[seed]}));
+  const auto all =
+      drawn(records, {.title = "5d", .kind = "sweep", .over = "xi", .divided_by = "xi"});
+  ASSERT_EQ(all.size(), 1U);
+  ASSERT_EQ(all[0].lines.size(), 1U);
+  EXPECT_EQ(all[0].lines[0].x, (std::vector<Real>{1, 2, 4}));
+  EXPECT_EQ(all[0].lines[0].y, (std::vector<Real>{2, 4, 3}));
+  EXPECT_EQ(all[0].lines[0].low, (std::vector<Real>{1, 3.5, 2.5}));
+  EXPECT_EQ(all[0].lines[0].high, (std::vector<Real>{9, 4.5, 3}));
+}
+
+TEST_F(Figures, CurveTakesOnlyTheProblemsThatItsPanelWants) {
+  const std::vector<Record> records = {learned({.xi = 1, .optimizer = "sip", .x_error = 2}),
+                                       learned({.xi = 1, .optimizer = "adam", .x_error = 6}),
+                                       learned({.xi = 32, .optimizer = "sip", .x_error = 3})};
+  const auto all = drawn(records, {.title = "5b", .kind = "curve", .where = {{"xi", 1}}});
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].lines.size(), 2U);
+  EXPECT_NE(all[0].reading.find("sip has 2"), std::string::npos) << all[0].reading;
+  EXPECT_NE(all[0].reading.find("adam 6 (3×)"), std::string::npos) << all[0].reading;
+}
+
+TEST_F(Figures, ScatterAndDecadesReadTheSamples) {
+  Record record = learned({.optimizer = "sip"});
+  record.exhibit = Exhibit{.grid = 0, .target = {}, .x = {}, .truth = {}};
+  record.exhibit->target = Matrix::Constant(1, 6, 0.02);
+  record.exhibit->truth = Vector::LinSpaced(6, -5, 0).transpose();
+  record.exhibit->x = record.exhibit->truth.array() + 0.5;
+  const auto scatter = drawn({record}, {.title = "2", .kind = "scatter"});
+  ASSERT_EQ(scatter.size(), 1U);
+  EXPECT_EQ(scatter[0].lines[0].x.size(), 6U);
+  EXPECT_NE(scatter[0].reading.find("sip 0.5"), std::string::npos) << scatter[0].reading;
+  const auto decades = drawn({record}, {.title = "2", .kind = "decades"});
+  ASSERT_GE(decades.size(), 1U);
+}
+
+TEST_F(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
+  Record record = learned({.optimizer = "sip"});
+  Exhibit exhibit{.grid = 2, .target = {}, .x = {}, .truth = {}};
+  exhibit.target = Eigen::Vector4d(1, 2, 3, 4);  // columns of the grid
+  exhibit.x = Eigen::Vector4d(5, 6, 7, 8);
+  exhibit.truth = Eigen::Vector4d(9, 10, 11, 12);
+  record.exhibit = exhibit;
+  folder.add(record);
+  write_pictures(exhibit, (folder.path() / "runs" / record.file_name()).replace_extension(".npy"));
+  const auto all = drawn({record}, {.title = "6", .kind = "pictures"});
+  ASSERT_EQ(all.size(), 1U);
+  ASSERT_EQ(all[0].pictures.size(), 3U);
+  EXPECT_EQ(all[0].pictures[0].values, (std::vector<Real>{1, 3, 2, 4}));  // rows of the picture
+  EXPECT_EQ(all[0].pictures[1].title, "sip");
+  EXPECT_EQ(all[0].pictures[2].values, (std::vector<Real>{9, 11, 10, 12}));
+}
+
+TEST_F(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
+  const std::vector<Record> records = {
+      learned({.xi = 1, .optimizer = "sip", .x_error = 1, .loss = 1}),
+      learned({.xi = 1, .optimizer = "adam", .x_error = 2, .loss = 2}),
+      learned({.xi = 32, .optimizer = "sip", .x_error = 1, .loss = 5}),
+      learned({.xi = 32, .optimizer = "adam", .x_error = 2, .loss = 3})};
+  drawn(records, {.title = "5b", .kind = "curve"});
+  const auto all = learned_problems(comparison);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_FALSE(all[0].ranks_differ) << all[0].reading;
+  EXPECT_TRUE(all[1].ranks_differ) << all[1].reading;
+  EXPECT_NE(learned_markdown(comparison).find("rank methods differently"), std::string::npos);
+  EXPECT_NE(learned_html(comparison).find("rank methods differently"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace isoline
