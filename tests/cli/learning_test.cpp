@@ -85,7 +85,7 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
   }
 }
 
-TEST(Run, OfAWrongNetworkWritesNoFolder) {
+TEST(Network, ThatDoesNotFitLeavesNoFolder) {
   const Shell shell;
   const Finished result = shell(
       "./isoline run --problem 'sine[mode=learn,network=unet]' --optimizer adam --out results/r");

@@ -48,8 +48,8 @@ TEST_P(EveryNetwork, PullbackIsTheAdjointOfPushforward) {
   EXPECT_LE(std::abs(u.cwiseProduct(Jv).sum() - v.dot(JTu)), at.rounding() * scale);
 }
 
-// Thousands of kinks, each felt by every sample, lie within any step that single precision resolves:
-// such a network is held to a reference of its own.
+// Thousands of kinks, each felt by every sample, lie within any step that single precision
+// resolves: such a network is held to a reference of its own.
 bool are_differences_blurred(const Network& network) {
   return network.has_kinks() && network.is_single_precision() &&
          !network.has_independent_samples();
