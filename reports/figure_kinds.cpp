@@ -110,7 +110,12 @@ Figure series_figure(const Comparison& c, std::size_t p, const std::string& name
   out.lines = lines_of(c, p, [&](const auto& records) {
     return line_over_iterations(records, [&](const Record& r) { return series_of(r, name); });
   });
-  out.reading = ends_reading(c, out.lines);
+  std::vector<std::string> ends;
+  for (const FigureLine& line : out.lines)
+    ends.push_back(fmt::format("{} {}", label(c, line), figure(line.y.back())));
+  constexpr std::size_t kMost = 8;
+  ends.resize(std::min(kMost, ends.size()));
+  out.reading = fmt::format("At the end: {}.", fmt::join(ends, ", "));
   return out;
 }
 
@@ -179,37 +184,6 @@ Figure decades_figure(const Comparison& c, std::size_t p) {
   if (!out.lines.empty())
     out.reading =
         "Each point is a decade of y*, the last one up to 1. " + ends_reading(c, out.lines);
-  return out;
-}
-
-Picture picture_of(std::string title, const Matrix& field, Index N) {
-  Picture picture{std::move(title), N, {}};
-  for (Index row = 0; row < N; ++row)
-    for (Index column = 0; column < N; ++column)
-      picture.values.push_back(field(row + N * column, 0));
-  return picture;
-}
-
-Figure picture_figure(const Comparison& c, std::size_t p) {
-  Figure out;
-  std::vector<Picture> inferred;
-  Exhibit last;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    for (const Record* record : records_of(c, p, s)) {
-      if (!record->exhibit || !record->exhibit->is_picture()) continue;
-      const std::optional<Exhibit> shown = c.study->pictures_of(*record);
-      if (!shown) continue;
-      inferred.push_back(picture_of(shown_spec(c.optimizers[s].label), shown->x, shown->grid));
-      last = *shown;
-      break;
-    }
-  if (inferred.empty()) return out;
-  out.pictures.push_back(picture_of("y*", last.target, last.grid));
-  for (Picture& picture : inferred) out.pictures.push_back(std::move(picture));
-  out.pictures.push_back(picture_of("x*", last.truth, last.grid));
-  out.reading =
-      "The first sample of the validation, as inferred after the last iteration of the first seed. "
-      "The x share the grey scale of x*.";
   return out;
 }
 

@@ -12,6 +12,8 @@ using Sweep = std::vector<std::pair<Real, std::size_t>>;  // value of the option
 
 Figure sweep_figure(const Comparison& comparison, const Sweep& sweep, const Panel& panel);
 
+Figure picture_figure(const Comparison& comparison, std::size_t problem);
+
 // Of one problem: curve, scatter, decades, pictures, series or path. Empty where no run has it.
 Figure problem_figure(const Comparison& comparison, std::size_t problem, const Panel& panel);
 

@@ -78,7 +78,7 @@ function buildFigure(element) {
     element.append(row);
     return;
   }
-  const ranked = figure.lines.map((line) => line.s), visible = new Set(ranked);
+  const ranked = figure.lines.map((line) => line.s), visible = shownAtFirst(ranked);
   const place = document.createElement('div');
   const draw = redrawer(place, () => drawFigure(place, figure, visible));
   const point = (index) => highlight(draw.chart, index);

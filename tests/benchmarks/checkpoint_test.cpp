@@ -59,9 +59,10 @@ TEST_P(Stopped, AndGoneOnGivesTheSameTrace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Stopped,
-                         testing::Values("adam", "adadelta", "momentum[rate=1e-6]", "gd[rate=1e-5]", "rmsprop",
-                                         "sip[inverse=newton,proxy=l1]", "supervised", "adahessian",
-                                         "hessian-free", "kfac", "hig", "levenberg-marquardt"));
+                         testing::Values("adam", "adadelta", "momentum[rate=1e-6]", "gd[rate=1e-5]",
+                                         "rmsprop", "sip[inverse=newton,proxy=l1]", "supervised",
+                                         "adahessian", "hessian-free", "kfac", "hig",
+                                         "levenberg-marquardt"));
 
 TEST(Checkpoint, OfAnotherCellOrDamagedIsLeftAlone) {
   const TemporaryFolder folder;
