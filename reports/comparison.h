@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/claims.h"
 #include "reports/statistics.h"
 #include "reports/study.h"
 
@@ -99,6 +100,7 @@ struct Comparison {
   std::vector<std::uint64_t> seeds;
   std::size_t names = 0;  // of problems, options apart
   bool is_any_timed_together = false;
+  std::vector<Judgement> claims;  // those whose cells are among the runs; given, not computed here
 
   const Cell& cell(std::size_t problem, std::size_t optimizer) const {
     return cells[problem][optimizer];

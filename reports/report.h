@@ -4,6 +4,7 @@
 //   axes, reached, comparison       puts runs into cells and aggregates them: every figure
 //   statistics, standings           medians, profiles, who leads and how sure that is
 //   curves, contour                 what the plots draw
+//   claims, quantities              what papers say, held against the runs
 //   text, wording, readings         how figures, phrases and whole sentences are written
 //   csv, json, latex, markdown,     one output format each
 //   terminal, html (html_*, page/)
