@@ -115,7 +115,9 @@ TEST(ClaimsOfTheTree, WithLabelsPermutedAtMostOneInTenIsReproduced) {
   std::vector<Record> runs;
   for (const Record& record : notebook())
     if (record.request.problem.name == "square") runs.push_back(record);
-  const Json asked = notebook_claims();
+  Json asked = Json::array();
+  for (const Json& claim : notebook_claims())  // what is said of the start is said of no method
+    if (claim.at("quantity").value("iteration", 1) > 0) asked.push_back(claim);
   std::size_t reproduced = 0, judged = 0;
   for (std::size_t turn = 1; turn < runs.size(); ++turn) {
     std::vector<Record> turned = runs;
