@@ -1,4 +1,4 @@
-// The suites, rates and schemas of the tree, built into the program.
+// The suites, rates, claims and schemas of the tree, built into the program.
 #pragma once
 
 #include <map>
@@ -10,6 +10,7 @@ namespace isoline {
 // By file name without ".json".
 const std::map<std::string, std::string_view>& builtin_suites();
 const std::map<std::string, std::string_view>& builtin_rates();
+const std::map<std::string, std::string_view>& builtin_claims();
 const std::map<std::string, std::string_view>& builtin_schemas();
 
 }  // namespace isoline

@@ -2,6 +2,10 @@
 #include "benchmarks/sheets.h"
 
 #include <algorithm>
+#include <set>
+
+#include "benchmarks/isolate.h"
+#include "core/json.h"
 
 namespace isoline {
 namespace {
@@ -92,6 +96,30 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
           .oracles = names_of(entry.needs),
           .privileges = privileges_of(entry.needs, Inverse::none),
           .family = std::string(name_of(entry.family))};
+}
+
+void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store) {
+  constexpr double kSheetSeconds = 30;
+  std::set<std::string> known;
+  const auto write = [&](const std::string& spec, const auto& make) {
+    if (!known.insert(spec).second) return;
+    const auto text = isolated_text([&] { return to_json(make()).dump(); }, kSheetSeconds);
+    if (text) store.write(sheet_from_json(parse_json(*text, spec)));
+  };
+  for (const Request& request : requests) {
+    write("problem " + request.problem.spec,
+          [&] { return problem_sheet(catalog, request.problem); });
+    write("optimizer " + request.optimizer.spec,
+          [&] { return optimizer_sheet(catalog, request.optimizer); });
+  }
+}
+
+std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
+  std::vector<PlannedCell> cells;
+  for (const Request& request : requests)
+    cells.push_back(
+        {cell_digest(request), request.problem.spec, request.optimizer.spec, request.seed});
+  return cells;
 }
 
 }  // namespace isoline

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/claims.h"
 #include "reports/statistics.h"
 #include "reports/study.h"
 #include "reports/table.h"
@@ -102,6 +103,7 @@ struct Comparison {
   bool is_any_timed_together = false;
   std::vector<StatisticTable> tables;  // in the order of a report; none where nothing has run
   std::vector<std::string> limits;     // what cannot be concluded, a sentence each
+  std::vector<Judgement> claims;  // those whose cells are among the runs; given, not computed here
 
   const Cell& cell(std::size_t problem, std::size_t optimizer) const {
     return cells[problem][optimizer];

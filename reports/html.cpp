@@ -171,6 +171,7 @@ std::string html_report(const Comparison& c) {
                                        {"details", details_html(c)},
                                        {"learned", learned_html(c)},
                                        {"figures", figures_html(drawn)},
+                                       {"claims", claims_html(c.claims)},
                                        {"problems", problems_html(c)},
                                        {"families", families_html(c)},
                                        {"failures", failures_html(c)},

@@ -150,6 +150,7 @@ std::string json_report(const Comparison& c) {
                   {"unreadable", unreadable},
                   {"failures", failures_json(c)},
                   {"verdict", verdict(c)},
+                  {"claims", claims_json(c.claims)},
                   {"leader", leader_json(c, c.leader)},
                   {"open_leader", leader_json(c, c.open_leader)},
                   {"optimizers", standings_json(c)},

@@ -116,7 +116,8 @@ std::string markdown_report(const Comparison& c) {
   text += is_large ? "\n<details><summary>Every problem and optimizer</summary>\n" : "";
   text += matrices(c);
   text += is_large ? "\n</details>\n" : "";
-  return text + learned_markdown(c) + statistics_markdown(c) + failures(c);
+  return text + learned_markdown(c) + claims_markdown(c.claims) + statistics_markdown(c) +
+         failures(c);
 }
 
 }  // namespace isoline

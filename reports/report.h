@@ -6,6 +6,7 @@
 //   rank_tests, runtimes            tests by ranks; running times, areas, resamples
 //   tables (tables_*)               the tables of statistics, in every format
 //   curves, contour                 what the plots draw
+//   claims, quantities              what papers say, held against the runs
 //   text, wording, readings         how figures, phrases and whole sentences are written
 //   csv, json, latex, markdown,     one output format each
 //   terminal, html (html_*, page/)

@@ -34,6 +34,7 @@ _isoline() {
          run) list=$("$program" list suites --names 2>/dev/null) ;;
          describe) list=$("$program" list all --names 2>/dev/null) ;;
          check) list=$("$program" list problems --names 2>/dev/null) ;;
+         claims) list=$("$program" claims --list 2>/dev/null | grep -oE '^ *[a-z0-9-]+') ;;
          list) list="problems optimizers suites all" ;;
          completion) list=bash ;;
          *) COMPREPLY=($(compgen -f -- "$word")); return ;;

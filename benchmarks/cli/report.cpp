@@ -9,7 +9,7 @@
 
 namespace isoline {
 
-void add_report(CLI::App& app, Session&) {
+void add_report(CLI::App& app, Session& session) {
   struct Options {
     std::vector<std::string> folders;
     std::string out;
@@ -20,12 +20,13 @@ void add_report(CLI::App& app, Session&) {
       "Write index.html, report.md, report.tex, report.csv, statistics.csv and report.json");
   verb->add_option("DIR", options->folders, "Result folders of `isoline run`")->required();
   verb->add_option("--out", options->out, "Where to write (default: report/ in the first DIR)");
-  verb->callback([options] {
+  verb->callback([options, &session] {
     namespace fs = std::filesystem;
     const std::vector<fs::path> folders(options->folders.begin(), options->folders.end());
     const fs::path out = options->out.empty() ? folders.front() / "report" : fs::path(options->out);
     const Study study = read_study(folders);
-    const Comparison comparison = compare_optimizers(study);
+    Comparison comparison = compare_optimizers(study);
+    comparison.claims = covered_claims(session, study);
     write_report(comparison, out);
     fmt::print("{}\nreport: {}\n", terminal_table(comparison), (out / "index.html").string());
   });

@@ -89,23 +89,6 @@ void print_plan(Session& session, const std::vector<Request>& requests, const fs
              duration_text(seconds / jobs), jobs);
 }
 
-// A sheet for every component of the plan, each made in a process of its own.
-void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store) {
-  constexpr double kSheetSeconds = 30;
-  std::set<std::string> known;
-  const auto write = [&](const std::string& spec, const auto& make) {
-    if (!known.insert(spec).second) return;
-    const auto text = isolated_text([&] { return to_json(make()).dump(); }, kSheetSeconds);
-    if (text) store.write(sheet_from_json(parse_json(*text, spec)));
-  };
-  for (const Request& request : requests) {
-    write("problem " + request.problem.spec,
-          [&] { return problem_sheet(catalog, request.problem); });
-    write("optimizer " + request.optimizer.spec,
-          [&] { return optimizer_sheet(catalog, request.optimizer); });
-  }
-}
-
 void print_outcome(const Outcome& outcome, bool quiet) {
   constexpr std::size_t kMost = 20;
   for (std::size_t i = 0; i < std::min(kMost, outcome.failures.size()); ++i)
@@ -128,21 +111,14 @@ void print_outcome(const Outcome& outcome, bool quiet) {
              fmt::join(counts, ", "));
 }
 
-void report_on(const fs::path& out, bool quiet) {
+void report_on(Session& session, const fs::path& out, bool quiet) {
   const Study study = read_study({out});
   const fs::path folder = out / "report";
-  const Comparison comparison = compare_optimizers(study);
+  Comparison comparison = compare_optimizers(study);
+  comparison.claims = covered_claims(session, study);
   write_report(comparison, folder);
   if (quiet) return;
   fmt::print("\n{}\nreport: {}\n", terminal_table(comparison), (folder / "index.html").string());
-}
-
-std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
-  std::vector<PlannedCell> cells;
-  for (const Request& request : requests)
-    cells.push_back(
-        {cell_digest(request), request.problem.spec, request.optimizer.spec, request.seed});
-  return cells;
 }
 
 void run(const RunArguments& given, Session& session) {
@@ -163,7 +139,7 @@ void run(const RunArguments& given, Session& session) {
   write_sheets(session.catalog(), requests, store);
   const Outcome outcome = run_all(session.catalog(), requests, store, options);
   print_outcome(outcome, given.quiet);
-  if (!given.no_report) report_on(out, given.quiet);
+  if (!given.no_report) report_on(session, out, given.quiet);
   if (outcome.is_interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on where it stopped\n");
     session.exit_code = kInterrupted;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "benchmarks/catalog.h"
 
@@ -11,6 +12,9 @@ class App;
 }
 
 namespace isoline {
+
+struct Judgement;
+struct Study;
 
 // Exit codes of every verb.
 enum Exit { kGood = 0, kUsage = 1, kWorse = 2, kBetterOnly = 3, kNotComparable = 4 };
@@ -32,10 +36,14 @@ class Session {
   std::unique_ptr<Catalog> catalog_;
 };
 
+// The claims of the tree whose cells are among the runs, judged.
+std::vector<Judgement> covered_claims(Session& session, const Study& study);
+
 void add_run(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
 void add_merge(CLI::App& app, Session& session);
+void add_claims(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
 void add_describe(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);

@@ -11,9 +11,8 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Finished program = shell("./isoline --help");
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
-  for (const std::string verb :
-       {"run", "report", "list", "describe", "check", "validate", "tune", "train", "infer", "merge",
-        "compare", "completion"}) {
+  for (const std::string verb : {"run", "report", "list", "describe", "check", "validate", "tune",
+                                 "train", "infer", "merge", "compare", "claims", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
@@ -64,6 +63,8 @@ TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
            {"compare . . --json --markdown", "--json"},
            {"merge nowhere --out results", "nowhere"},
            {"merge .", "--out"},
+           {"claims notebok", "did you mean 'notebook'"},
+           {"claims --no-run --out nowhere", "nowhere"},
            {"completion fish", "fish"},
            {"list problms", "problms"}}) {
     const Finished result = shell("./isoline " + command);

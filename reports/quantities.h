@@ -1,0 +1,49 @@
+// The quantities that claims speak of: one figure of one run, and what is made of medians over
+// seeds.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+
+namespace isoline {
+
+// Where a figure of a run is read: a column of its curve or a quantity of its path, at an
+// iteration, or at the end where none is named.
+struct Place {
+  std::string column;
+  std::optional<std::int64_t> iteration;
+  std::vector<std::vector<Real>> table;  // of "deviation": x at iterations 1, 2, … or at the last
+};
+
+// Not-a-number where the record does not hold it.
+Real figure_of(const Record& record, const Place& place);
+std::string column_words(const std::string& column);  // "error in x"
+
+// Of terms by their medians: value (of the first), greatest, ratio (first over second), slope of
+// log m over log at, crossing (where the first half of the terms passes from below the second half
+// to above it, in `at`), position (of the first, from 1), order (Kendall's τ with that of the
+// terms).
+Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
+                 const std::vector<Real>& at);
+
+// The value of a quantity at which it says nothing of a direction; none where there is none.
+std::optional<Real> neutral_of(const std::string& kind);
+
+// [term][alternative][seed], of which the best alternative counts: the least median.
+using SeedValues = std::vector<std::vector<std::vector<Real>>>;
+
+struct Measurement {
+  Real value = 0;
+  Real low = 0, high = 0;  // 95 % of the bootstrap over seeds; not-a-number with one seed
+  std::size_t n = 0;       // seeds
+};
+
+// All terms are resampled by the same seeds: a ratio stays one between runs of equal start and
+// data.
+Measurement measure(const std::string& kind, const SeedValues& samples, const std::vector<Real>& at,
+                    const std::vector<Real>& scale, const std::string& stream);
+
+}  // namespace isoline

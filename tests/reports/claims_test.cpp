@@ -1,0 +1,205 @@
+// Verdicts on claims against figures worked out by hand, and what false claims come to.
+#include "reports/claims.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+// A run whose error in x is `error` throughout; its cell is named by optimizer and seed.
+Record run_of(const std::string& optimizer, std::uint64_t seed, Real error) {
+  Record record = record_of({.optimizer = optimizer, .seed = seed});
+  record.cell = optimizer + std::to_string(seed);
+  for (Real& value : record.curve.x_error) value = error;
+  return record;
+}
+
+struct Asked {
+  std::string kind = "ratio";
+  Json published = {{"value", 10}};
+  Json tolerance = {{"from", "text"}, {"relative", 0.05}};
+  std::vector<std::string> optimizers = {"adam", "sip"};
+  std::int64_t seeds = 3, iterations = 100;
+  Json more = Json::object();  // of the quantity
+};
+
+Json claim_of(const Asked& asked) {
+  Json terms = Json::array(), cells = Json::array();
+  for (const std::string& optimizer : asked.optimizers) {
+    terms.push_back({{"optimizer", optimizer}});
+    Json digests = Json::array();
+    for (std::int64_t seed = 0; seed < asked.seeds; ++seed)
+      digests.push_back(optimizer + std::to_string(seed));
+    cells.push_back({{{"title", "square × " + optimizer}, {"cells", digests}}});
+  }
+  Json quantity{{"kind", asked.kind}, {"column", "x_error"}, {"terms", terms}};
+  quantity.update(asked.more);
+  return {{"id", "claim"},
+          {"sentence", "One is ahead of the other."},
+          {"source", {{"paper", "Someone (2022)"}, {"figure", "Figure 1"}}},
+          {"cells", {{{"iterations", asked.iterations}, {"terms", cells}}}},
+          {"quantity", quantity},
+          {"published", asked.published},
+          {"tolerance", asked.tolerance}};
+}
+
+// Medians 20 and 2: a ratio of 10.
+std::vector<Record> adam_and_sip() {
+  std::vector<Record> runs;
+  for (const auto& [seed, adam, sip] :
+       {std::tuple{0, 20.0, 2.0}, std::tuple{1, 10.0, 1.0}, std::tuple{2, 90.0, 3.0}}) {
+    runs.push_back(run_of("adam", seed, adam));
+    runs.push_back(run_of("sip", seed, sip));
+  }
+  return runs;
+}
+
+Judgement judgement_of(const Asked& asked, const std::vector<Record>& runs) {
+  return judge(Json::array({claim_of(asked)}), runs).at(0);
+}
+
+TEST(Claims, ARatioIsThatOfMediansWithAnIntervalOverPairedSeeds) {
+  const Judgement judgement = judgement_of({}, adam_and_sip());
+  EXPECT_EQ(judgement.verdict, Verdict::reproduced);
+  EXPECT_TRUE(judgement.is_covered);
+  ASSERT_TRUE(judgement.measured.has_value());
+  EXPECT_EQ(judgement.measured->value, 10);
+  EXPECT_EQ(judgement.measured->n, 3U);
+  // Seeds are drawn together: the resamples' ratios are 10/1, 20/2 and, in 7 of 27, 90/3.
+  EXPECT_EQ(judgement.measured->low, 10);
+  EXPECT_EQ(judgement.measured->high, 30);
+}
+
+TEST(Claims, TheVerdictFollowsFromTheErrorOfTheSource) {
+  const Json text{{"from", "text"}, {"relative", 0.05}};
+  const Json figure{{"from", "figure"}, {"relative", 0.2}};
+  const Json two{{"from", "figure"}, {"relative", 0.2}, {"values", 2}};
+  const Json none{{"from", "none"}};
+  using V = Verdict;
+  // Bands by hand: 10.5 ± 5 % = 9.975..11.025; 10.6 ± 5 % = 10.07..11.13; 12.4 ± 20 % =
+  // 9.92..14.88; of two values 14.9 · 0.8/1.2 = 9.93 and 15.1 · 0.8/1.2 = 10.07.
+  for (const auto& [published, tolerance, verdict] :
+       {std::tuple{Json{{"value", 10.5}}, text, V::reproduced},
+        std::tuple{Json{{"value", 10.6}}, text, V::partly},
+        std::tuple{Json{{"value", 12.4}}, figure, V::reproduced},
+        std::tuple{Json{{"value", 12.6}}, figure, V::partly},
+        std::tuple{Json{{"value", 14.9}}, two, V::reproduced},
+        std::tuple{Json{{"value", 15.1}}, two, V::partly},
+        std::tuple{Json{{"value", 0.5}}, two, V::not_reproduced},
+        std::tuple{Json{{"at_least", 10}}, none, V::reproduced},
+        std::tuple{Json{{"at_least", 11}}, none, V::partly},
+        std::tuple{Json{{"at_most", 10}}, none, V::reproduced},
+        std::tuple{Json{{"at_most", 0.5}}, none, V::not_reproduced}}) {
+    const Judgement judgement =
+        judgement_of({.published = published, .tolerance = tolerance}, adam_and_sip());
+    EXPECT_EQ(judgement.verdict, verdict) << published << tolerance;
+  }
+}
+
+TEST(Claims, PlantedFalseOnesAreNotReproduced) {
+  const std::vector<Record> runs = adam_and_sip();
+  const Asked reversed{.optimizers = {"sip", "adam"}};  // sip ten times as far as adam
+  const Asked value{.kind = "value", .published = {{"value", 2}}};
+  const Asked first{
+      .kind = "position", .published = {{"value", 1}}, .tolerance = {{"from", "none"}}};
+  for (const Asked& planted : {reversed, value, first})
+    EXPECT_EQ(judgement_of(planted, runs).verdict, Verdict::not_reproduced) << planted.kind;
+}
+
+TEST(Claims, WithoutTheirCellsTellWhichAreMissing) {
+  std::vector<Record> runs = adam_and_sip();
+  runs.pop_back();  // sip, seed 2
+  const Judgement judgement = judgement_of({}, runs);
+  EXPECT_EQ(judgement.verdict, Verdict::not_comparable);
+  EXPECT_EQ(judgement.why, "no runs of square × sip");
+  EXPECT_FALSE(judgement.is_covered);
+  EXPECT_FALSE(judgement.measured.has_value());
+}
+
+TEST(Claims, TooShortRunsAreMeasuredAndNotJudged) {
+  const Judgement judgement = judgement_of({.more = {{"iteration", 5000}}}, adam_and_sip());
+  EXPECT_EQ(judgement.verdict, Verdict::not_comparable);
+  EXPECT_EQ(judgement.why, "too short: 100 of 5000 iterations");
+  EXPECT_EQ(judgement.measured->value, 10);
+}
+
+TEST(Claims, TheLongestCompleteCellsCount) {
+  Json claim = claim_of({});
+  Json longer = claim["cells"][0];
+  longer["iterations"] = 1000;
+  longer["terms"][0][0]["cells"] = {"adam0-long"};
+  longer["terms"][1][0]["cells"] = {"sip0"};
+  claim["cells"].insert(claim["cells"].begin(), longer);
+  std::vector<Record> runs = adam_and_sip();
+  EXPECT_EQ(judge(Json::array({claim}), runs)[0].measured->n, 3U);
+  runs.push_back(run_of("adam", 0, 5));
+  runs.back().cell = "adam0-long";
+  EXPECT_EQ(judge(Json::array({claim}), runs)[0].measured->value, 2.5);
+}
+
+TEST(Claims, WhoseSourceCannotBeComparedAreMeasuredBesideIt) {
+  Json claim = claim_of({});
+  claim["not_comparable"] = "their implementation";
+  const Judgement judgement = judge(Json::array({claim}), adam_and_sip())[0];
+  EXPECT_EQ(judgement.verdict, Verdict::not_comparable);
+  EXPECT_EQ(judgement.why, "their implementation");
+  EXPECT_EQ(judgement.measured->value, 10);
+}
+
+TEST(Quantities, AreThoseWorkedOutByHand) {
+  const std::vector<Real> at = {1, 10, 100};
+  EXPECT_EQ(quantity_of("greatest", {3, 5, 4}, {}), 5);
+  EXPECT_EQ(quantity_of("position", {4, 5, 3}, {}), 2);
+  EXPECT_EQ(quantity_of("order", {1, 2, 3}, {}), 1);
+  EXPECT_NEAR(quantity_of("order", {1, 3, 2}, {}), 1.0 / 3, 1e-15);  // 2 pairs with, 1 against
+  EXPECT_EQ(quantity_of("order", {3, 2, 1}, {}), -1);
+  EXPECT_NEAR(quantity_of("slope", {7, 700, 70000}, at), 2, 1e-12);  // 7 at²
+  // log10 of the ratio: −1 at 1, 1 at 10: it passes 0 halfway in the logarithm, at √10.
+  EXPECT_NEAR(quantity_of("crossing", {1, 10, 10, 10, 1, 1}, at), std::sqrt(10.0), 1e-12);
+  EXPECT_TRUE(std::isinf(quantity_of("crossing", {1, 1, 1, 2, 2, 2}, at)));
+}
+
+TEST(Quantities, ASlopeReadOffAFigureIsUncertainByItsTwoEnds) {
+  // ln(1.2 / 0.8) / ln(100) = 0.0880
+  Json claim = claim_of({.kind = "slope",
+                         .published = {{"value", 0}},
+                         .tolerance = {{"from", "figure"}, {"relative", 0.2}}});
+  claim["quantity"]["terms"][0]["at"] = 1;
+  claim["quantity"]["terms"][1]["at"] = 100;
+  EXPECT_EQ(verdict_of(0.0880, claim), Verdict::reproduced);
+  EXPECT_EQ(verdict_of(-0.0880, claim), Verdict::reproduced);
+  EXPECT_EQ(verdict_of(0.0881, claim), Verdict::not_reproduced);
+}
+
+TEST(Quantities, OfSeveralAlternativesTheBestCounts) {
+  const SeedValues samples = {{{5, 6, 7}, {2, 3, 9}}, {{1, 1, 1}}};
+  EXPECT_EQ(measure("ratio", samples, {1, 1}, {1, 2}, "test").value, 1.5);
+  EXPECT_TRUE(std::isnan(measure("value", {{{4}}}, {1}, {1}, "test").low)) << "one seed";
+}
+
+TEST(Quantities, AFailedRunCountsAsInfinite) {
+  EXPECT_TRUE(std::isinf(measure("value", {{{NAN, NAN, 1}}}, {1}, {1}, "test").value));
+  EXPECT_EQ(measure("value", {{{NAN, 2, 1}}}, {1}, {1}, "test").value, 2);
+}
+
+TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
+  const std::vector<Judgement> judgements = {judgement_of({}, adam_and_sip())};
+  EXPECT_EQ(measured_text(judgements[0]), "10 (10–30), n = 3");
+  for (const std::string& text :
+       {claims_html(judgements), claims_markdown(judgements), claims_terminal(judgements)}) {
+    for (const char* part : {"reproduced", "One is ahead of the other.", "10–30", "±5 %"})
+      EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+    EXPECT_NE(text.find("Of 1 claims 1 are reproduced, 0 partly, 0 not; 0 cannot be compared."),
+              std::string::npos)
+        << text;
+  }
+  EXPECT_EQ(claims_json(judgements)[0].at("measured").at("value"), 10);
+  EXPECT_EQ(claims_markdown({}), "");
+}
+
+}  // namespace
+}  // namespace isoline
