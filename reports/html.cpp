@@ -7,6 +7,7 @@
 #include <map>
 #include <string_view>
 
+#include "reports/audit.h"
 #include "reports/contour.h"
 #include "reports/curves.h"
 #include "reports/learned.h"
@@ -168,6 +169,7 @@ std::string html_report(const Comparison& c) {
                                        {"profile", profile_html(c)},
                                        {"details", details_html(c)},
                                        {"learned", learned_html(c)},
+                                       {"audit", audit_html(c.study->audits)},
                                        {"figures", figures_html(drawn)},
                                        {"problems", problems_html(c)},
                                        {"families", families_html(c)},

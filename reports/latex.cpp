@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "reports/audit.h"
 #include "reports/report.h"
 #include "reports/text.h"
 #include "reports/wording.h"
@@ -99,7 +100,7 @@ std::string latex_report(const Comparison& c) {
   for (std::size_t s = 0; s < optimizers; s += kMostRows)
     for (std::size_t p = 0; p < problems; p += columns)
       text += matrix(c, p, std::min(p + columns, problems), s, std::min(s + kMostRows, optimizers));
-  return text;
+  return text + audit_latex(c.study->audits);
 }
 
 }  // namespace isoline

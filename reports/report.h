@@ -5,6 +5,7 @@
 //   statistics, standings           medians, profiles, who leads and how sure that is
 //   curves, contour                 what the plots draw
 //   text, wording, readings         how figures, phrases and whole sentences are written
+//   audit (audit_*)                 the table of measured properties, in each format
 //   csv, json, latex, markdown,     one output format each
 //   terminal, html (html_*, page/)
 #pragma once

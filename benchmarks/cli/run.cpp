@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <thread>
 
+#include "benchmarks/audit.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/preview.h"
 #include "benchmarks/runner.h"
@@ -128,8 +129,21 @@ void print_outcome(const Outcome& outcome, bool quiet) {
              fmt::join(counts, ", "));
 }
 
-void report_on(const fs::path& out, bool quiet) {
-  const Study study = read_study({out});
+// The properties at default options of all optimizers that ever ran in this folder.
+std::vector<AuditedOptimizer> write_audit(const Catalog& catalog, const Study& study,
+                                          const fs::path& out) {
+  std::set<std::string> names;
+  for (const Record& record : study.runs)
+    if (const std::string& name = record.request.optimizer.name; catalog.optimizers.contains(name))
+      names.insert(name);
+  std::vector<AuditedOptimizer> all = audit_all(catalog, {names.begin(), names.end()});
+  write_json(out / "audit.json", audit_to_json(all));
+  return all;
+}
+
+void report_on(const Catalog& catalog, const fs::path& out, bool quiet) {
+  Study study = read_study({out});
+  study.audits = write_audit(catalog, study, out);
   const fs::path folder = out / "report";
   const Comparison comparison = compare_optimizers(study);
   write_report(comparison, folder);
@@ -163,7 +177,7 @@ void run(const RunArguments& given, Session& session) {
   write_sheets(session.catalog(), requests, store);
   const Outcome outcome = run_all(session.catalog(), requests, store, options);
   print_outcome(outcome, given.quiet);
-  if (!given.no_report) report_on(out, given.quiet);
+  if (!given.no_report) report_on(session.catalog(), out, given.quiet);
   if (outcome.is_interrupted) {
     fmt::print(stderr, "interrupted; the same command goes on where it stopped\n");
     session.exit_code = kInterrupted;

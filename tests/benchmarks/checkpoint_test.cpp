@@ -1,6 +1,8 @@
 // A run that was stopped and gone on leaves the trace of one that was not, bit for bit.
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "benchmarks/execute.h"
 #include "benchmarks/suite.h"
 #include "core/json.h"
