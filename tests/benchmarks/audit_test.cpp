@@ -89,7 +89,8 @@ TEST(Audit, RecoversTheExponentsOfTheory) {
 }
 
 TEST(Audit, TellsAMethodWithoutPowerLaw) {
-  const PowerLaw& law = audited("adamw").law(Scaled::input).step;  // its decay knows no units
+  const AuditedOptimizer adamw = audited("adamw");
+  const PowerLaw& law = adamw.law(Scaled::input).step;  // its decay knows no units
   EXPECT_TRUE(law.has_values());
   EXPECT_FALSE(law.holds());
 }
