@@ -88,7 +88,7 @@ std::string composition_sentence(const All& all) {
       all, [](const AuditedOptimizer& audited) { return audited.linear_angle < kSmallest; });
   const AuditedOptimizer* worst = nullptr;
   for (const AuditedOptimizer& audited : all)
-    if (audited.reason.empty() && !std::isnan(audited.linear_angle) &&
+    if (audited.reason.empty() && audited.linear_angle >= kSmallest &&
         (worst == nullptr || audited.linear_angle > worst->linear_angle))
       worst = &audited;
   return fmt::format(
