@@ -7,6 +7,7 @@
 #include <map>
 #include <string_view>
 
+#include "reports/audit.h"
 #include "reports/contour.h"
 #include "reports/curves.h"
 #include "reports/learned.h"
@@ -170,6 +171,7 @@ std::string html_report(const Comparison& c) {
                                        {"statistics", statistics_html(c)},
                                        {"details", details_html(c)},
                                        {"learned", learned_html(c)},
+                                       {"audit", audit_html(c.study->audits)},
                                        {"figures", figures_html(drawn)},
                                        {"claims", claims_html(c.claims)},
                                        {"problems", problems_html(c)},

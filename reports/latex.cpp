@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "reports/audit.h"
 #include "reports/report.h"
 #include "reports/tables_formats.h"
 #include "reports/text.h"
@@ -100,7 +101,7 @@ std::string latex_report(const Comparison& c) {
   for (std::size_t s = 0; s < optimizers; s += kMostRows)
     for (std::size_t p = 0; p < problems; p += columns)
       text += matrix(c, p, std::min(p + columns, problems), s, std::min(s + kMostRows, optimizers));
-  return text + statistics_latex(c);
+  return text + audit_latex(c.study->audits) + statistics_latex(c);
 }
 
 }  // namespace isoline

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "reports/audit.h"
 #include "reports/learned.h"
 #include "reports/readings.h"
 #include "reports/report.h"
@@ -116,8 +117,8 @@ std::string markdown_report(const Comparison& c) {
   text += is_large ? "\n<details><summary>Every problem and optimizer</summary>\n" : "";
   text += matrices(c);
   text += is_large ? "\n</details>\n" : "";
-  return text + learned_markdown(c) + claims_markdown(c.claims) + statistics_markdown(c) +
-         failures(c);
+  return text + learned_markdown(c) + claims_markdown(c.claims) + audit_markdown(c.study->audits) +
+         statistics_markdown(c) + failures(c);
 }
 
 }  // namespace isoline

@@ -8,6 +8,7 @@
 //   curves, contour                 what the plots draw
 //   claims, quantities              what papers say, held against the runs
 //   text, wording, readings         how figures, phrases and whole sentences are written
+//   audit (audit_*)                 the table of measured properties, in each format
 //   csv, json, latex, markdown,     one output format each
 //   terminal, html (html_*, page/)
 #pragma once

@@ -135,6 +135,18 @@ void read_plan(Study& study, const fs::path& folder, std::set<std::string>& know
     }
 }
 
+void read_audit(Study& study, const fs::path& folder) {
+  const fs::path file = folder / "audit.json";
+  if (fs::exists(file)) try {
+      for (AuditedOptimizer& audited : audit_from_json(read_json(file)))
+        if (std::ranges::find(study.audits, audited.name, &AuditedOptimizer::name) ==
+            study.audits.end())
+          study.audits.push_back(std::move(audited));
+    } catch (const std::exception& error) {
+      study.unreadable.push_back({file, error.what()});
+    }
+}
+
 }  // namespace
 
 std::optional<Exhibit> Study::pictures_of(const Record& record) const {
@@ -160,7 +172,9 @@ Study read_study(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     read_plan(study, folder, cells);
     read_sheets(study, folder, sheets);
+    read_audit(study, folder);
   }
+  std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
   read_runs(study, folders);
   return study;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/audit.h"
 #include "core/record.h"
 #include "core/sheet.h"
 
@@ -20,6 +21,7 @@ struct Study {
   Plan plan;                 // the union of the folders' plans
   std::vector<Record> runs;  // one a cell, by its newest build; by problem, optimizer, seed
   std::vector<Sheet> sheets;
+  std::vector<AuditedOptimizer> audits;  // by name; of several folders the first that has it
   std::vector<Unreadable> unreadable;
   std::size_t superseded = 0;  // readable records left aside for a newer one of the same cell
   std::vector<std::filesystem::path> folders;

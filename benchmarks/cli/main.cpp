@@ -24,6 +24,7 @@ constexpr const char* kExamples =
     "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
     "  isoline describe sip               formula, options, needs and source\n"
     "  isoline check rosenbrock           are its derivatives right?\n"
+    "  isoline audit gd adam sip          scaling, invariance, order: measured\n"
     "  isoline compare results/old results/new    what got worse?\n"
     "  isoline claims notebook            is what the notebook prints reproduced?\n\n"
     "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable.";
@@ -55,7 +56,7 @@ int run(int count, char** arguments) {
   app.require_subcommand(1);
   for (const auto add :
        {add_run, add_report, add_compare, add_merge, add_claims, add_list, add_describe, add_check,
-        add_validate, add_tune, add_train, add_infer, add_completion})
+        add_audit, add_validate, add_tune, add_train, add_infer, add_completion})
     add(app, session);
   try {
     const std::string wrong = unknown_verb(app, count, arguments);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <thread>
 
+#include "benchmarks/audit.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/preview.h"
 #include "benchmarks/runner.h"
@@ -111,8 +112,21 @@ void print_outcome(const Outcome& outcome, bool quiet) {
              fmt::join(counts, ", "));
 }
 
+// The properties at default options of all optimizers that ever ran in this folder.
+std::vector<AuditedOptimizer> write_audit(const Catalog& catalog, const Study& study,
+                                          const fs::path& out) {
+  std::set<std::string> names;
+  for (const Record& record : study.runs)
+    if (const std::string& name = record.request.optimizer.name; catalog.optimizers.contains(name))
+      names.insert(name);
+  std::vector<AuditedOptimizer> all = audit_all(catalog, {names.begin(), names.end()});
+  write_json(out / "audit.json", audit_to_json(all));
+  return all;
+}
+
 void report_on(Session& session, const fs::path& out, bool quiet) {
-  const Study study = read_study({out});
+  Study study = read_study({out});
+  study.audits = write_audit(session.catalog(), study, out);
   const fs::path folder = out / "report";
   Comparison comparison = compare_optimizers(study);
   comparison.claims = covered_claims(session, study);

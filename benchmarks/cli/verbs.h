@@ -47,6 +47,7 @@ void add_claims(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
 void add_describe(CLI::App& app, Session& session);
 void add_check(CLI::App& app, Session& session);
+void add_audit(CLI::App& app, Session& session);
 void add_validate(CLI::App& app, Session& session);
 void add_train(CLI::App& app, Session& session);
 void add_infer(CLI::App& app, Session& session);

@@ -11,8 +11,9 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Finished program = shell("./isoline --help");
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
-  for (const std::string verb : {"run", "report", "list", "describe", "check", "validate", "tune",
-                                 "train", "infer", "merge", "compare", "claims", "completion"}) {
+  for (const std::string verb :
+       {"run", "report", "list", "describe", "check", "audit", "validate", "tune", "train", "infer",
+        "merge", "compare", "claims", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;

@@ -1,0 +1,249 @@
+// The audit's measurements. Every oracle is granted, and counted; what a method declares is
+// compared with what it asked.
+#include "benchmarks/audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "benchmarks/audit_problems.h"
+#include "benchmarks/execute.h"
+#include "benchmarks/isolate.h"
+#include "core/json.h"
+
+namespace isoline {
+namespace {
+
+constexpr double kAuditSeconds = 60;        // an optimizer; nearly all take a hundredth of a second
+constexpr std::int64_t kStepsToMove = 8;    // in which a first step may be rejected
+constexpr std::int64_t kStepsOfPath = 5;    // of invariance: few, so that rounding stays small
+constexpr std::int64_t kStepsOfCount = 10;  // of the oracles
+constexpr std::int64_t kStepsOfApproach = 1000;
+
+OracleSet every_oracle() {
+  OracleSet all;
+  for (std::size_t kind = 0; kind < kOracles; ++kind) all.add(static_cast<Oracle>(kind));
+  return all;
+}
+
+struct Path {
+  std::vector<Vector> x;  // (n) each, the start first
+  OracleCounts counts{};
+  std::int64_t iterations = 0;
+};
+
+// Keeps θ after every step; of a library's solver the trace keeps as many as there is room for.
+class Recorded final : public Optimizer {
+ public:
+  Recorded(Optimizer& method, std::vector<Vector>& path) : method_(method), path_(path) {}
+  void start(Meter& f, const Vector& theta) override {
+    if (!reports_iterations()) path_.push_back(theta);
+    method_.start(f, theta);
+  }
+  Status step(Meter& f, Vector& theta) override {
+    const Status status = method_.step(f, theta);
+    if (!reports_iterations()) path_.push_back(theta);
+    return status;
+  }
+  bool reports_iterations() const override { return method_.reports_iterations(); }
+
+ private:
+  Optimizer& method_;
+  std::vector<Vector>& path_;
+};
+
+class Subject {
+ public:
+  Subject(const Catalog& catalog, const OptimizerEntry& entry, Json options)
+      : catalog_(catalog), entry_(entry), options_(std::move(options)) {}
+
+  std::string why_inapplicable(const Problem& problem) const {
+    return isoline::why_inapplicable(entry_, options_, problem);
+  }
+  OracleSet needs(const Problem& problem) const { return needs_of(entry_, options_, problem); }
+
+  // As far as it comes: a method that throws has gone as far as its trace.
+  Path run(const Problem& problem, std::int64_t iterations) const {
+    const auto trace = std::make_unique<Trace>();  // large
+    Path path;
+    try {
+      const auto method = entry_.make(options_, catalog_.optimizers);
+      Recorded recorded(*method, path.x);
+      Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle(), *trace);
+      Checkpoint checkpoint;
+      drive(recorded, meter, problem.start(), checkpoint);
+    } catch (const std::exception&) {
+    }
+    path.counts = trace->last.counts;
+    path.iterations = trace->last.iteration;
+    if (path.x.empty())
+      for (int i = 0; i < trace->points; ++i)
+        path.x.emplace_back(Eigen::Map<const Vector>(trace->path_x[i], trace->path_inputs));
+    return path;
+  }
+
+  // The first step that is one; nothing where there is none.
+  std::optional<Vector> first_step(const Problem& problem) const {
+    if (!why_inapplicable(problem).empty()) return std::nullopt;
+    for (const Vector& x : run(problem, kStepsToMove).x)
+      if (x != problem.start()) return x - problem.start();
+    return std::nullopt;
+  }
+
+ private:
+  const Catalog& catalog_;
+  const OptimizerEntry& entry_;
+  const Json options_;
+};
+
+Vector gradient_at_start(const Problem& problem) {
+  Point at;
+  problem.forward(problem.start(), at);
+  Matrix g(problem.outputs(), problem.samples());
+  problem.cotangent(at, g);
+  Vector gradient(problem.unknowns());
+  problem.pullback(g, gradient, at);
+  return gradient;
+}
+
+ScalingLaw scaling_law(const Subject& subject, Problem (*make)(Real)) {
+  constexpr int kDecades = 3, kPerDecade = 2;
+  ScalingLaw law;
+  std::vector<Real> lengths, changes;
+  for (int i = -kDecades * kPerDecade; i <= kDecades * kPerDecade; ++i) {
+    law.scales.push_back(std::pow(10.0, static_cast<Real>(i) / kPerDecade));
+    const Problem problem = make(law.scales.back());
+    const auto step = subject.first_step(problem);
+    lengths.push_back(step ? step->norm() : kUnknown);
+    changes.push_back(step ? std::abs(gradient_at_start(problem).dot(*step)) : kUnknown);
+  }
+  law.step = power_law(law.scales, std::move(lengths));
+  law.loss_change = power_law(law.scales, std::move(changes));
+  return law;
+}
+
+Real extent(const std::vector<Vector>& path) {
+  Real largest = 0;
+  for (const Vector& x : path) largest = std::max(largest, (x - path.front()).norm());
+  return largest;
+}
+
+// The largest distance of the paths, relative to the longer; one that has ended stays where it is.
+Real deviation(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+  if (a.empty() || b.empty()) return kUnknown;
+  Real largest = 0;
+  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+    const Real gap = (a[std::min(i, a.size() - 1)] - b[std::min(i, b.size() - 1)]).norm();
+    if (!std::isfinite(gap)) return std::numeric_limits<Real>::infinity();
+    largest = std::max(largest, gap);
+  }
+  const Real longest = std::max(extent(a), extent(b));
+  return longest > 0 ? largest / longest : kUnknown;
+}
+
+void measure_invariance(const Subject& subject, AuditedOptimizer& audited) {
+  const std::vector<Vector> path = subject.run(bent_problem(), kStepsOfPath).x;
+  for (std::size_t kind = 0; kind < kChanges; ++kind) {
+    const Change change = change_of(kind);
+    std::vector<Vector> back;
+    for (const Vector& x : subject.run(changed_input(change), kStepsOfPath).x)
+      back.push_back(change.forward(x));
+    audited.deviations[kind] = deviation(path, back);
+    const std::vector<Vector> other = subject.run(changed_output(change), kStepsOfPath).x;
+    audited.deviations[kChanges + kind] = deviation(path, other);
+  }
+}
+
+Approach approach(const Subject& subject, const Vicinity& vicinity) {
+  constexpr Real kRounding = 1e-14;  // of x of order 1
+  std::vector<Real> errors;
+  for (const Vector& x : subject.run(vicinity.problem, kStepsOfApproach).x)
+    errors.push_back((x - vicinity.solution).norm());
+  return approach_of(errors, kRounding);
+}
+
+// Between the step that the method takes in z, and what its step in x makes of z.
+Real angle(const Subject& subject, const Composition& composition) {
+  const auto promised = subject.first_step(composition.inner);
+  const auto step = subject.first_step(composition.whole);
+  if (!promised || !step) return kUnknown;
+  const Vector start = composition.whole.start();
+  const Vector made =
+      value_of(composition.stage, start + *step) - value_of(composition.stage, start);
+  const Real cross = made[0] * (*promised)[1] - made[1] * (*promised)[0];
+  return std::atan2(std::abs(cross), made.dot(*promised)) * 180 / std::numbers::pi;
+}
+
+void count_oracles(const Subject& subject, AuditedOptimizer& audited) {
+  const Problem problem = bent_problem();
+  const Path path = subject.run(problem, kStepsOfCount);
+  const OracleSet declared = subject.needs(problem);
+  audited.iterations = path.iterations;
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    const std::string name(kOracleNames[kind]);
+    const bool is_declared = declared.contains(static_cast<Oracle>(kind));
+    if (is_declared) audited.declared.push_back(name);
+    if (path.counts[kind] > 0) audited.counted[name] = path.counts[kind];
+    if (is_declared && path.counts[kind] == 0)
+      audited.flags.push_back(fmt::format("declares that it needs {}, and never asked", name));
+    if (!is_declared && path.counts[kind] > 0)
+      audited.flags.push_back(fmt::format("asked for {}, and does not declare it", name));
+  }
+}
+
+// Declared of rescaled inputs, component by component: the first of the changes. To keep more than
+// was declared is no false declaration.
+void compare_invariance(bool is_declared, AuditedOptimizer& audited) {
+  const Real found = audited.deviations.front();
+  if (!is_declared || std::isnan(found) || found <= kInvariantDeviation) return;
+  audited.flags.push_back(fmt::format(
+      "declares that rescaled inputs leave its path, and they move it by {:.2g}", found));
+}
+
+Json options_without_floors(const OptimizerEntry& entry) {
+  Json options = Json::object();
+  for (const OptionField& field : entry.options)
+    if ((field.name == "epsilon" || field.name == "cutoff") && contains(field.range, 0))
+      options[field.name] = 0.0;
+  return options;
+}
+
+}  // namespace
+
+AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name) {
+  const OptimizerEntry& entry = catalog.optimizers.at(name);
+  const Component component = complete_optimizer(catalog, name, options_without_floors(entry));
+  const Subject subject(catalog, entry, component.options);
+  AuditedOptimizer audited{.name = name, .spec = component.spec};
+  audited.reason = subject.why_inapplicable(bent_problem());
+  if (!audited.reason.empty()) return audited;
+  audited.scalings = {scaling_law(subject, scaled_loss), scaling_law(subject, scaled_output),
+                      scaling_law(subject, scaled_input), scaling_law(subject, slope)};
+  measure_invariance(subject, audited);
+  audited.regular = approach(subject, regular_vicinity());
+  audited.singular = approach(subject, singular_vicinity());
+  audited.linear_angle = angle(subject, linear_composition());
+  audited.curved_angle = angle(subject, curved_composition());
+  count_oracles(subject, audited);
+  compare_invariance(entry.is_input_scale_invariant, audited);
+  return audited;
+}
+
+std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
+                                        const std::vector<std::string>& names) {
+  std::vector<AuditedOptimizer> all;
+  for (const std::string& name : names) {
+    const auto text = isolated_text([&] { return to_json(audit_optimizer(catalog, name)).dump(); },
+                                    kAuditSeconds);
+    if (text)
+      all.push_back(audited_from_json(parse_json(*text, name)));
+    else
+      all.push_back(
+          {.name = name, .spec = name, .reason = "its process crashed, threw or took too long"});
+  }
+  return all;
+}
+
+}  // namespace isoline

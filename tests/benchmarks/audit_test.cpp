@@ -1,0 +1,207 @@
+// The audit: its problems are what they claim, the laws that theory knows are recovered, a false
+// declaration is seen, a crash costs one audit alone.
+#include "benchmarks/audit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+
+#include "benchmarks/audit_problems.h"
+#include "benchmarks/resources.h"
+#include "core/json.h"
+#include "core/schema.h"
+#include "problems/conformance.h"
+
+namespace isoline {
+namespace {
+
+AuditedOptimizer audited(const std::string& name) {
+  return audit_optimizer(builtin_catalog(), name);
+}
+
+void expect_sound(const Problem& problem, const char* name) {
+  RandomStream stream(0, name, "check");
+  for (const Finding& finding : examine(problem, stream))
+    EXPECT_TRUE(finding.holds()) << name << ": " << finding.property << " " << finding.figure;
+}
+
+TEST(AuditProblems, HoldWhatEveryProblemMust) {
+  expect_sound(scaled_output(3), "scaled output");
+  expect_sound(changed_input(change_of(2)), "changed input");
+  expect_sound(changed_output(change_of(1)), "changed output");
+  expect_sound(curved_composition().whole, "curved composition");
+  expect_sound(linear_composition().whole, "linear composition");
+}
+
+TEST(AuditFits, RecoverAPowerAndSayWhereThereIsNone) {
+  const std::vector<Real> scales = {0.01, 0.1, 1, 10};
+  const PowerLaw power = power_law(scales, {2e-4, 2e-2, 2, 200});
+  EXPECT_NEAR(power.exponent, 2, 1e-12);  // rounding
+  EXPECT_TRUE(power.holds());
+  EXPECT_FALSE(power_law(scales, {1, 2, 2, 1}).holds());
+  for (const Real gap : {kUnknown, 0.0}) {  // no step at one of the scales
+    const std::vector<Real> values = {1, 1, 1, gap};
+    const PowerLaw incomplete = power_law(scales, values);
+    EXPECT_FALSE(incomplete.holds()) << incomplete.exponent << " " << incomplete.residual;
+    EXPECT_TRUE(std::isnan(incomplete.exponent)) << gap;
+  }
+}
+
+TEST(AuditFits, RecoverAnOrderFromItsOwnSequence) {
+  const Approach quadratic = approach_of({1e-1, 1e-2, 1e-4, 1e-8, 1e-16}, 1e-14);
+  EXPECT_NEAR(quadratic.order, 2, 1e-12);
+  EXPECT_TRUE(quadratic.is_exact);
+  EXPECT_EQ(quadratic.steps, 4);
+  EXPECT_NEAR(approach_of({1, 0.5, 0.25, 0.125, 0.0625, 0.03125}, 1e-14).order, 1, 1e-12);
+  EXPECT_TRUE(std::isnan(approach_of({1, 0.9, 0.8, 0.7}, 1e-14).order)) << "it is not near yet";
+  EXPECT_TRUE(approach_of({0.1, 0}, 1e-14).is_exact);
+}
+
+// The exponents that follow from the formulas: of the loss, the output and the input, and of L = αx
+// where there is a law. The loss change adds 1, 2 and 1, and of L = αx one.
+struct Law {
+  std::string name;
+  Real loss, output, input, slope;
+};
+
+TEST(Audit, RecoversTheExponentsOfTheory) {
+  constexpr Real kTolerance = 0.02, kKappa = 0.5;
+  const std::vector<Law> laws = {{"gd", 1, 2, 1, 1},
+                                 {"adam", 0, 0, 0, 0},
+                                 {"newton", 0, 0, -1, kUnknown},  // its Hessian of L = αx is zero
+                                 {"gauss-newton", 0, 0, -1, -1},
+                                 {"inverse-gradient", 0, 0, -1, -1},
+                                 {"sip", 0, 0, -1, -1},
+                                 {"hig", 1, 1 - kKappa, -kKappa, -kKappa}};
+  for (const Law& law : laws) {
+    const AuditedOptimizer found = audited(law.name);
+    const std::array<Real, 4> step = {law.loss, law.output, law.input, law.slope};
+    const std::array<Real, 4> added = {1, 2, 1, 1};
+    for (std::size_t i = 0; i < step.size(); ++i) {
+      const ScalingLaw& scaling = found.scalings[i];
+      EXPECT_EQ(scaling.step.holds(), !std::isnan(step[i])) << law.name << kScalingNames[i];
+      if (std::isnan(step[i])) continue;
+      EXPECT_NEAR(scaling.step.exponent, step[i], kTolerance) << law.name << kScalingNames[i];
+      EXPECT_NEAR(scaling.loss_change.exponent, step[i] + added[i], kTolerance) << law.name;
+    }
+  }
+}
+
+TEST(Audit, TellsAMethodWithoutPowerLaw) {
+  const AuditedOptimizer adamw = audited("adamw");
+  const PowerLaw& law = adamw.law(Scaled::input).step;  // its decay knows no units
+  EXPECT_TRUE(law.has_values());
+  EXPECT_FALSE(law.holds());
+}
+
+TEST(Audit, MeasuresWhatEachMethodIsKnownFor) {
+  const AuditedOptimizer gd = audited("gd"), newton = audited("newton"), sip = audited("sip"),
+                         gauss_newton = audited("gauss-newton"), supervised = audited("supervised");
+  for (const Real deviation : gauss_newton.deviations) EXPECT_LE(deviation, 1e-9);
+  EXPECT_GT(gd.deviations[0], 0.1) << "diagonal changes of x";
+  EXPECT_LE(gd.deviations[1], 1e-9) << "rotations of x";
+  EXPECT_LE(newton.deviations[2], 1e-9) << "affine changes of x";
+  EXPECT_GT(newton.deviations[3], 0.01) << "diagonal changes of y";
+  EXPECT_NEAR(newton.regular.order, 2, 0.1) << "quadratic";
+  EXPECT_NEAR(newton.singular.order, 1, 0.1) << "linear where the Hessian is singular";
+  EXPECT_NEAR(gd.regular.order, 1, 0.1);
+  EXPECT_TRUE(sip.regular.is_exact && sip.regular.steps == 1);
+  EXPECT_LE(newton.linear_angle, 1e-6);
+  EXPECT_GT(gd.linear_angle, 1);
+  EXPECT_LE(sip.curved_angle, 1e-6);
+  EXPECT_TRUE(sip.counted.contains("inverse"));
+  EXPECT_TRUE(supervised.counted.contains("truth"));
+  EXPECT_FALSE(gd.counted.contains("jacobian"));
+}
+
+std::vector<AuditedOptimizer> everything() {
+  static const std::vector<AuditedOptimizer> all = [] {
+    const Catalog catalog = builtin_catalog();
+    return audit_all(catalog, catalog.optimizers.names());
+  }();
+  return all;
+}
+
+TEST(Audit, FindsNoFalseDeclarationInTheRegistry) {
+  EXPECT_EQ(everything().size(), builtin_catalog().optimizers.size());
+  for (const AuditedOptimizer& each : everything()) {
+    EXPECT_EQ(each.flags, std::vector<std::string>{}) << each.name;
+    EXPECT_TRUE(each.reason.empty() || each.name == "kfac") << each.name << ": " << each.reason;
+  }
+}
+
+TEST(Audit, ConformsToItsSchemaAndSurvivesTheRoundTrip) {
+  const Json json = audit_to_json(everything());
+  const Json schema = parse_json(std::string(builtin_schemas().at("audit")), "audit");
+  EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>{});
+  EXPECT_EQ(audit_to_json(audit_from_json(json)), json);
+}
+
+TEST(Audit, TwiceGivesTheSameBytes) {
+  const Catalog catalog = builtin_catalog();
+  EXPECT_EQ(audit_to_json(audit_all(catalog, catalog.optimizers.names())).dump(),
+            audit_to_json(everything()).dump());
+}
+
+// --- methods that do not keep what they declare
+
+// Gradient descent.
+struct Boaster {
+  Real rate = 1e-2;
+  struct State {
+    Linearization at;
+    Vector gradient;
+  };
+  State init(Meter&, const Vector&) const { return {}; }
+  Status step(Meter& f, Vector& theta, State& s) const {
+    f.linearize(theta, s.at);
+    s.at.gradient(s.gradient);
+    theta -= rate * s.gradient;
+    return Status::running;
+  }
+};
+void fields(Boaster& o, auto& field) { field("rate", o.rate, above(0), "step length η"); }
+
+struct Crasher {
+  struct State {};
+  State init(Meter&, const Vector&) const { return {}; }
+  Status step(Meter&, Vector&, State&) const {
+    std::raise(SIGKILL);
+    return Status::running;
+  }
+};
+void fields(Crasher&, auto&) {}
+
+Catalog catalog_with_liars() {
+  Catalog catalog = builtin_catalog();
+  catalog.optimizers.add(stepper_entry<Boaster>({.name = "boaster",
+                                                 .title = "Declares what it is not",
+                                                 .formula = "θ ← θ − η ∇L",
+                                                 .source = "here",
+                                                 .needs = {Oracle::forward, Oracle::hessian},
+                                                 .is_input_scale_invariant = true}));
+  catalog.optimizers.add(stepper_entry<Crasher>(
+      {.name = "crasher", .title = "Crashes", .formula = "", .source = "here"}));
+  return catalog;
+}
+
+TEST(Audit, FlagsAFalseDeclaration) {
+  const AuditedOptimizer found = audit_optimizer(catalog_with_liars(), "boaster");
+  ASSERT_EQ(found.flags.size(), 3U);
+  EXPECT_EQ(found.flags[0], "asked for pullback, and does not declare it");
+  EXPECT_EQ(found.flags[1], "declares that it needs hessian, and never asked");
+  EXPECT_TRUE(found.flags[2].starts_with("declares that rescaled inputs leave its path"));
+}
+
+TEST(Audit, ACrashCostsItsOwnAuditAlone) {
+  const auto all = audit_all(catalog_with_liars(), {"crasher", "gd"});
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_NE(all[0].reason, "");
+  EXPECT_EQ(all[1].reason, "");
+  const Json schema = parse_json(std::string(builtin_schemas().at("audit")), "audit");
+  EXPECT_EQ(schema_violations(audit_to_json(all), schema), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace isoline

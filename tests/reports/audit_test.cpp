@@ -1,0 +1,91 @@
+// The audit in reports: the same table in every format, and reports do without it.
+#include "reports/audit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/json.h"
+#include "reports/report.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+PowerLaw law(Real exponent, Real residual) {
+  return {.values = {1, 2, 3}, .exponent = exponent, .residual = residual};
+}
+
+AuditedOptimizer sample() {
+  AuditedOptimizer audited{.name = "gd", .spec = "gd"};
+  for (ScalingLaw& scaling : audited.scalings)
+    scaling = {{0.1, 1, 10}, law(1, 1e-15), law(2, 1e-15)};
+  audited.scalings[1] = {{0.1, 1, 10}, law(1.3, 0.4), law(1.3, 0.4)};
+  audited.scalings[3] = {};
+  audited.deviations = {1e-15, 0.25, std::numeric_limits<Real>::infinity(), 0, 0, kUnknown};
+  audited.regular = {2.04, 0.01, 1e-16, 4, true};
+  audited.singular = {kUnknown, kUnknown, 0.5, 1000, false};
+  audited.linear_angle = 2.75;
+  audited.counted = {{"forward", 10}, {"pullback", 10}};
+  audited.iterations = 10;
+  audited.flags = {"declares <b>|x|"};
+  return audited;
+}
+
+std::vector<AuditedOptimizer> samples() {
+  return {sample(), {.name = "kfac", .spec = "kfac", .reason = "there is no network"}};
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(AuditTable, SaysWhatWasMeasured) {
+  const std::vector<std::string> expected = {"1 / 2",           "no power law",
+                                             "1 / 2",           "no step",
+                                             "kept, 0.25, inf", "kept, kept, no step",
+                                             "2.0 in 4",        "no order, 0.5 left of 1000",
+                                             "2.8°, no step",   "forward 10, pullback 10 in 10",
+                                             "declares <b>|x|"};
+  ASSERT_EQ(kAuditColumns.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(kAuditColumns[i].cell(sample()), expected[i]) << kAuditColumns[i].heading;
+}
+
+TEST(AuditTable, IsInEveryFormatAndForeignTextIsHarmless) {
+  const std::string html = audit_html(samples()), markdown = audit_markdown(samples());
+  for (const std::string& text : {html, markdown, audit_terminal(samples())}) {
+    EXPECT_TRUE(has(text, "no power law"));
+    EXPECT_TRUE(has(text, "there is no network"));
+  }
+  EXPECT_TRUE(has(audit_latex(samples()), "no power law"));
+  EXPECT_FALSE(has(html, "<b>|x|"));
+  EXPECT_FALSE(has(markdown, "<b>|x|"));
+  EXPECT_TRUE(has(html, "<svg"));
+}
+
+TEST(AuditTable, IsReadForANewcomer) {
+  const std::vector<AuditReading> readings = audit_readings(samples());
+  ASSERT_EQ(readings.size(), 6U);
+  EXPECT_TRUE(has(readings[0].sentence, "grows by s instead for gd"));
+  EXPECT_TRUE(has(readings[2].sentence, "(order 2) for gd"));
+  EXPECT_TRUE(has(readings.back().sentence, "gd declares"));
+}
+
+TEST(AuditFile, IsReadWithTheStudyAndReportsDoWithoutIt) {
+  const ResultFolder with, without, broken;
+  for (const ResultFolder* folder : {&with, &without, &broken}) folder->add(record_of({}));
+  with.add_file("audit.json", audit_to_json(samples()).dump());
+  broken.add_file("audit.json", "{\"schema\": \"isoline.audit/1\"}");
+  const Study study = read_study({without.path(), with.path()}),
+              bare = read_study({without.path()}), bad = read_study({broken.path()});
+  EXPECT_EQ(study.audits.size(), 2U);
+  EXPECT_TRUE(has(markdown_report(compare_optimizers(study)), "Properties, measured"));
+  EXPECT_FALSE(has(markdown_report(compare_optimizers(bare)), "Properties, measured"));
+  EXPECT_TRUE(has(html_report(compare_optimizers(bare)), "hold no audit"));
+  ASSERT_EQ(bad.unreadable.size(), 1U);
+  EXPECT_EQ(bad.unreadable[0].file.filename(), "audit.json");
+}
+
+}  // namespace
+}  // namespace isoline
