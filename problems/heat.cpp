@@ -153,8 +153,9 @@ void register_heat(ProblemRegistry& registry) {
            "The sought x* is a sum of soft rectangles of our own streams, for seed 0 too: no "
            "instance is published; its lengths scale with N/64. Seeds from 1 on start with "
            "noise of 0.1 a cell, most of which the data cannot tell: it stays as a floor under "
-           "the error in x of every method. Published curves sum |x − x*| over cells; the error "
-           "here is ‖x − x*‖. The damped inverse has the authors' floor for single problems, "
+           "the error in x of every method. Published curves sum |x − x*| over cells, and so does "
+           "mode=learn, which gives the network the mean of x*; the error of one instance is "
+           "‖x − x*‖. The damped inverse has the authors' floor for single problems, "
            "1e-8.",
        .panels = {{.title = "Fig. 6d: learning curves", .kind = "curve"},
                   {.title = "Fig. 6c: one sample of the validation", .kind = "pictures"}}},

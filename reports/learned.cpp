@@ -85,12 +85,15 @@ std::vector<LearnedProblem> learned_problems(const Comparison& c) {
 std::string learned_html(const Comparison& c) {
   std::string html;
   for (const LearnedProblem& learned : learned_problems(c)) {
+    const Sheet* sheet = c.problems[learned.problem].sheet;
     html += fmt::format(
-        "<h3>{}</h3><p class=reading>{}</p><div class=scroll tabindex=0 role=region "
+        "<h3>{}</h3><p class=reading>{}</p><p class=legend>{}</p><div class=scroll tabindex=0 "
+        "role=region "
         "aria-label=\"Learned\"><table class=sortable><thead><tr><th>optimizer<th>error in "
         "x<th>loss "
         "in y<th>iterations<th>ms each<th>runs<th>failed<tbody>\n",
-        html_text(shown_spec(c.problems[learned.problem].spec)), html_text(learned.reading));
+        html_text(shown_spec(c.problems[learned.problem].spec)), html_text(learned.reading),
+        sheet == nullptr ? "" : html_text(sheet->note));
     for (const LearnedRow& row : learned.rows)
       html += fmt::format("<tr><th>{}{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}</tr>\n",
                           html_text(label(c, row)),
@@ -105,11 +108,13 @@ std::string learned_html(const Comparison& c) {
 std::string learned_markdown(const Comparison& c) {
   std::string text;
   for (const LearnedProblem& learned : learned_problems(c)) {
+    const Sheet* sheet = c.problems[learned.problem].sheet;
     text += fmt::format(
-        "\n### {}\n\n{}\n\n| optimizer | error in x | loss in y | iterations | ms each | runs | "
+        "\n### {}\n\n{}\n\n{}\n\n| optimizer | error in x | loss in y | iterations | ms each | "
+        "runs | "
         "failed |\n|---|---:|---:|---:|---:|---:|---:|\n",
-        markdown_text(shown_spec(c.problems[learned.problem].spec)),
-        markdown_text(learned.reading));
+        markdown_text(shown_spec(c.problems[learned.problem].spec)), markdown_text(learned.reading),
+        sheet == nullptr ? "" : markdown_text(sheet->note));
     for (const LearnedRow& row : learned.rows)
       text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", markdown_text(label(c, row)),
                           figure(row.x_error), figure(row.loss), figure(row.iterations),

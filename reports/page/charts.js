@@ -11,7 +11,7 @@ function axis(title, rest = {}) {
   };
 }
 
-// Only powers of ten are labelled, and not more of them than fit.
+// Powers of ten are labelled, not more of them than fit; within two decades also 2 and 5 times these.
 function logAxis(title, low, high) {
   const decades = Math.ceil(Math.log10(high / low));
   const every = Math.max(1, Math.ceil(decades / 8));
@@ -21,6 +21,8 @@ function logAxis(title, low, high) {
       autoSkip: false,
       callback: (value) => {
         const power = Math.log10(value), whole = Math.round(power);
+        const leading = value / 10 ** Math.floor(power + 1e-9);
+        if (decades <= 2 && [2, 5].some((digit) => Math.abs(leading - digit) < 1e-6)) return String(Number(value.toPrecision(1)));
         if (Math.abs(power - whole) > 1e-9 || whole % every !== 0) return null;
         return whole >= 0 && whole < 4 ? String(10 ** whole) : `1e${whole}`;
       },

@@ -1,6 +1,8 @@
 // The papers' figures: lines with their range over seeds, samples, and pictures.
 'use strict';
 
+const MOST_LINES = 16;  // as many are all shown at first
+
 // [x, y] of a line where both have a place on the axes.
 function pointsOf(figure, xs, ys) {
   const points = [];
@@ -37,16 +39,29 @@ function extent(points, key) {
   return high > low ? [low, high] : [low, low === 0 ? 1 : low + Math.abs(low)];
 }
 
+// All lines at first where they are not too many, but for the tuned twins of published settings.
+function firstLines(figure) {
+  const published = figure.lines.map((line) => line.s).filter((s) => !DATA.optimizers[s].endsWith(', tuned'));
+  return new Set(published.length <= MOST_LINES ? published : published.slice(0, SHOWN_AT_FIRST));
+}
+
+// A path is shown where it settles: the overshoot of a first step would flatten all others.
+function extentOf(figure, sets, key) {
+  if (figure.kind !== 'path') return extent(sets.flatMap((set) => set.data), key);
+  const [low, high] = extent(sets.flatMap((set) => set.data.slice(set.data.length / 2)), key);
+  const margin = 0.3 * (high - low);
+  return [low - margin, high + margin];
+}
+
 function drawFigure(place, figure, visible) {
   const sets = figureDatasets(figure, visible);
-  const points = sets.flatMap((set) => set.data);
-  const across = extent(points, 'x'), up = extent(points, 'y');
+  const across = extentOf(figure, sets, 'x'), up = extentOf(figure, sets, 'y');
   if (figure.diagonal)
     sets.push({
       data: [{x: across[0], y: across[0]}, {x: across[1], y: across[1]}], showLine: true, pointRadius: 0,
       pointHitRadius: 0, borderColor: cssColour('--soft'), borderDash: [4, 4], borderWidth: 1.2, order: 5,
     });
-  const scale = (isLog, title, [low, high]) => (isLog ? logAxis(title, low, high) : axis(title, {type: 'linear'}));
+  const scale = (isLog, title, [low, high]) => (isLog ? logAxis(title, low, high) : axis(title, {type: 'linear', ...(figure.kind === 'path' ? {min: low, max: high} : {})}));
   const scales = {x: scale(figure.log_x, figure.x_label, across), y: scale(figure.log_y, figure.y_label, up)};
   return newChart(place, `${figure.title}: ${figure.y_label} against ${figure.x_label}`, sets, scales,
       tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`));
@@ -78,7 +93,7 @@ function buildFigure(element) {
     element.append(row);
     return;
   }
-  const ranked = figure.lines.map((line) => line.s), visible = shownAtFirst(ranked);
+  const ranked = figure.lines.map((line) => line.s), visible = firstLines(figure);
   const place = document.createElement('div');
   const draw = redrawer(place, () => drawFigure(place, figure, visible));
   const point = (index) => highlight(draw.chart, index);
