@@ -32,6 +32,11 @@ class Supervised final : public Optimizer {
   Linearization at_;
 };
 
+// Without a network its first step would be the answer it was told.
+std::string objection(const Json&, const Problem& problem) {
+  return problem.has_identity_network() ? "it is told x*, and there is no network to learn it" : "";
+}
+
 }  // namespace
 
 void register_supervised(OptimizerRegistry& registry) {
@@ -45,6 +50,7 @@ void register_supervised(OptimizerRegistry& registry) {
                 .needs = {Oracle::forward, Oracle::network, Oracle::truth},
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
+                .objection = objection,
                 .make = [](const Json& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Supervised>(read_options<Options>(options), known);
