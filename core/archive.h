@@ -23,6 +23,7 @@ class Archive {
     (one(values), ...);
   }
   void raw(void* data, std::size_t size) {
+    if (size == 0) return;  // an empty array has no address
     if (!is_reading_) {
       bytes_.append(static_cast<const char*>(data), size);
       return;

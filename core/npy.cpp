@@ -63,7 +63,7 @@ std::vector<Real> numbers_at(const std::string& bytes, std::size_t begin, std::s
           fmt::format("it holds {} bytes of numbers and its shape asks for {}",
                       bytes.size() - begin, count * sizeof(Number)));
   std::vector<Number> raw(count);
-  std::memcpy(raw.data(), bytes.data() + begin, count * sizeof(Number));
+  if (count > 0) std::memcpy(raw.data(), bytes.data() + begin, count * sizeof(Number));
   return {raw.begin(), raw.end()};
 }
 

@@ -66,9 +66,10 @@ TEST(Quick, MeetsEveryProblemWithEveryOptimizerOnThreeSeeds) {
 }
 
 TEST(Quick, GivesNoCellMoreThan2000UnitsOfWorkUnlessItLearns) {
-  for (const Request& cell : cells_of("quick"))
-    if (cell.problem.spec.find("mode=learn") == std::string::npos)
-      EXPECT_LE(cell.budget.work, 2000) << cell.problem.spec << " × " << cell.optimizer.spec;
+  for (const Request& cell : cells_of("quick")) {
+    if (cell.problem.spec.find("mode=learn") != std::string::npos) continue;
+    EXPECT_LE(cell.budget.work, 2000) << cell.problem.spec << " × " << cell.optimizer.spec;
+  }
 }
 
 TEST(Quick, GivesEachMethodAGridThatItCanTreat) {
@@ -127,8 +128,9 @@ TEST(Rates, OfTheTreeNameWhatExistsWithinItsRangesAndSaysWhereEachValueIsFrom) {
   for (const auto& [name, text] : builtin_rates()) {
     const Json table = parse_json(std::string(text), name);
     EXPECT_EQ(schema_violations(table, schema("rates")), std::vector<std::string>{}) << name;
-    if (table.contains("grid"))
+    if (table.contains("grid")) {
       EXPECT_EQ(table.at("grid").at("seeds"), "100..102");  // apart from those that judge
+    }
     for (const Json& row : table.at("rows")) expect_row_is_sound(row);
   }
 }

@@ -25,8 +25,9 @@ TEST(Learning, EachStepHasItsOwnSamplesAndTheSameEveryTime) {
     const Problem problem = make(spec, 1), again = make(spec, 1), other = make(spec, 2);
     EXPECT_EQ(batch_of(problem, 3).target, batch_of(again, 3).target) << spec;
     EXPECT_NE(batch_of(problem, 3).target, batch_of(other, 3).target) << spec;
-    if (problem.has_fresh_batches())
+    if (problem.has_fresh_batches()) {
       EXPECT_NE(batch_of(problem, 3).target, batch_of(problem, 4).target) << spec;
+    }
     Batch validation;
     problem.draw_validation(validation);
     EXPECT_NE(validation.target.col(0), problem.target().col(0)) << spec;
