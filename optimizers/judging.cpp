@@ -48,7 +48,7 @@ void Meter::prepare() {
   if (limit < static_cast<double>(kNoLimit)) most_ticks_ = static_cast<std::uint64_t>(limit);
   if (!problem_.is_learned()) return;
   problem_.draw_validation(validation_);
-  draw_batch();
+  if (iteration_ > 0) draw_batch();  // the first is the problem's own
 }
 
 void Meter::persist(Archive& archive) {

@@ -104,11 +104,6 @@ class Heat final : public Physics {
 // for evidence. A network's d does not vanish, and they train without it.
 constexpr Real kNoiseFloor = 1e-8;
 
-// The published error: |x − x*| summed over cells, the mean over samples.
-Real summed_error(BatchRef x, const Batch& batch) {
-  return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
-}
-
 // The mean of x* is that of y*, which the network is given: x ← N(y*) + mean(y*) − mean(N(y*)).
 ProblemParts learn_heat(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const Heat>(o.N, 0);

@@ -3,6 +3,10 @@
 
 namespace isoline {
 
+Real summed_error(BatchRef x, const Batch& batch) {
+  return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
+}
+
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,
                    ProblemParts parts) {
   if (!parts.network) parts.network = make_network(options.network, shape);

@@ -25,6 +25,9 @@ inline void fields(Learning& o, auto& field) {
         "0: fresh samples each step; N: the same N samples at every step of mode=learn");
 }
 
+// The published error of grids: |x − x*| summed over cells, the mean over samples.
+Real summed_error(BatchRef x, const Batch& batch);
+
 // Adds what learning needs to parts that hold the physics, `samples.draw` and the error in x: the
 // network of that shape, its start, and the streams. The network sees Batch::input.
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,

@@ -70,11 +70,6 @@ class Poisson final : public Physics {
   Matrix gain_;                   // 1/λ over the factor of a round trip, (N, N)
 };
 
-// The published error: |x − x*| summed over cells, the mean over samples.
-Real summed_error(BatchRef x, const Batch& batch) {
-  return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
-}
-
 ProblemParts learn_poisson(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const Poisson>(o.N);
   const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {

@@ -147,10 +147,6 @@ void Problem::physics_pullback(BatchRef w, BatchOut out, Point& at) const {
   parts_.physics->pullback(w, out, at.physics);
 }
 
-void Problem::network_pushforward(VectorRef v, BatchOut out, Point& at) const {
-  parts_.network->pushforward(v, out, at.network);
-}
-
 void Problem::layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const {
   at.scratch_x.resize(inputs(), w.cols());
   parts_.physics->pullback(w, at.scratch_x, at.physics);

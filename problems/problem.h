@@ -107,7 +107,6 @@ class Problem {
   void pushforward(VectorRef v, BatchOut out, Point& at) const;       // J v, (n) -> (m, B)
   void physics_pullback(BatchRef w, BatchOut out, Point& at) const;   // (m, B) -> (k, B)
   void network_pullback(BatchRef w, VectorOut out, Point& at) const;  // (k, B) -> (n)
-  void network_pushforward(VectorRef v, BatchOut out, Point& at) const;            // (n) -> (k, B)
   void layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const;  // w (m, B)
   void jacobian(Matrix& J, Point& at) const;                                       // (m·B, n)
   void sensitivity(Matrix& dy_dx, Point& at) const;                                // (m, k·B)

@@ -45,8 +45,7 @@ std::string scaling_sentence(const All& all) {
   return fmt::format(
       "Write x in a unit s times as large and its numbers shrink by 1/s: a step should do the "
       "same, exponent −1, and does for {}; it grows by s instead for {}, so that what needs a "
-      "large "
-      "change gets a small one; no power law at all: {}.",
+      "large change gets a small one; no power law at all: {}.",
       listed(sound), listed(wrong), listed(none));
 }
 
@@ -77,8 +76,7 @@ std::string convergence_sentence(const All& all) {
   return fmt::format(
       "Near a solution the number of right digits doubles each step (order 2) for {}; one step "
       "is enough for {}; others gain digits at a steady rate (order 1) or none. Where the Jacobian "
-      "is singular "
-      "at the solution, it is still reached to rounding by {}.",
+      "is singular at the solution, it is still reached to rounding by {}.",
       listed(quadratic), listed(at_once), listed(left));
 }
 

@@ -16,6 +16,7 @@ namespace isoline {
 namespace {
 
 constexpr std::size_t kPoints = 96;  // a line
+
 struct Band {
   Real median, low, high;
 };
