@@ -7,8 +7,6 @@
 #include <map>
 
 #include "core/errors.h"
-#include "core/json.h"
-#include "reports/report.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -157,54 +155,11 @@ class Gate {
   GateResult result_;
 };
 
-Json report_of(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return read_json(path);
-  const Study study = read_study({path});
-  return parse_json(json_report(compare_optimizers(study)), path.string());
-}
-
-void remark_on(const Study& study, const std::filesystem::path& path,
-               std::vector<std::string>& remarks) {
-  if (!study.unreadable.empty())
-    remarks.push_back(
-        fmt::format("{} files of {} could not be read", study.unreadable.size(), path.string()));
-  if (study.superseded > 0)
-    remarks.push_back(
-        fmt::format("{} older records of {} are left aside for newer builds of their "
-                    "cells",
-                    study.superseded, path.string()));
-}
-
 }  // namespace
 
 GateResult compare_subjects(const std::vector<Subject>& before, const std::vector<Subject>& after,
                             const GateOptions& options) {
   return Gate(options).run(before, after);
-}
-
-GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
-                           const GateOptions& options) {
-  namespace fs = std::filesystem;
-  for (const fs::path& path : {before, after})
-    require(fs::exists(path), fmt::format("no result folder or report: {}", path.string()));
-  if (!fs::is_directory(before) || !fs::is_directory(after)) {
-    GateResult result = compare_subjects(subjects_of_report(report_of(before)),
-                                         subjects_of_report(report_of(after)), options);
-    result.remarks.push_back("reports hold no repetitions: time is judged on record folders only");
-    return result;
-  }
-  std::vector<std::string> remarks;
-  std::optional<BestKnown> reference;
-  const auto subjects_in = [&](const fs::path& folder) {
-    const Study study = read_study({folder});  // one at a time is in memory
-    remark_on(study, folder, remarks);
-    if (!reference) reference.emplace(study);
-    return subjects_of(study, *reference);
-  };
-  const std::vector<Subject> old_subjects = subjects_in(before);
-  GateResult result = compare_subjects(old_subjects, subjects_in(after), options);
-  result.remarks.insert(result.remarks.end(), remarks.begin(), remarks.end());
-  return result;
 }
 
 }  // namespace isoline

@@ -4,6 +4,8 @@
 //   differences   figures, exactly or within a tolerance
 //   timing        times, by statistics
 //   gate          what joins and what does not; the verdict
+//   gate_sides    reads both: result folders, a baseline, reports
+//   baseline      what of results stands in a repository
 //   gate_formats  terminal, Markdown, JSON
 #pragma once
 
@@ -39,7 +41,8 @@ struct GateResult {
   int exit_code = 0;    // of the conventions: 0 good, 2 worse, 3 better only, 4 not comparable
 };
 
-// Two result folders, or two report.json, or one of each, which is then compared as reports.
+// Two result folders; or a baseline and a folder; or two report.json, or one and a folder, which is
+// then compared as a report.
 GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
                            const GateOptions& options);
 GateResult compare_subjects(const std::vector<Subject>& before, const std::vector<Subject>& after,

@@ -12,12 +12,15 @@ namespace isoline {
 // The least loss any run of a problem and seed has reached: f_L where none is declared.
 class BestKnown {
  public:
+  using Minima = std::map<std::pair<std::string, std::uint64_t>, Real>;  // by problem and seed
+
   explicit BestKnown(const Study& study);
+  explicit BestKnown(Minima least) : least_(std::move(least)) {}
   // Declared, else the best known; not-a-number where no run of its problem and seed is.
   Real minimum(const Record& record) const;
 
  private:
-  std::map<std::pair<std::string, std::uint64_t>, Real> least_;
+  Minima least_;
 };
 
 // Fills the minimum, work and seconds: exact from the record's hits, otherwise read off the kept

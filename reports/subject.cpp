@@ -23,22 +23,18 @@ int badness_of(Status status) {
 
 bool is_lost(Status status) { return is_failure(status) || status == Status::inapplicable; }
 
-Quantity work_to(Real tau, Real work) {
-  return {.group = "work", .name = "work to " + figure(tau), .value = work};
-}
-
 void add_work(Subject& subject, const Record& record, const BestKnown& reference) {
   if (record.hits) {
     const Hits& hits = *record.hits;
     for (std::size_t j = 0; j < hits.target.size(); ++j)
       subject.quantities.push_back(
-          work_to(hits.target[j], hits.iteration[j] < 0 ? kNever : Real(hits.work[j])));
+          work_quantity(hits.target[j], hits.iteration[j] < 0 ? kNever : Real(hits.work[j])));
     return;
   }
   Run run{.record = &record, .work = {}, .seconds = {}};
   fill_reached(run, reference);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    subject.quantities.push_back(work_to(kTolerances[t].tau, run.work[t]));
+    subject.quantities.push_back(work_quantity(kTolerances[t].tau, run.work[t]));
 }
 
 std::string trace_of(const Record& record) {
@@ -52,24 +48,21 @@ std::string trace_of(const Record& record) {
 Subject subject_of(const Record& record, const BestKnown& reference) {
   const Request& request = record.request;
   const Summary& summary = record.summary;
-  Subject subject{.key = record.cell,
-                  .title = fmt::format("{} × {}, seed {}", shown_spec(request.problem.spec),
-                                       shown_spec(request.optimizer.spec), request.seed),
-                  .state = std::string(name_of(record.status)),
-                  .badness = badness_of(record.status),
-                  .lost = is_lost(record.status),
-                  .builds = {record.build},
-                  .seconds = record.repeat_wall_seconds,
-                  .is_nondeterministic = record.is_nondeterministic};
+  Subject subject = subject_that_ended(record.status);
+  subject.key = record.cell;
+  subject.title = fmt::format("{} × {}, seed {}", shown_spec(request.problem.spec),
+                              shown_spec(request.optimizer.spec), request.seed);
+  subject.builds = {record.build};
+  subject.seconds = record.repeat_wall_seconds;
+  subject.is_nondeterministic = record.is_nondeterministic;
   if (record.provenance.is_object() && record.provenance.contains("processor"))
     subject.processor = record.provenance["processor"].dump();
   if (record.status == Status::inapplicable) return subject;
   subject.trace = trace_of(record);
-  subject.quantities = {{"loss", "loss", summary.loss, summary.start_loss},
-                        {"loss", "best loss", summary.best_loss, summary.start_loss}};
+  subject.quantities = {loss_quantity("loss", summary.loss, summary.start_loss),
+                        loss_quantity("best loss", summary.best_loss, summary.start_loss)};
   if (!std::isnan(summary.start_x_error))
-    subject.quantities.push_back(
-        {"error in x", "error in x", summary.x_error, summary.start_x_error});
+    subject.quantities.push_back(x_error_quantity(summary.x_error, summary.start_x_error));
   add_work(subject, record, reference);
   return subject;
 }
@@ -108,6 +101,26 @@ Subject subject_of_pair(const Json& cell) {
 }
 
 }  // namespace
+
+Subject subject_that_ended(Status status) {
+  return {.key = "",
+          .title = "",
+          .state = std::string(name_of(status)),
+          .badness = badness_of(status),
+          .lost = is_lost(status)};
+}
+
+Quantity loss_quantity(const std::string& name, Real loss, Real start) {
+  return {.group = "loss", .name = name, .value = loss, .scale = start};
+}
+
+Quantity x_error_quantity(Real x_error, Real start) {
+  return {.group = "error in x", .name = "error in x", .value = x_error, .scale = start};
+}
+
+Quantity work_quantity(Real tau, Real work) {
+  return {.group = "work", .name = "work to " + figure(tau), .value = work};
+}
 
 std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference) {
   std::vector<Subject> all;

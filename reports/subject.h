@@ -34,6 +34,12 @@ struct Subject {
   bool is_nondeterministic = false;  // a clock or a kill ended it
 };
 
+// What runs of every kind have in common; less is better.
+Subject subject_that_ended(Status status);
+Quantity loss_quantity(const std::string& name, Real loss, Real start);
+Quantity x_error_quantity(Real x_error, Real start);
+Quantity work_quantity(Real tau, Real work);
+
 // `reference` sets f_L where a problem declares none, so that both sides have the same targets.
 std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference);
 std::vector<Subject> subjects_of_report(const Json& report);  // schema isoline.report/1

@@ -34,7 +34,7 @@ void compare(const CompareArguments& given, Session& session) {
 void add_compare(CLI::App& app, Session& session) {
   const auto given = std::make_shared<CompareArguments>();
   CLI::App* verb = app.add_subcommand("compare", "Tell what got worse between two results");
-  verb->add_option("BASE", given->before, "Result folder, or a report.json")->required();
+  verb->add_option("BASE", given->before, "Result folder, baseline, or a report.json")->required();
   verb->add_option("NEW", given->after, "Result folder, or a report.json")->required();
   verb->add_option("--tolerance", given->tolerance,
                    "Relative tolerance of figures (default: equal bit for bit)")

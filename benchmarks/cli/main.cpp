@@ -54,9 +54,9 @@ int run(int count, char** arguments) {
   app.footer(kExamples);
   app.set_version_flag("--version", "isoline " + version());
   app.require_subcommand(1);
-  for (const auto add :
-       {add_run, add_report, add_compare, add_merge, add_claims, add_list, add_describe, add_check,
-        add_audit, add_validate, add_tune, add_train, add_infer, add_completion})
+  for (const auto add : {add_run, add_report, add_compare, add_baseline, add_merge, add_claims,
+                         add_list, add_describe, add_check, add_audit, add_validate, add_tune,
+                         add_train, add_infer, add_completion})
     add(app, session);
   try {
     const std::string wrong = unknown_verb(app, count, arguments);

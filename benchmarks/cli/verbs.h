@@ -42,6 +42,7 @@ std::vector<Judgement> covered_claims(Session& session, const Study& study);
 void add_run(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);
+void add_baseline(CLI::App& app, Session& session);
 void add_merge(CLI::App& app, Session& session);
 void add_claims(CLI::App& app, Session& session);
 void add_list(CLI::App& app, Session& session);
