@@ -14,7 +14,7 @@
 namespace isoline {
 namespace {
 
-constexpr double kRoundSeconds = 2e-5;  // of forward solves: a thousand readings of the clock
+constexpr double kRoundSeconds = 5e-5;  // of forward solves: two hundred readings of the clock
 constexpr double kOracleSeconds = 5e-3, kLongOracleSeconds = 5e-2, kCallSeconds = 1;
 constexpr std::size_t kMostRounds = 31, kFewRounds = 3;
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
@@ -67,10 +67,11 @@ void ask(Oracle oracle, const Problem& problem, Point& at, Room& room) {
   }
 }
 
+// Of the processor: what others take of a busy machine does not count.
 double seconds_of(std::size_t times, const std::function<void()>& call) {
-  const std::int64_t begin = monotonic_nanoseconds();
+  const double begin = processor_seconds();
   for (std::size_t i = 0; i < times; ++i) call();
-  return 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin);
+  return std::max(processor_seconds() - begin, 1e-9);
 }
 
 Real at_share(const std::vector<Real>& ascending, Real share) {

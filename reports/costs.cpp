@@ -81,7 +81,8 @@ std::vector<Real> Prices::hit_costs(const Record& record) const {
 OracleCounts counts_at(const Record& record, Real work) {
   OracleCounts counts{};
   const auto read = [&](const Columns& columns, const std::vector<std::int64_t>& works) {
-    const auto at = std::ranges::find_if(works, [&](std::int64_t each) { return Real(each) >= work; });
+    const auto at =
+        std::ranges::find_if(works, [&](std::int64_t each) { return Real(each) >= work; });
     const auto i = static_cast<std::size_t>(at - works.begin());
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       if (const auto* column = column_of(columns, kind); column && i < column->size())

@@ -49,7 +49,7 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
   for (const Real digit : {5, 2, 1})
     if (digit * power >= rough) step = digit * power;
   for (Real i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
-    ticks.push_back(i * step);
+    ticks.push_back(i * step + 0.0);  // no −0
   return ticks;
 }
 

@@ -84,7 +84,7 @@ Frame rows_frame(const Plot& plot) {
         low = std::min(low, value), high = std::max(high, value);
       }
   if (are_bars) low = std::min(low, 0.0), high = std::max(high, 0.0);
-  if (plot.is_log_x) low = std::pow(10.0, std::floor(std::log10(std::max(low, 1e-3))));
+  if (plot.is_log_x) low = std::pow(10.0, std::floor(std::log10(std::max(low, 1.0))));
   if (plot.is_log_x) high = std::max(high, 10 * low);
   if (!(high > low)) high = low + 1;
   return {.left = kNames,

@@ -26,7 +26,8 @@ std::string counted(const Comparison& c, std::size_t shown) {
     runs += c.optimizers[s].runs;
     failed += c.optimizers[s].failed;
   }
-  return fmt::format("n = {} problems; {} of {} runs failed",
+  return fmt::format("the first {} of {} optimizers; n = {} problems; {} of {} runs failed", shown,
+                     c.optimizers.size(),
                      least == most ? std::to_string(most) : fmt::format("{} to {}", least, most),
                      failed, runs);
 }

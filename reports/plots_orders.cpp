@@ -36,7 +36,7 @@ Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
           .title = fmt::format("{} against {} alone", names[0], names[1]),
           .reading = fmt::format("{} needs less on {} of {} problems, {} on {}; {} tie{}.",
                                  names[0], wins, n, names[1], losses, n - wins - losses,
-                                 n - wins - losses == 1 ? "s" : ""),
+                                 n - wins - losses == 1 ? "" : "s"),
           .caption = fmt::format("Profiles of two alone, declared work to 1e-6, with 95 % bands; "
                                  "failed: {} and {}.",
                                  failed_cell(c, 0).text, failed_cell(c, rival).text),
@@ -111,7 +111,7 @@ std::optional<Plot> rank_plot(const Comparison& c) {
             .reading = "",
             .caption = fmt::format(
                 "By declared work to 1e-6, with the 95 % bootstrap interval over n = {} problems "
-                "given to every optimizer; gaps below {:.3g} are not resolvable (Nemenyi). {}.",
+                "given to every optimizer; gaps below {:.3g} are not resolvable (Nemenyi); {}.",
                 ranks.size(), least_gap(c.optimizers.size(), ranks.size()),
                 counted(c, shown_optimizers(c, kMostRanks))),
             .x_label = "mean rank, 1 the best",
@@ -152,7 +152,7 @@ std::optional<Plot> signed_rank_plot(const Comparison& c) {
                 ranked.told, ranked.pairs.size(), ranked.least),
             .caption = fmt::format(
                 "Wilcoxon's signed ranks on log-ratios of declared work to 1e-6, p after Holm over "
-                "all pairs; the darker the surer, framed at 0.05 or less. {}.",
+                "all pairs; the darker the surer, framed at 0.05 or less; {}.",
                 counted(c, k)),
             .x_label = "",
             .y_label = ""};

@@ -106,7 +106,7 @@ PlotSeries target_series(const Comparison& c, std::size_t s, std::size_t problem
 std::optional<Plot> runtime_plot(const Comparison& c) {
   Real most = 1;
   for (const Run& run : c.runs) most = std::max(most, run.spent);
-  const std::vector<Real> grid = cost_grid(most);
+  const std::vector<Real> grid = cost_grid(10 * most);  // a decade of restarts
   Plot plot{.id = "plot-runtime",
             .title = "Runtime distribution with restarts",
             .reading = "",
@@ -155,9 +155,9 @@ std::optional<Plot> target_plot(const Comparison& c) {
   }
   if (dots == 0) return std::nullopt;
   plot.caption = fmt::format(
-      "Median over seeds in {} with its 95 % bootstrap interval (1,000 draws) of the first {} "
-      "optimizers; no mark: the median run does not get there. {}.",
-      cost_unit(c), shown, counted(c, shown));
+      "Median over seeds in {} with its 95 % bootstrap interval (1,000 draws); no mark: the "
+      "median run does not get there; {}.",
+      cost_unit(c), counted(c, shown));
   plot.reading = fmt::format(
       "{} of {} pairs get there in the median; {}.", dots, shown * problems,
       where.empty() ? "no interval has any width: seeds agree"

@@ -1,6 +1,8 @@
 // A table of statistics as every format prints it, with the numbers that its text is made of.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +21,12 @@ struct TableCell {
 
   std::string text;
   Numbers numbers;
+  std::string note = {};  // what the page tells who points at it
+};
+
+// What a row or a column is about, by index in the comparison: filters go by it.
+struct TableSubject {
+  std::optional<std::size_t> optimizer, problem;
 };
 
 struct StatisticTable {
@@ -28,6 +36,7 @@ struct StatisticTable {
   std::string caption;  // what the figures are
   std::vector<std::string> columns;
   std::vector<std::vector<TableCell>> rows;  // the first cell is the name of the row
+  std::vector<TableSubject> row_subjects = {}, column_subjects = {};  // may be fewer, or none
 };
 
 }  // namespace isoline

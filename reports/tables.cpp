@@ -17,6 +17,21 @@ std::string optimizer_text(const Comparison& c, std::size_t s) {
   return shown_spec(c.optimizers[s].label) + (c.optimizers[s].privileges.empty() ? "" : " †");
 }
 
+void rows_are_optimizers(StatisticTable& table) {
+  for (std::size_t s = 0; s < table.rows.size(); ++s)
+    table.row_subjects.push_back({s, std::nullopt});
+}
+
+void columns_are_optimizers(StatisticTable& table, std::size_t count) {
+  table.column_subjects.emplace_back();
+  for (std::size_t s = 0; s < count; ++s) table.column_subjects.push_back({s, std::nullopt});
+}
+
+void columns_are_problems(StatisticTable& table, std::size_t count) {
+  table.column_subjects.emplace_back();
+  for (std::size_t p = 0; p < count; ++p) table.column_subjects.push_back({std::nullopt, p});
+}
+
 TableCell failed_cell(const Comparison& c, std::size_t s) {
   const OptimizerAxis& optimizer = c.optimizers[s];
   return {fmt::format("{}/{}", optimizer.failed, optimizer.runs),

@@ -37,7 +37,12 @@ inline constexpr std::size_t kMostTablePairs = 10;  // the best of them against 
 // What the tables share.
 std::size_t shown_optimizers(const Comparison& comparison, std::size_t most);
 std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"
-TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);       // "2/80"
+// The i-th row is of the i-th optimizer.
+void rows_are_optimizers(StatisticTable& table);
+// The first columns beside the names are of the first optimizers, or problems.
+void columns_are_optimizers(StatisticTable& table, std::size_t count);
+void columns_are_problems(StatisticTable& table, std::size_t count);
+TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);  // "2/80"
 TableCell count_cell(std::size_t count);
 TableCell digits_cell(Real digits);                         // ✗ where there are none
 TableCell share_cell(std::size_t part, std::size_t whole);  // "33 %"

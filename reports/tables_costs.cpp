@@ -113,6 +113,7 @@ StatisticTable calls_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
     work += all[s].work, cost += all[s].cost;
   }
+  rows_are_optimizers(table);
   table.reading = fmt::format("All that is shown took {} declared forward solves, {} in {}.",
                               figure(work), figure(cost), cost_unit(c));
   return table;
@@ -137,8 +138,10 @@ StatisticTable prices_table(const Comparison& c) {
   table.columns.insert(table.columns.end(), oracles.begin(), oracles.end());
   std::vector<Real> pullbacks;
   Farthest farthest;
-  for (const ProblemAxis& problem : c.problems) {
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const ProblemAxis& problem = c.problems[p];
     if (!problem.prices.are_measured()) continue;
+    table.row_subjects.push_back({std::nullopt, p});
     const std::string name = shown_spec(problem.spec);
     const Real microseconds = 1e6 * problem.sheet->prices->forward_seconds;
     std::vector<TableCell> row = {

@@ -20,12 +20,26 @@ std::string html_of(const StatisticTable& table) {
       "<h3 id=\"{}\">{}</h3><p class=reading>{}</p>\n<details><summary>Table</summary><div "
       "class=scroll tabindex=0 role=region aria-label=\"{}\"><table class=sortable><thead><tr>",
       table.id, html_text(table.title), html_text(table.reading), html_text(table.title));
-  for (const std::string& column : table.columns) html += fmt::format("<th>{}", html_text(column));
+  const auto about = [](const std::vector<TableSubject>& subjects, std::size_t i) {
+    std::string tag;
+    if (i < subjects.size() && subjects[i].optimizer)
+      tag += fmt::format(" data-s={}", *subjects[i].optimizer);
+    if (i < subjects.size() && subjects[i].problem)
+      tag += fmt::format(" data-p={}", *subjects[i].problem);
+    return tag;
+  };
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    html += fmt::format("<th{}>{}", about(table.column_subjects, i), html_text(table.columns[i]));
   html += "<tbody>\n";
-  for (const auto& row : table.rows) {
-    html += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i)
-      html += (i == 0 ? "<th>" : "<td>") + html_text(row[i].text);
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    html += fmt::format("<tr{}>", about(table.row_subjects, r));
+    for (std::size_t i = 0; i < table.rows[r].size(); ++i) {
+      const TableCell& cell = table.rows[r][i];
+      const std::string note =
+          cell.note.empty() ? "" : fmt::format(" title=\"{}\"", html_text(cell.note));
+      html += fmt::format("<{}{}{}>{}", i == 0 ? "th" : "td", about(table.column_subjects, i), note,
+                          html_text(cell.text));
+    }
     html += "\n";
   }
   return html +

@@ -89,6 +89,7 @@ StatisticTable profile_table(const Comparison& c) {
     row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
   }
+  rows_are_optimizers(table);
   table.reading =
       fmt::format("{} has the largest area; the intervals of {} other{} reach into its own.",
                   optimizer_text(c, 0), overlapping, overlapping == 1 ? "" : "s");
@@ -130,6 +131,7 @@ StatisticTable returned_table(const Comparison& c) {
     row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
   }
+  rows_are_optimizers(table);
   table.reading = losing == 0 ? "Every method shown returns to 1e-6 what it has seen to 1e-6."
                               : fmt::format(
                                     "{} method{} with a point below 1e-6 seen and not returned on "

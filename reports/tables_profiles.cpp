@@ -89,6 +89,8 @@ StatisticTable pairwise_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   table.columns.push_back("failed");
+  rows_are_optimizers(table);
+  columns_are_optimizers(table, k);
   table.reading = fmt::format(
       "Of {} pairs among the first {}, {} stand the other way round when compared alone.", pairs, k,
       turned);
@@ -118,6 +120,7 @@ StatisticTable flip_table(const Comparison& c) {
         flips += a != out && b != out && (all[a] - all[b]) * (scores[a] - scores[b]) < 0;
     turning += flips > 0;
     if (flips == 0 || table.rows.size() >= kMostTableRows) continue;
+    table.row_subjects.push_back({out, std::nullopt});
     table.rows.push_back({optimizer_text(c, out), count_cell(flips),
                           optimizer_text(c, first_of(scores, out)), failed_cell(c, out)});
   }
@@ -158,6 +161,7 @@ StatisticTable data_profile_table(const Comparison& c) {
     row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
   }
+  rows_are_optimizers(table);
   table.reading = fmt::format("Largest share solved within 1000 {}: {}, {}.", cost_unit(c),
                               percent(std::max(first.value, 0.0)), first.names());
   return table;
@@ -193,6 +197,7 @@ StatisticTable accuracy_table(const Comparison& c) {
     row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
   }
+  rows_are_optimizers(table);
   table.reading = first.count == 0
                       ? "No method gains a digit in the median over problems."
                       : fmt::format("Most digits in the median over problems: {:.3g}, {}.",

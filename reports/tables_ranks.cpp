@@ -74,6 +74,7 @@ StatisticTable rank_table(const Comparison& c) {
                           rank_cell(mean_of(of_optimizer(measured, s))), count_cell(own.size()),
                           failed_cell(c, s)});
   }
+  rows_are_optimizers(table);
   table.reading = rank_reading(c, means, ranks.size());
   return table;
 }
@@ -97,6 +98,8 @@ StatisticTable signed_rank_table(const Comparison& c) {
     table.rows.back().push_back(failed_cell(c, s));
   }
   table.columns.push_back("failed");
+  rows_are_optimizers(table);
+  columns_are_optimizers(table, k);
   const SignedRanks ranked = signed_ranks(c, k);
   for (const RankedPair& pair : ranked.pairs)
     table.rows[pair.a][pair.b + 1] = {

@@ -72,6 +72,23 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
   return attempts;
 }
 
+// The raw counts of the run in the middle of those that got there, for who points at its cost.
+TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
+  std::vector<std::pair<Real, std::size_t>> reached;
+  for (const std::size_t index : cell.runs)
+    if (c.runs[index].work[kTightest] < kNever)
+      reached.emplace_back(c.runs[index].work[kTightest], index);
+  if (reached.empty()) return shown;
+  std::ranges::sort(reached);
+  const auto [work, middle] = reached[(reached.size() - 1) / 2];
+  const OracleCounts counts = counts_at(*c.runs[middle].record, work);
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (counts[kind] > 0)
+      shown.note +=
+          fmt::format("{}{} {}", shown.note.empty() ? "" : ", ", counts[kind], kOracleNames[kind]);
+  return shown;
+}
+
 // A matrix of optimizers and problems whose cells `text` writes.
 template <class Text>
 void fill_matrix(const Comparison& c, StatisticTable& table, Text text) {
@@ -85,12 +102,14 @@ void fill_matrix(const Comparison& c, StatisticTable& table, Text text) {
       const Cell& cell = c.cell(p, s);
       row.push_back(cell.planned == 0    ? TableCell("")
                     : cell.runs.empty()  ? TableCell("missing")
-                    : cell.is_measured() ? text(p, s, cell)
+                    : cell.is_measured() ? with_calls(c, cell, text(p, s, cell))
                                          : TableCell("n/a"));
     }
     row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
   }
+  rows_are_optimizers(table);
+  columns_are_problems(table, problems);
 }
 
 std::string key_of(const Comparison& c, std::size_t p, std::size_t s) {
@@ -129,6 +148,7 @@ StatisticTable anytime_table(const Comparison& c) {
     if (all.area > best) best = all.area, leader = optimizer_text(c, s);
     table.rows.push_back(std::move(row));
   }
+  rows_are_optimizers(table);
   table.reading =
       fmt::format("Over all targets and budgets {} has the largest area, {:.3f}.", leader, best);
   return table;
@@ -142,8 +162,8 @@ StatisticTable interval_table(const Comparison& c) {
       .caption =
           "Median over seeds in " + cost_unit(c) +
           ", its 95 % bootstrap interval over seeds (1,000 draws), and runs that got there of all. "
-          "What never got there counts as infinite, ✗. The raw counts are under Oracle calls, and "
-          "of every run in report.csv.",
+          "What never got there counts as infinite, ✗. Point at a cost for its raw counts; they "
+          "are summed up under Oracle calls, and of every run in report.csv.",
       .columns = {"optimizer"},
       .rows = {}};
   std::size_t certain = 0, cells = 0;

@@ -67,7 +67,8 @@ Rows of_markdown(const std::string& report, const std::string& title) {
 
 Rows of_html(const std::string& page, const std::string& id) {
   Rows rows;
-  const std::string table = between(page, "<h3 id=\"" + id + "\">", "</table>");
+  const std::string table = std::regex_replace(between(page, "<h3 id=\"" + id + "\">", "</table>"),
+                                               std::regex("<(tr|th|td) [^>]*>"), "<$1>");
   for (const std::string& row : split(between(table, "<tbody>", "</nothing>"), "<tr>")) {
     const std::size_t first = row.find("<td>");
     if (row.find("<th>") == std::string::npos) continue;
