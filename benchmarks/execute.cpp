@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <sstream>
@@ -108,8 +109,15 @@ Hits hits_of(const Trace& trace) {
     hits.target.push_back(std::pow(10.0, -j / 5.0));
     hits.iteration.push_back(hit.iteration);
     hits.work.push_back(is_met ? hit.work : -1);
-    hits.forwards.push_back(is_met ? hit.forwards : -1);
+    hits.forwards.push_back(is_met ? hit.counts[0] : -1);
     hits.wall_seconds.push_back(is_met ? hit.wall_seconds : std::nan(""));
+  }
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    std::vector<std::int64_t> column;
+    for (const TraceHit& hit : trace.hit)
+      column.push_back(hit.iteration >= 0 ? hit.counts[kind] : -1);
+    const bool is_asked = trace.last.counts[kind] > 0 || std::ranges::max(column) > 0;
+    if (is_asked) hits.counts[std::string(kOracleNames[kind])] = std::move(column);
   }
   return hits;
 }

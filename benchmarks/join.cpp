@@ -109,4 +109,9 @@ Json join_plans(const Json& a, const Json& b) {
   return to_json(plan);
 }
 
+std::string sheet_wording(Json sheet) {
+  if (sheet.is_object()) sheet.erase("prices");
+  return sheet.dump();
+}
+
 }  // namespace isoline

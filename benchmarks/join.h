@@ -19,4 +19,7 @@ JoinedRecord join_records(const Json& a, const Json& b);
 // The union of two plans, sorted; suites and cells once each. Plan schema in, plan schema out.
 Json join_plans(const Json& a, const Json& b);
 
+// What a sheet says of its component, without prices: no two measurements are alike.
+std::string sheet_wording(Json sheet);
+
 }  // namespace isoline

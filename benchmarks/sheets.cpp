@@ -5,6 +5,8 @@
 #include <set>
 
 #include "benchmarks/isolate.h"
+#include "benchmarks/prices.h"
+#include "core/errors.h"
 #include "core/json.h"
 
 namespace isoline {
@@ -98,19 +100,59 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
           .family = std::string(name_of(entry.family))};
 }
 
+namespace {
+
+constexpr double kSheetSeconds = 30;
+
+std::optional<MeasuredPrices> stored_prices(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    return sheet_from_json(read_json(file)).prices;
+  } catch (const UsageError&) {
+    return std::nullopt;  // damaged: it is written anew
+  }
+}
+
+// Those that the folder has already, where this build measured them on this processor: a run that
+// goes on does not change the report of what is done. The problem is made again, in a process of
+// its own: what goes wrong in measuring does not cost the sheet.
+std::optional<MeasuredPrices> prices_of(const Catalog& catalog, const Component& component,
+                                        const std::filesystem::path& file) {
+  const std::string build = prices_build(component.revision);
+  auto stored = stored_prices(file);
+  if (are_ours(stored, build)) return stored;
+  const auto text = isolated_text(
+      [&] {
+        Sheet measured;
+        measured.options_text = "[]";
+        measured.prices = measure_prices(make_problem(catalog, component, 0), build);
+        return to_json(measured).dump();
+      },
+      kSheetSeconds);
+  if (!text) return std::nullopt;
+  return sheet_from_json(parse_json(*text, "prices of " + component.spec)).prices;
+}
+
+}  // namespace
+
 void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store) {
-  constexpr double kSheetSeconds = 30;
   std::set<std::string> known;
-  const auto write = [&](const std::string& spec, const auto& make) {
-    if (!known.insert(spec).second) return;
+  const auto made = [&](const std::string& spec, const auto& make) -> std::optional<Sheet> {
+    if (!known.insert(spec).second) return std::nullopt;
     const auto text = isolated_text([&] { return to_json(make()).dump(); }, kSheetSeconds);
-    if (text) store.write(sheet_from_json(parse_json(*text, spec)));
+    if (!text) return std::nullopt;
+    return sheet_from_json(parse_json(*text, spec));
   };
   for (const Request& request : requests) {
-    write("problem " + request.problem.spec,
-          [&] { return problem_sheet(catalog, request.problem); });
-    write("optimizer " + request.optimizer.spec,
-          [&] { return optimizer_sheet(catalog, request.optimizer); });
+    if (auto sheet = made("problem " + request.problem.spec,
+                          [&] { return problem_sheet(catalog, request.problem); })) {
+      sheet->prices =
+          prices_of(catalog, request.problem, store.folder() / "components" / sheet->file_name());
+      store.write(*sheet);
+    }
+    if (const auto sheet = made("optimizer " + request.optimizer.spec,
+                                [&] { return optimizer_sheet(catalog, request.optimizer); }))
+      store.write(*sheet);
   }
 }
 

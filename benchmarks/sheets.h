@@ -12,7 +12,8 @@ namespace isoline {
 Sheet problem_sheet(const Catalog& catalog, const Component& problem);
 Sheet optimizer_sheet(const Catalog& catalog, const Component& optimizer);
 
-// A sheet for every component of the plan, each made in a process of its own.
+// A sheet for every component of the plan, each made in a process of its own; a problem's with the
+// measured prices of its oracles.
 void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store);
 
 // What a store is told of a plan.

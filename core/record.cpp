@@ -74,11 +74,13 @@ Curve curve_from(const Json& json) {
 }
 
 Json to_json(const Hits& hits) {
-  return {{"target", numbers(hits.target)},
-          {"iteration", hits.iteration},
-          {"work", hits.work},
-          {"forwards", hits.forwards},
-          {"wall_seconds", numbers(hits.wall_seconds)}};
+  Json json = {{"target", numbers(hits.target)},
+               {"iteration", hits.iteration},
+               {"work", hits.work},
+               {"forwards", hits.forwards},
+               {"wall_seconds", numbers(hits.wall_seconds)}};
+  if (!hits.counts.empty()) json["counts"] = hits.counts;
+  return json;
 }
 
 Hits hits_from(const Json& json) {
@@ -87,6 +89,7 @@ Hits hits_from(const Json& json) {
   json.at("iteration").get_to(hits.iteration);
   json.at("work").get_to(hits.work);
   json.at("forwards").get_to(hits.forwards);
+  if (json.contains("counts")) json["counts"].get_to(hits.counts);
   hits.wall_seconds = reals(json.at("wall_seconds"));
   return hits;
 }
@@ -214,7 +217,9 @@ Json without_timings(Json record) {
     record.at("summary").erase(name);
     record.at("curve").erase(name);
   }
-  if (record.contains("hits")) record["hits"].erase("wall_seconds");
+  // Counts at hits are the work again by kind; records of older versions are without.
+  if (record.contains("hits"))
+    for (const char* name : {"wall_seconds", "counts"}) record["hits"].erase(name);
   return record;
 }
 

@@ -51,7 +51,8 @@ struct Curve {
 struct Hits {
   std::vector<Real> target;
   std::vector<std::int64_t> iteration, work, forwards;
-  std::vector<Real> wall_seconds;  // nan: never
+  std::map<std::string, std::vector<std::int64_t>> counts;  // as the curve's; old records: none
+  std::vector<Real> wall_seconds;                           // nan: never
 };
 
 // The path in x and y, at the iterations of the curve; where x and y are small.

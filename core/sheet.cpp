@@ -39,6 +39,34 @@ Landscape landscape_from(const Json& json) {
           json.at("spacing")};
 }
 
+Json to_json(const MeasuredPrices& prices) {
+  Json oracles = Json::array();
+  for (const MeasuredPrice& each : prices.oracles)
+    oracles.push_back({{"oracle", each.oracle},
+                       {"declared", each.declared},
+                       {"price", each.price},
+                       {"low", each.low},
+                       {"high", each.high},
+                       {"rounds", each.rounds},
+                       {"calls", each.calls}});
+  return {{"build", prices.build},
+          {"processor", prices.processor},
+          {"forward_seconds", prices.forward_seconds},
+          {"oracles", oracles}};
+}
+
+MeasuredPrices prices_from(const Json& json) {
+  MeasuredPrices prices{.build = json.at("build"),
+                        .processor = json.at("processor"),
+                        .forward_seconds = json.at("forward_seconds"),
+                        .oracles = {}};
+  for (const Json& each : json.at("oracles"))
+    prices.oracles.push_back({each.at("oracle"), each.at("declared"), each.at("price"),
+                              each.at("low"), each.at("high"), each.at("rounds"),
+                              each.at("calls")});
+  return prices;
+}
+
 }  // namespace
 
 std::string Sheet::file_name() const {
@@ -66,6 +94,7 @@ Json to_json(const Sheet& sheet) {
   for (const Panel& panel : sheet.panels) json["panels"].push_back(to_json(panel));
   if (sheet.landscape_x) json["landscape_x"] = to_json(*sheet.landscape_x);
   if (sheet.landscape_y) json["landscape_y"] = to_json(*sheet.landscape_y);
+  if (sheet.prices) json["prices"] = to_json(*sheet.prices);
   return json;
 }
 
@@ -92,6 +121,7 @@ Sheet sheet_from_json(const Json& json) {
       sheet.panels.push_back(panel_from_json(panel));
     if (json.contains("landscape_x")) sheet.landscape_x = landscape_from(json["landscape_x"]);
     if (json.contains("landscape_y")) sheet.landscape_y = landscape_from(json["landscape_y"]);
+    if (json.contains("prices")) sheet.prices = prices_from(json["prices"]);
     return sheet;
   } catch (const Json::exception& error) {
     throw UsageError(fmt::format("no {} sheet: {}", kSheetSchema, error.what()));

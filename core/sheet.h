@@ -27,6 +27,21 @@ struct Landscape {
   std::string spacing = "logarithm";
 };
 
+// What one call of an oracle takes, in forward solves: the first at a fresh point.
+struct MeasuredPrice {
+  std::string oracle;
+  std::int64_t declared = 0;
+  Real price = 0, low = 0, high = 0;  // the median of the rounds, and their middle 80 %
+  std::int64_t rounds = 0, calls = 0;
+};
+
+// Measured at the published instance of a problem, with nothing else running.
+struct MeasuredPrices {
+  std::string build, processor;  // of the program and the machine that measured
+  Real forward_seconds = 0;      // the median
+  std::vector<MeasuredPrice> oracles;
+};
+
 // Schema isoline.component/1: what a reader of the report needs to know of a problem or optimizer.
 struct Sheet {
   std::string kind;  // "problem" or "optimizer"
@@ -41,6 +56,7 @@ struct Sheet {
   std::vector<Real> target;                           // y*, where small
   std::vector<Real> truth;                            // x*, where small and known
   std::vector<Panel> panels;                          // of a problem: the figures of its paper
+  std::optional<MeasuredPrices> prices;               // of a problem
 
   std::string file_name() const;
 };

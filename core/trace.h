@@ -34,7 +34,8 @@ struct TracePoint {
 
 // When the j-th target was first reached: f ≤ f_L + 10^(−j/5) (f₀ − f_L).
 struct TraceHit {
-  std::int64_t iteration = -1, work = 0, forwards = 0;  // iteration −1: never
+  std::int64_t iteration = -1, work = 0;  // iteration −1: never
+  OracleCounts counts{};
   double wall_seconds = 0;
 };
 

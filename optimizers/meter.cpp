@@ -78,7 +78,7 @@ void Meter::reach(Real loss) {
     if (!(loss <= next_target_)) return;
     TraceHit& hit = trace_.hit[targets_met_++];
     hit.work = work_;
-    hit.forwards = counts_[static_cast<std::size_t>(Oracle::forward)];
+    hit.counts = counts_;
     hit.wall_seconds = watch_.seconds();
     hit.iteration = iteration_;
   }

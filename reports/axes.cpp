@@ -52,6 +52,9 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
   std::vector<ProblemAxis> axis;
   for (const std::string& spec : specs)
     axis.push_back({.spec = spec, .sheet = sheet_of(study, "problem", spec)});
+  for (ProblemAxis& problem : axis)
+    if (problem.sheet != nullptr && problem.sheet->spec == problem.spec)
+      problem.prices = Prices(problem.sheet);
   for (const Record& record : study.runs) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;

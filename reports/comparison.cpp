@@ -9,6 +9,7 @@
 #include <unordered_set>
 
 #include "reports/axes.h"
+#include "reports/plots.h"
 #include "reports/reached.h"
 #include "reports/standings.h"
 #include "reports/tables.h"
@@ -53,6 +54,7 @@ void fill_cells(Comparison& c, const OptimizerLabels& label) {
             .seconds = {},
             .is_timed_alone = is_timed_alone(record)};
     fill_reached(run, best);
+    fill_costs(run, c.problems[run.problem].prices);
     c.cells[run.problem][run.optimizer].runs.push_back(c.runs.size());
     c.runs.push_back(run);
     answered.insert(record.cell);
@@ -96,6 +98,7 @@ void aggregate(const Comparison& c, Cell& cell) {
   }
   for (std::size_t t = 0; t < kTolerances.size(); ++t) {
     cell.work[t] = spread_over(c, cell, [t](const Run& run) { return run.work[t]; });
+    cell.cost[t] = spread_over(c, cell, [t](const Run& run) { return run.cost[t]; });
     cell.seconds[t] = spread_over(c, cell, [t](const Run& run) { return run.seconds[t]; });
   }
   cell.loss = spread_over(c, cell, [](const Run& run) { return run.record->summary.loss; });
@@ -151,6 +154,7 @@ Comparison compare_optimizers(const Study& study) {
   fill_standings(c);
   summarize_runs(c);
   c.tables = statistic_tables(c);
+  c.plots = statistic_plots(c);
   c.limits = limits_of_evidence(c);
   return c;
 }

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "reports/claims.h"
+#include "reports/costs.h"
+#include "reports/plot.h"
 #include "reports/statistics.h"
 #include "reports/study.h"
 #include "reports/table.h"
@@ -31,7 +33,10 @@ struct Run {
   const Record* record = nullptr;
   std::size_t problem = 0, optimizer = 0;  // indices
   std::array<Real, kTolerances.size()> work, seconds;
-  Real minimum = 0;            // f_L: declared, else the best known
+  Real minimum = 0;  // f_L: declared, else the best known
+  // In equivalent forward solves, at the prices of the problem: to each tolerance, and in all.
+  std::array<Real, kTolerances.size()> cost = {kNever, kNever, kNever};
+  Real spent = 0;
   bool is_timed_alone = true;  // no other run beside it: its times mean something
 };
 
@@ -41,7 +46,7 @@ struct Cell {
   std::size_t planned = 0;        // cells of the plan; runs.size() of them or more are answered
   std::size_t failed = 0;         // runs that went wrong: see is_failure()
   std::map<Status, std::size_t> statuses;
-  std::array<Spread, kTolerances.size()> work, seconds;
+  std::array<Spread, kTolerances.size()> work, cost, seconds;
   std::array<bool, kTolerances.size()> is_best{};  // least median work of the problem; ties all
   Spread loss, x_error;                            // at the end; x_error.n = 0: no truth is known
   std::string inapplicable;                        // why the pair makes no sense, or empty
@@ -55,6 +60,7 @@ struct ProblemAxis {
   std::string spec;
   std::string name() const { return spec.substr(0, spec.find('[')); }
   const Sheet* sheet = nullptr;     // none where the folder has none
+  Prices prices = {};               // measured only where the sheet is of this very spec
   bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
 };
 
@@ -102,6 +108,7 @@ struct Comparison {
   std::size_t names = 0;  // of problems, options apart
   bool is_any_timed_together = false;
   std::vector<StatisticTable> tables;  // in the order of a report; none where nothing has run
+  std::vector<Plot> plots;             // of the statistics
   std::vector<std::string> limits;     // what cannot be concluded, a sentence each
   std::vector<Judgement> claims;  // those whose cells are among the runs; given, not computed here
 

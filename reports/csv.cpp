@@ -17,8 +17,11 @@ std::string header() {
   std::string row =
       "problem,optimizer,seed,status,iterations,work,start_loss,loss,best_loss,x_error";
   for (const Tolerance& tolerance : kTolerances) row += fmt::format(",work_to_{}", tolerance.name);
+  for (const Tolerance& tolerance : kTolerances) row += fmt::format(",cost_to_{}", tolerance.name);
   for (const Tolerance& tolerance : kTolerances)
     row += fmt::format(",seconds_to_{}", tolerance.name);
+  row += ",cost";
+  for (const std::string_view oracle : kOracleNames) row += fmt::format(",{}", oracle);
   return row +
          ",wall_seconds,timed_alone,peak_memory_bytes,privileges,message,claimed,cell,build,"
          "command\n";
@@ -37,7 +40,10 @@ std::string row_of(const Run& run) {
   for (const Real value : {summary.start_loss, summary.loss, summary.best_loss, summary.x_error})
     add(row, exact_figure(value));
   for (const Real work : run.work) add(row, exact_figure(work));
+  for (const Real cost : run.cost) add(row, exact_figure(cost));
   for (const Real seconds : run.seconds) add(row, exact_figure(seconds));
+  add(row, exact_figure(run.spent));
+  for (const std::int64_t count : record.counts) add(row, std::to_string(count));
   add(row, exact_figure(summary.wall_seconds));
   add(row, run.is_timed_alone ? "true" : "false");
   add(row, std::to_string(summary.peak_memory_bytes));
@@ -50,7 +56,7 @@ std::string row_of(const Run& run) {
 
 // As many fields as any other row; all figures empty.
 std::string row_of(const PlannedCell& cell) {
-  const std::string before_cell(19, ',');
+  const std::string before_cell(23 + kOracles, ',');
   return fmt::format("{},{},{},missing{}{},,\n", csv_field(cell.problem), csv_field(cell.optimizer),
                      cell.seed, before_cell, csv_field(cell.cell));
 }

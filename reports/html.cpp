@@ -21,6 +21,7 @@ namespace isoline {
 
 std::string_view embedded_page_html();
 std::string_view embedded_page_css();
+std::string_view embedded_plots_css();
 std::string_view embedded_page_js();
 std::string_view embedded_tables_js();
 std::string_view embedded_charts_js();
@@ -159,32 +160,33 @@ std::string problems_html(const Comparison& c) {
 
 std::string html_report(const Comparison& c) {
   const std::vector<Figure> drawn = figures(c);
-  return filled(embedded_page_html(), {{"style", std::string(embedded_page_css())},
-                                       {"headline", html_text(headline(c))},
-                                       {"alerts", alerts_html(c)},
-                                       {"tiles", tiles_html(c)},
-                                       {"remarks", remarks_html(c)},
-                                       {"verdict", verdict_html(c)},
-                                       {"standings", panes_html(c, "Standings", standings_html)},
-                                       {"matrices", panes_html(c, "Work", matrix_html)},
-                                       {"profile", profile_html(c)},
-                                       {"statistics", statistics_html(c)},
-                                       {"details", details_html(c)},
-                                       {"learned", learned_html(c)},
-                                       {"audit", audit_html(c.study->audits)},
-                                       {"figures", figures_html(drawn)},
-                                       {"claims", claims_html(c.claims)},
-                                       {"problems", problems_html(c)},
-                                       {"families", families_html(c)},
-                                       {"failures", failures_html(c)},
-                                       {"provenance", provenance_html(c)},
-                                       {"data", page_data(c, drawn)},
-                                       {"chart-js", std::string(embedded_chart_js())},
-                                       {"lines-js", std::string(embedded_lines_js())},
-                                       {"charts-js", std::string(embedded_charts_js())},
-                                       {"figures-js", std::string(embedded_figures_js())},
-                                       {"tables-js", std::string(embedded_tables_js())},
-                                       {"page-js", std::string(embedded_page_js())}});
+  return filled(embedded_page_html(),
+                {{"style", std::string(embedded_page_css()) + std::string(embedded_plots_css())},
+                 {"headline", html_text(headline(c))},
+                 {"alerts", alerts_html(c)},
+                 {"tiles", tiles_html(c)},
+                 {"remarks", remarks_html(c)},
+                 {"verdict", verdict_html(c)},
+                 {"standings", panes_html(c, "Standings", standings_html)},
+                 {"matrices", panes_html(c, "Work", matrix_html)},
+                 {"profile", profile_html(c)},
+                 {"statistics", statistics_html(c)},
+                 {"details", details_html(c)},
+                 {"learned", learned_html(c)},
+                 {"audit", audit_html(c.study->audits)},
+                 {"figures", figures_html(drawn)},
+                 {"claims", claims_html(c.claims)},
+                 {"problems", problems_html(c)},
+                 {"families", families_html(c)},
+                 {"failures", failures_html(c)},
+                 {"provenance", provenance_html(c)},
+                 {"data", page_data(c, drawn)},
+                 {"chart-js", std::string(embedded_chart_js())},
+                 {"lines-js", std::string(embedded_lines_js())},
+                 {"charts-js", std::string(embedded_charts_js())},
+                 {"figures-js", std::string(embedded_figures_js())},
+                 {"tables-js", std::string(embedded_tables_js())},
+                 {"page-js", std::string(embedded_page_js())}});
 }
 
 }  // namespace isoline

@@ -1,10 +1,11 @@
-// All aggregates as JSON, schema isoline.report/1: what is the same for the same build apart from
-// times, so that two reports can be compared.
+// All aggregates as JSON, schema isoline.report/1. `figures` are the same for the same build, so
+// that two reports can be compared; times are not, nor costs, which are at measured prices.
 #include "core/json.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -50,6 +51,24 @@ std::set<std::string> builds_of(const Comparison& c, const Cell& cell) {
   return builds;
 }
 
+// Raw counts until the tightest tolerance was met, of each run that met it, by oracle and seed.
+Json calls_json(const Comparison& c, const Cell& cell) {
+  Json json = Json::object();
+  for (const std::size_t index : cell.runs) {
+    const Run& run = c.runs[index];
+    if (run.work[kTightest] == kNever) continue;
+    const OracleCounts counts = counts_at(*run.record, run.work[kTightest]);
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      json[std::string(kOracleNames[kind])].push_back(counts[kind]);
+  }
+  for (auto it = json.begin(); it != json.end();)
+    if (std::ranges::all_of(*it, [](const Json& count) { return count == 0; }))
+      it = json.erase(it);
+    else
+      ++it;
+  return json;
+}
+
 Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   Json json{{"problem", c.problems[p].spec}, {"optimizer", c.optimizers[s].label},
@@ -61,6 +80,8 @@ Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   if (!cell.is_measured()) return json;
   json["figures"] = {{"work", by_tolerance(cell.work)}, {"loss", to_json(cell.loss)}};
   if (cell.x_error.n > 0) json["figures"]["x_error"] = to_json(cell.x_error);
+  json["costs"] = by_tolerance(cell.cost);
+  json["calls"] = calls_json(c, cell);
   json["times"] = {{"seconds", by_tolerance(cell.seconds)}, {"timed_alone", cell.is_timed_alone}};
   return json;
 }

@@ -1,6 +1,7 @@
 // Reads what each tolerance took off the hits of a record, or else off its curve.
 #include "reports/reached.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace isoline {
@@ -44,6 +45,32 @@ Real BestKnown::minimum(const Record& record) const {
   if (record.minimum) return *record.minimum;
   const auto found = least_.find({record.request.problem.spec, record.request.seed});
   return found == least_.end() ? std::nan("") : found->second;
+}
+
+std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t count) {
+  std::vector<Real> all(count, kNever);
+  const Record& record = *run.record;
+  if (record.status == Status::inapplicable) return all;
+  if (record.hits) {
+    const std::vector<Real> hits = prices.hit_costs(record);
+    std::copy_n(hits.begin(), std::min(count, hits.size()), all.begin());
+    return all;
+  }
+  const std::vector<Real> costs = prices.curve_costs(record);
+  const Real descent = record.summary.start_loss - run.minimum;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    for (; j < count && record.curve.loss[i] <=
+                            run.minimum + std::pow(10.0, -0.2 * static_cast<Real>(j)) * descent;
+         ++j)
+      all[j] = costs[i];
+  return all;
+}
+
+void fill_costs(Run& run, const Prices& prices) {
+  const std::vector<Real> costs = target_costs(run, prices, kTolerances.back().hit + 1);
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) run.cost[t] = costs[kTolerances[t].hit];
+  if (run.record->status != Status::inapplicable) run.spent = prices.cost(*run.record);
 }
 
 void fill_reached(Run& run, const BestKnown& best) {

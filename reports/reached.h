@@ -27,4 +27,11 @@ class BestKnown {
 // curve.
 void fill_reached(Run& run, const BestKnown& best);
 
+// Fills the costs, once the minimum is there.
+void fill_costs(Run& run, const Prices& prices);
+
+// Costs at which the run first met the targets τ = 10^(−j/5), j = 0 … count − 1, infinite where it
+// did not.
+std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t count);
+
 }  // namespace isoline

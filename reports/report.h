@@ -4,7 +4,9 @@
 //   axes, reached, comparison       puts runs into cells and aggregates them: every figure
 //   statistics, standings           medians, profiles, who leads and how sure that is
 //   rank_tests, runtimes            tests by ranks; running times, areas, resamples
+//   costs, orders                   equivalent forward solves; ranks, ratios and digits by problem
 //   tables (tables_*)               the tables of statistics, in every format
+//   plots (plots_*, plot_*), frame  the plots of statistics, their numbers and their SVG
 //   curves, contour                 what the plots draw
 //   claims, quantities              what papers say, held against the runs
 //   text, wording, readings         how figures, phrases and whole sentences are written

@@ -38,6 +38,17 @@ struct Interval {
 Interval bootstrap_median(const std::vector<Real>& values, const std::string& key);
 Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key);
 
+// Ratios of two sums over groups, as a share of problems is: value, and 95 % of kDraws resamples of
+// whole groups, for each component of the numerators.
+struct GroupSum {
+  std::vector<Real> sums;  // of the numerators
+  Real n = 0;              // of the denominator
+};
+struct Band {
+  std::vector<Real> value, low, high;
+};
+Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key);
+
 Real quantile(const std::vector<Real>& ascending, Real share);  // the nearest rank
 
 // Ranks of one problem's costs, 1 the least; ties share the mean, unsolved ones the last ranks.

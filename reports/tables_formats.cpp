@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
+#include "reports/plots.h"
 #include "reports/table.h"
+#include "reports/tables.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -17,21 +20,39 @@ std::string html_of(const StatisticTable& table) {
       "<h3 id=\"{}\">{}</h3><p class=reading>{}</p>\n<details><summary>Table</summary><div "
       "class=scroll tabindex=0 role=region aria-label=\"{}\"><table class=sortable><thead><tr>",
       table.id, html_text(table.title), html_text(table.reading), html_text(table.title));
-  for (const std::string& column : table.columns) html += fmt::format("<th>{}", html_text(column));
+  const auto about = [](const std::vector<TableSubject>& subjects, std::size_t i) {
+    std::string tag;
+    if (i < subjects.size() && subjects[i].optimizer)
+      tag += fmt::format(" data-s={}", *subjects[i].optimizer);
+    if (i < subjects.size() && subjects[i].problem)
+      tag += fmt::format(" data-p={}", *subjects[i].problem);
+    return tag;
+  };
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    html += fmt::format("<th{}>{}", about(table.column_subjects, i), html_text(table.columns[i]));
   html += "<tbody>\n";
-  for (const auto& row : table.rows) {
-    html += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i)
-      html += (i == 0 ? "<th>" : "<td>") + html_text(row[i]);
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    html += fmt::format("<tr{}>", about(table.row_subjects, r));
+    for (std::size_t i = 0; i < table.rows[r].size(); ++i) {
+      const TableCell& cell = table.rows[r][i];
+      const std::string note =
+          cell.note.empty() ? "" : fmt::format(" title=\"{}\"", html_text(cell.note));
+      html += fmt::format("<{}{}{}>{}", i == 0 ? "th" : "td", about(table.column_subjects, i), note,
+                          html_text(cell.text));
+    }
     html += "\n";
   }
   return html +
          fmt::format("</table></div><p class=legend>{}</p></details>\n", html_text(table.caption));
 }
 
-std::string markdown_row(const std::vector<std::string>& cells) {
+std::string text_of(const std::string& column) { return column; }
+std::string text_of(const TableCell& cell) { return cell.text; }
+
+template <class Cell>
+std::string markdown_row(const std::vector<Cell>& cells) {
   std::string row = "|";
-  for (const std::string& cell : cells) row += " " + markdown_text(cell) + " |";
+  for (const Cell& cell : cells) row += " " + markdown_text(text_of(cell)) + " |";
   return row + "\n";
 }
 
@@ -50,10 +71,11 @@ std::string latex_cell(const std::string& text) {
   struct Mark {
     std::string_view letter, command;
   };
-  constexpr Mark kMarks[] = {{"✗", "$\\times$"}, {"–", "--"},
-                             {"≤", "$\\le$"},    {"≥", "$\\ge$"},
-                             {"−", "$-$"},       {"†", "\\textsuperscript{\\textdagger}"},
-                             {"₀", "$_0$"}};
+  constexpr Mark kMarks[] = {
+      {"✗", "$\\times$"}, {"–", "--"},        {"≤", "$\\le$"},
+      {"≥", "$\\ge$"},    {"−", "$-$"},       {"†", "\\textsuperscript{\\textdagger}"},
+      {"₀", "$_0$"},      {"×", "$\\times$"}, {"é", "\\'e"},
+      {"µ", "$\\mu$"},    {"±", "$\\pm$"}};
   std::string out, plain;
   for (std::size_t i = 0; i < text.size();) {
     const auto* mark = std::ranges::find_if(kMarks, [&](const Mark& one) {
@@ -77,15 +99,34 @@ std::string latex_part(const StatisticTable& table, std::size_t first, std::size
       "  \\caption{{{}. {} {}}}\n  \\begin{{tabular}}{{l{}}}\n    \\toprule\n",
       latex_cell(table.title), latex_cell(table.reading), latex_cell(table.caption),
       std::string(last - first, 'r'));
-  const auto line = [&](const std::vector<std::string>& cells) {
-    text += "    " + latex_cell(cells[0]);
-    for (std::size_t i = first; i < last; ++i) text += " & " + latex_cell(cells[i]);
+  const auto line = [&](const auto& cells) {
+    text += "    " + latex_cell(text_of(cells[0]));
+    for (std::size_t i = first; i < last; ++i) text += " & " + latex_cell(text_of(cells[i]));
     text += " \\\\\n";
   };
   line(table.columns);
   text += "    \\midrule\n";
   for (const auto& row : table.rows) line(row);
   return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n\n";
+}
+
+// Texts as every format prints them, and the numbers they are made of, by name.
+nlohmann::json table_json(const StatisticTable& table) {
+  nlohmann::json rows = nlohmann::json::array(), values = rows;
+  for (const auto& row : table.rows) {
+    nlohmann::json texts = nlohmann::json::array(), numbers = texts;
+    for (const TableCell& cell : row) {
+      texts.push_back(cell.text);
+      nlohmann::json named = nlohmann::json::object();
+      for (const auto& [name, value] : cell.numbers) named[name] = json_number(value);
+      numbers.push_back(std::move(named));
+    }
+    rows.push_back(std::move(texts));
+    values.push_back(std::move(numbers));
+  }
+  return {{"id", table.id},           {"title", table.title},     {"reading", table.reading},
+          {"caption", table.caption}, {"columns", table.columns}, {"rows", rows},
+          {"values", values}};
 }
 
 }  // namespace
@@ -96,6 +137,15 @@ std::string statistics_html(const Comparison& c) {
     html += fmt::format("<li>{}</li>", html_text(sentence));
   if (!html.empty())
     html = "<h3>What cannot be concluded</h3><ul class=remarks>" + html + "</ul>\n";
+  if (!c.tables.empty())
+    html += fmt::format(
+        "<p class=lead>Orders of methods, ranks and tests among them are by work at declared "
+        "prices, which any machine repeats. What runs cost is in {}; the raw counts stand under "
+        "Oracle calls and Prices.</p>\n",
+        html_text(cost_unit(c)));
+  if (!c.plots.empty()) html += "<div class=plots>\n";
+  for (const Plot& plot : c.plots) html += plot_html(plot);
+  if (!c.plots.empty()) html += "</div>\n";
   for (const StatisticTable& table : c.tables) html += html_of(table);
   return html;
 }
@@ -104,7 +154,9 @@ std::string statistics_markdown(const Comparison& c) {
   if (c.tables.empty()) return "";
   std::string text = "\n## Statistics\n\n";
   for (const std::string& sentence : c.limits) text += "- " + markdown_text(sentence) + "\n";
-  text += "\n";
+  text += fmt::format(
+      "\nOrders are by work at declared prices; costs are in {}. The page draws the profiles.\n\n",
+      cost_unit(c));
   for (const StatisticTable& table : c.tables) text += markdown_of(table);
   return text;
 }
@@ -123,21 +175,16 @@ std::string statistics_csv(const Comparison& c) {
   for (const StatisticTable& table : c.tables)
     for (const auto& row : table.rows)
       for (std::size_t i = 1; i < row.size(); ++i)
-        text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0]),
-                            csv_field(table.columns[i]), csv_field(row[i]));
+        text += fmt::format("{},{},{},{}\n", table.id, csv_field(row[0].text),
+                            csv_field(table.columns[i]), csv_field(row[i].text));
   return text;
 }
 
 nlohmann::json statistics_json(const Comparison& c) {
-  nlohmann::json tables = nlohmann::json::array();
-  for (const StatisticTable& table : c.tables)
-    tables.push_back({{"id", table.id},
-                      {"title", table.title},
-                      {"reading", table.reading},
-                      {"caption", table.caption},
-                      {"columns", table.columns},
-                      {"rows", table.rows}});
-  return {{"limits", c.limits}, {"tables", tables}};
+  nlohmann::json tables = nlohmann::json::array(), plots = nlohmann::json::array();
+  for (const StatisticTable& table : c.tables) tables.push_back(table_json(table));
+  for (const Plot& plot : c.plots) plots.push_back(plot_json(plot, c));
+  return {{"limits", c.limits}, {"cost_unit", cost_unit(c)}, {"tables", tables}, {"plots", plots}};
 }
 
 }  // namespace isoline

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "reports/orders.h"
 #include "reports/runtimes.h"
 #include "reports/tables.h"
 #include "reports/text.h"
@@ -56,28 +57,11 @@ struct Leading {
   }
 };
 
-std::string share_text(std::size_t part, std::size_t whole) {
-  return whole == 0 ? "" : fmt::format("{:.0f} %", 100 * Real(part) / Real(whole));
-}
-
-// The digits a cell gains: the median over seeds of the best loss seen; a failed run gains none.
-Real digits_of(const Comparison& c, const Cell& cell) {
-  std::vector<Real> lacking;
-  for (const std::size_t index : cell.runs) {
-    const Run& run = c.runs[index];
-    const Summary& summary = run.record->summary;
-    lacking.push_back(is_failure(run.record->status)
-                          ? kNever
-                          : -accuracy(summary.best_loss, summary.start_loss, run.minimum));
-  }
-  return -median_of(lacking);
-}
-
 }  // namespace
 
 StatisticTable pairwise_table(const Comparison& c) {
   const std::size_t k = shown_optimizers(c, kMostTablePairs);
-  const Costs costs = tightest_costs(c);
+  const Costs costs = costs_of(c, &Cell::work);
   StatisticTable table{
       .id = "pairwise",
       .title = "Pairwise profiles",
@@ -91,16 +75,22 @@ StatisticTable pairwise_table(const Comparison& c) {
   std::size_t turned = 0, pairs = 0;
   for (std::size_t a = 0; a < k; ++a) table.columns.push_back(optimizer_text(c, a));
   for (std::size_t a = 0; a < k; ++a) {
-    std::vector<std::string> row = {optimizer_text(c, a)};
+    std::vector<TableCell> row = {optimizer_text(c, a)};
     for (std::size_t b = 0; b < k; ++b) {
       std::size_t n = 0;
       const auto [mine, other] = pair_scores(costs, a, b, n);
-      row.push_back(a == b ? "" : fmt::format("{:.2f} : {:.2f} (n {})", mine, other, n));
+      row.push_back(a == b ? TableCell("")
+                           : TableCell(fmt::format("{:.2f} : {:.2f} (n {})", mine, other, n),
+                                       {{"area", mine}, {"other_area", other}, {"n", Real(n)}}));
       pairs += b > a;
       turned += b > a && other > mine;
     }
+    row.push_back(failed_cell(c, a));
     table.rows.push_back(std::move(row));
   }
+  table.columns.push_back("failed");
+  rows_are_optimizers(table);
+  columns_are_optimizers(table, k);
   table.reading = fmt::format(
       "Of {} pairs among the first {}, {} stand the other way round when compared alone.", pairs, k,
       turned);
@@ -109,7 +99,7 @@ StatisticTable pairwise_table(const Comparison& c) {
 
 StatisticTable flip_table(const Comparison& c) {
   const std::size_t k = c.optimizers.size();
-  const Costs costs = tightest_costs(c);
+  const Costs costs = costs_of(c, &Cell::work);
   const std::vector<Real> all = scores_without(c, costs, k);
   StatisticTable table{
       .id = "flips",
@@ -130,8 +120,9 @@ StatisticTable flip_table(const Comparison& c) {
         flips += a != out && b != out && (all[a] - all[b]) * (scores[a] - scores[b]) < 0;
     turning += flips > 0;
     if (flips == 0 || table.rows.size() >= kMostTableRows) continue;
-    table.rows.push_back({optimizer_text(c, out), std::to_string(flips),
-                          optimizer_text(c, first_of(scores, out)), failed_text(c, out)});
+    table.row_subjects.push_back({out, std::nullopt});
+    table.rows.push_back({optimizer_text(c, out), count_cell(flips),
+                          optimizer_text(c, first_of(scores, out)), failed_cell(c, out)});
   }
   const std::size_t first = first_of(all, k);
   table.reading =
@@ -147,29 +138,31 @@ StatisticTable data_profile_table(const Comparison& c) {
       .title = "Data profile",
       .reading = "",
       .caption =
-          "Share of the problems given to a method that its median run solves to 1e-6 within "
-          "so many forward solves; unsolved, inapplicable and missing ones stay in n.",
+          "Share of the problems given to a method that its median run solves to 1e-6 within so "
+          "many " +
+          cost_unit(c) + "; unsolved, inapplicable and missing ones stay in n.",
       .columns = {"optimizer"},
       .rows = {}};
   for (const int work : kWork) table.columns.push_back(fmt::format("≤ {}", work));
   for (const char* column : {"at all", "n problems", "failed"}) table.columns.push_back(column);
   Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
-    std::vector<std::string> row = {optimizer_text(c, s)};
+    std::vector<TableCell> row = {optimizer_text(c, s)};
     const std::size_t n = c.optimizers[s].planned;
     for (const Real work : {Real(kWork[0]), Real(kWork[1]), Real(kWork[2]), Real(kWork[3]),
                             Real(kWork[4]), std::numeric_limits<Real>::max()}) {
       std::size_t within = 0;
       for (std::size_t p = 0; p < c.problems.size(); ++p)
-        within += c.cell(p, s).work[kTightest].median <= work;
-      row.push_back(share_text(within, n));
+        within += c.cell(p, s).cost[kTightest].median <= work;
+      row.push_back(share_cell(within, n));
       if (work == kWork[2] && n > 0) first.offer(Real(within) / Real(n), optimizer_text(c, s));
     }
-    row.push_back(std::to_string(n));
-    row.push_back(failed_text(c, s));
+    row.push_back(count_cell(n));
+    row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
   }
-  table.reading = fmt::format("Largest share solved within 1000 forward solves: {}, {}.",
+  rows_are_optimizers(table);
+  table.reading = fmt::format("Largest share solved within 1000 {}: {}, {}.", cost_unit(c),
                               percent(std::max(first.value, 0.0)), first.names());
   return table;
 }
@@ -190,24 +183,21 @@ StatisticTable accuracy_table(const Comparison& c) {
   for (const char* column : {"median", "n problems", "failed"}) table.columns.push_back(column);
   Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
-    std::vector<Real> lacking;
-    for (std::size_t p = 0; p < c.problems.size(); ++p) {
-      const Cell& cell = c.cell(p, s);
-      if (cell.planned > 0) lacking.push_back(cell.is_measured() ? -digits_of(c, cell) : kNever);
-    }
-    std::vector<std::string> row = {optimizer_text(c, s)};
+    const std::vector<Real> lacking = lacking_digits(c, s, &Summary::best_loss);
+    std::vector<TableCell> row = {optimizer_text(c, s)};
     for (const int digits : kDigits)
       row.push_back(
-          share_text(static_cast<std::size_t>(std::ranges::count_if(
+          share_cell(static_cast<std::size_t>(std::ranges::count_if(
                          lacking, [digits](Real value) { return -value >= Real(digits); })),
                      lacking.size()));
     const Real median = -median_of(lacking);
     if (median > -kNever) first.offer(median, optimizer_text(c, s));
-    row.push_back(median == -kNever ? "✗" : fmt::format("{:.3g}", median + 0.0));
-    row.push_back(std::to_string(lacking.size()));
-    row.push_back(failed_text(c, s));
+    row.push_back(digits_cell(median));
+    row.push_back(count_cell(lacking.size()));
+    row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
   }
+  rows_are_optimizers(table);
   table.reading = first.count == 0
                       ? "No method gains a digit in the median over problems."
                       : fmt::format("Most digits in the median over problems: {:.3g}, {}.",

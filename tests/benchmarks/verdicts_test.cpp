@@ -95,6 +95,21 @@ TEST(Hits, ComeInOrderAndNeverAgainOnceMissed) {
   }
 }
 
+TEST(Hits, CountEveryOracleThatTheirWorkIsMadeOf) {
+  for (const Record& record : matrix().records) {
+    if (!record.hits) continue;
+    for (std::size_t j = 0; j < record.hits->target.size(); ++j) {
+      if (record.hits->iteration[j] < 0) continue;
+      std::int64_t work = 0;
+      for (std::size_t kind = 0; kind < kOracles; ++kind) {
+        const auto column = record.hits->counts.find(std::string(kOracleNames[kind]));
+        if (column != record.hits->counts.end()) work += record.prices[kind] * column->second[j];
+      }
+      EXPECT_EQ(work, record.hits->work[j]) << title_of(record) << ", target " << j;
+    }
+  }
+}
+
 TEST(Hits, AreMetExactlyAsFarAsTheBestLossGoes) {
   for (const Record& record : matrix().records) {
     if (!record.hits) continue;

@@ -31,7 +31,7 @@ Record sample() {
                   .x_error = {NAN, NAN},
                   .gradient_norm = {1, 2},
                   .step_norm = {0, 1}};
-  record.hits = Hits{{1, 0.1}, {0, -1}, {0, -1}, {0, -1}, {0, NAN}};
+  record.hits = Hits{{1, 0.1}, {0, -1}, {0, -1}, {0, -1}, {{"forward", {0, -1}}}, {0, NAN}};
   record.trajectory = Trajectory{{{1, 2}, {3, 4}}, {{1}, {-INFINITY}}};
   record.repeat_wall_seconds = {0.5};
   record.provenance = {{"version", "0"}, {"run", {{"concurrent_jobs", 2}}}};
@@ -41,6 +41,13 @@ Record sample() {
 TEST(Record, SurvivesTheRoundTrip) {
   const Json written = Json::parse(to_json(sample()).dump());
   EXPECT_EQ(to_json(record_from_json(written)), written);
+}
+
+TEST(Record, OfAnOlderVersionHasNoCountsAtItsHits) {
+  Json older = to_json(sample());
+  older["hits"].erase("counts");
+  EXPECT_TRUE(record_from_json(older).hits->counts.empty());
+  EXPECT_EQ(without_timings(older), without_timings(to_json(sample())));
 }
 
 TEST(Record, WhatIsNoRecordIsAUsageError) {

@@ -203,6 +203,7 @@ void write_sheets(const fs::path& folder, const Size& size) {
   }
   for (std::size_t p = 0; p < size.problems; ++p) {
     Sheet sheet = sheet_of("problem", problem_at(p));
+    sheet.prices = sample_prices(p);
     if (is_surface(sheet.name)) {
       const Surface shape = surface(sheet.name == "sine");
       sheet.landscape_x = shape.in_x;

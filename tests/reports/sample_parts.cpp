@@ -34,6 +34,22 @@ Surface surface(bool is_sine) {
   return s;
 }
 
+// A forward solve of some microseconds, a Jacobian dearer than declared, an inverse cheaper.
+MeasuredPrices sample_prices(std::size_t problem) {
+  const Real factor = 1 + 0.1 * static_cast<Real>(problem % 7);
+  MeasuredPrices prices{"0123456789abcdef",
+                        "Intel(R) Xeon(R) Processor @ 2.70GHz",
+                        2e-6 * factor,
+                        {{"forward", 1, 1, 1, 1, 31, 620}}};
+  const auto add = [&](const char* oracle, std::int64_t declared, Real price) {
+    prices.oracles.push_back({oracle, declared, price, 0.9 * price, 1.2 * price, 31, 620});
+  };
+  add("pullback", 1, 1.3 * factor);
+  add("jacobian", 2, 4.1 * factor);
+  add("inverse", 3, 0.7 * factor);
+  return prices;
+}
+
 void descend(const Surface& s, const Kind& kind, Eigen::Vector2d& x) {
   constexpr Real kH = 1e-6;
   Eigen::Matrix2d J;

@@ -61,6 +61,9 @@ struct Surface {
 
 Surface surface(bool is_sine);
 
+// As if measured; no two problems alike.
+MeasuredPrices sample_prices(std::size_t problem);
+
 // One step of a descent whose direction is a blend of gradient and Newton, by the method's speed.
 void descend(const Surface& surface, const Kind& kind, Eigen::Vector2d& x);
 

@@ -1,0 +1,124 @@
+// Equivalent forward solves: raw counts at measured prices, and what does not depend on them.
+#include "reports/costs.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/json.h"
+#include "reports/report.h"
+#include "reports/subject.h"
+#include "reports/tables.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+Sheet priced(const std::string& spec, Real pullback) {
+  Sheet sheet{.kind = "problem", .name = "square", .spec = spec, .options_text = "[]"};
+  sheet.prices = MeasuredPrices{"b", "processor", 1e-6, {}};
+  sheet.prices->oracles = {{"forward", 1, 1, 1, 1, 31, 620},
+                           {"pullback", 1, pullback, pullback, pullback, 31, 620}};
+  return sheet;
+}
+
+// Forward solves and pullbacks in equal parts: of 2 j work, j each.
+Record counted() {
+  Record record = record_of({.work_per_hit = 2});
+  record.prices[0] = record.prices[1] = 1;
+  for (std::size_t j = 0; j < 51; ++j)
+    for (const char* oracle : {"forward", "pullback"}) {
+      record.curve.counts[oracle].push_back(static_cast<std::int64_t>(j));
+      record.hits->counts[oracle].push_back(static_cast<std::int64_t>(j));
+    }
+  record.counts[0] = record.counts[1] = 51;
+  return record;
+}
+
+TEST(Costs, AreRawCountsAtMeasuredPrices) {
+  const Sheet sheet = priced("square", 2.5);
+  const Prices prices(&sheet);
+  EXPECT_EQ(prices.cost(counted()), 51 * 3.5);
+  EXPECT_EQ(prices.hit_costs(counted())[30], 30 * 3.5);
+  EXPECT_EQ(prices.curve_costs(counted())[10], 10 * 3.5);
+}
+
+TEST(Costs, OfAnOracleThatWasNotMeasuredAreAtItsDeclaredPrice) {
+  Record record = counted();
+  record.counts[3] = 2;  // Jacobians
+  record.prices[3] = 7;
+  const Sheet sheet = priced("square", 2.5);
+  EXPECT_EQ(Prices(&sheet).cost(record), 51 * 3.5 + 2 * 7);
+}
+
+// At work 2 j − 1 the curve stands half way between its points.
+TEST(Costs, OfOlderRecordsAreReadBetweenThePointsOfTheCurve) {
+  Record older = counted();
+  older.hits->counts.clear();
+  older.hits->work[30] = 59;
+  const Sheet sheet = priced("square", 2.5);
+  EXPECT_EQ(Prices(&sheet).hit_costs(older)[30], 29.5 * 3.5);
+  EXPECT_EQ(Prices(&sheet).hit_costs(older)[29], 29 * 3.5);
+  EXPECT_EQ(counts_at(older, 59)[1], 30) << "whole calls: the first kept point from there on";
+  EXPECT_EQ(counts_at(counted(), 60)[1], 30);
+}
+
+TEST(Costs, WithoutMeasuredPricesAreTheDeclaredWork) {
+  EXPECT_EQ(Prices(nullptr).hit_costs(counted())[30], 60);
+  EXPECT_EQ(Prices(nullptr).cost(counted()), Real(counted().summary.work));
+  Study study;
+  study.runs = {counted()};
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(c.cell(0, 0).cost[kTightest].median, 60);
+  EXPECT_NE(cost_unit(c).find("declared"), std::string::npos);
+  EXPECT_TRUE(prices_table(c).rows.empty());
+}
+
+TEST(Costs, AreNotAtThePricesOfOtherSettings) {
+  Study study;
+  study.runs = {counted()};
+  study.sheets = {priced("square[n=9]", 2.5)};
+  EXPECT_EQ(compare_optimizers(study).cell(0, 0).cost[kTightest].median, 60);
+  study.sheets = {priced("square", 2.5)};
+  EXPECT_EQ(compare_optimizers(study).cell(0, 0).cost[kTightest].median, 30 * 3.5);
+}
+
+// Two machines measure different prices: what is compared between results is none of it.
+TEST(Costs, ChangeNoFigureThatResultsAreComparedBy) {
+  Study cheap, dear;
+  cheap.runs = dear.runs = {counted()};
+  cheap.sheets = {priced("square", 0.5)};
+  dear.sheets = {priced("square", 40)};
+  const Comparison one = compare_optimizers(cheap), other = compare_optimizers(dear);
+  EXPECT_NE(one.cell(0, 0).cost[kTightest].median, other.cell(0, 0).cost[kTightest].median);
+  EXPECT_EQ(one.cell(0, 0).work[kTightest].median, other.cell(0, 0).work[kTightest].median);
+  const auto subjects = [](const Comparison& c) {
+    return subjects_of_report(parse_json(json_report(c), "report.json"));
+  };
+  const auto left = subjects(one), right = subjects(other);
+  ASSERT_EQ(left.size(), 1U);
+  ASSERT_EQ(left[0].quantities.size(), right[0].quantities.size());
+  for (std::size_t i = 0; i < left[0].quantities.size(); ++i)
+    EXPECT_EQ(left[0].quantities[i].value, right[0].quantities[i].value)
+        << left[0].quantities[i].name;
+}
+
+// 30 forward solves and 30 pullbacks at 2.5: 105.
+TEST(Costs, StandBesideTheRawCounts) {
+  Study study;
+  study.runs = {counted()};
+  study.sheets = {priced("square", 2.5)};
+  const Comparison c = compare_optimizers(study);
+  const StatisticTable table = calls_table(c);
+  const auto column = std::ranges::find(table.columns, "pullback") - table.columns.begin();
+  EXPECT_EQ(table.rows[0][static_cast<std::size_t>(column)].text, "30");
+  EXPECT_NE(table.reading.find("60 declared forward solves, 105 in"), std::string::npos)
+      << table.reading;
+  EXPECT_NE(prices_table(c).rows[0].back().text.find("1 : 2.5 [2.5–2.5]"), std::string::npos);
+  const Json cell = parse_json(json_report(c), "report.json").at("cells")[0];
+  EXPECT_EQ(cell.at("costs").at("1e-6").at("median"), 105);
+  EXPECT_EQ(cell.at("calls").at("pullback"), Json::array({30}));
+}
+
+}  // namespace
+}  // namespace isoline

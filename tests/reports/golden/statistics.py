@@ -1,0 +1,91 @@
+# What statistics.json holds: statistics by NumPy and SciPy, from their definitions, to which
+# golden_test.cpp holds ours. Made by: python3 statistics.py > statistics.json
+import json
+import sys
+
+import numpy as np
+import scipy
+from scipy import integrate, stats
+
+random = np.random.default_rng(20)
+INF = float("inf")
+
+
+def listed(array):
+    return [[("inf" if v == INF else float(v)) for v in row] for row in np.atleast_2d(array)]
+
+
+# 12 problems, 5 solvers: log-uniform costs rounded to whole numbers, a sixth of them unsolved; the
+# third problem by nobody, the fourth a tie.
+costs = np.round(10 ** random.uniform(0, 3, (12, 5)))
+costs[random.random((12, 5)) < 1 / 6] = INF
+costs[2] = INF
+costs[3, :2] = 17
+least = costs.min(axis=1)
+ratios = np.where(np.isfinite(costs), costs / np.where(np.isfinite(least), least, 1)[:, None], INF)
+factors = [1, 1.5, 2, 4, 8, 16, 64, 1000]
+shares = [[float(np.mean(ratios[:, s] <= f)) for f in factors] for s in range(5)]
+fine = np.linspace(0, 6, 2**20 + 1)  # log2 of the factor up to 64
+
+
+def area(s):
+    finite = np.sort(ratios[:, s])
+    height = np.searchsorted(finite, 2**fine, side="right") / 12
+    return float(integrate.trapezoid(height, fine) / 6)
+
+
+def signed_rank(a, b):
+    big = np.where(np.isfinite(costs), np.log(np.where(np.isfinite(costs), costs, 1)), 1e6)
+    d = big[:, a] - big[:, b]
+    d = d[d != 0]
+    ranks = stats.rankdata(np.abs(d)) * np.sign(d)
+    test = stats.permutation_test((ranks,), lambda x, axis: np.sum(np.maximum(x, 0), axis=axis),
+                                  permutation_type="samples", n_resamples=np.inf, vectorized=True)
+    return float(test.pvalue)
+
+
+pairs = [(a, b) for a in range(5) for b in range(a + 1, 5)]
+p = [signed_rank(a, b) for a, b in pairs]
+order = np.argsort(p, kind="stable")
+holm = np.empty(len(p))
+holm[order] = np.minimum(1, np.maximum.accumulate([(len(p) - i) * p[j] for i, j in enumerate(order)]))
+
+ranks = stats.rankdata(costs, axis=1)
+boot = stats.bootstrap((ranks[:, 0],), np.mean, n_resamples=200000, method="percentile",
+                       random_state=np.random.default_rng(1))
+
+work = np.cumsum(random.integers(1, 30, 12))
+gap = np.minimum.accumulate(10 ** -random.uniform(0, 9, 12))
+budget = int(work[-1] + 40)
+best = np.ones(budget)
+for w, g in zip(work, gap):
+    best[w:] = np.minimum(best[w:], g)
+aocc = float(np.mean(1 - np.clip((np.log10(best) + 8) / 8, 0, 1)))
+
+spent = np.round(random.uniform(50, 200, 9))
+success = np.array([1, 0, 0, 1, 0, 1, 0, 0, 0], dtype=bool)
+chance = success.mean()
+ert = spent[success].mean() + (1 - chance) / chance * spent[~success].mean()
+
+json.dump({
+    "origin": f"statistics.py with NumPy {np.__version__} and SciPy {scipy.__version__}",
+    "costs": listed(costs),
+    "factors": factors,
+    "shares": shares,
+    "areas": [area(s) for s in range(5)],
+    "mean_ranks": [float(m) for m in ranks.mean(axis=0)],
+    "first_rank_interval": [float(boot.confidence_interval.low),
+                            float(boot.confidence_interval.high)],
+    "signed_rank_p": p,
+    "holm": [float(h) for h in holm],
+    "nemenyi": [float(stats.studentized_range.ppf(0.95, k, 1e6) / np.sqrt(2))
+                for k in range(2, 13)],
+    "work": [int(w) for w in work],
+    "gap": [float(g) for g in gap],
+    "budget": budget,
+    "aocc": aocc,
+    "spent": [float(s) for s in spent],
+    "success": [bool(s) for s in success],
+    "ert": float(ert)
+}, sys.stdout, indent=1)
+print()

@@ -1,0 +1,112 @@
+// Statistics against an independent implementation: golden/statistics.py, in NumPy and SciPy, whose
+// results are golden/statistics.json.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/json.h"
+#include "reports/orders.h"
+#include "reports/rank_tests.h"
+#include "reports/runtimes.h"
+
+namespace isoline {
+namespace {
+
+constexpr Real kRounding = 1e-12;
+
+const Json& golden() {
+  static const Json json = read_json(ISOLINE_SOURCE_DIR "/tests/reports/golden/statistics.json");
+  return json;
+}
+
+Costs golden_costs() {
+  Costs costs;
+  for (const Json& row : golden().at("costs")) {
+    costs.emplace_back();
+    for (const Json& cost : row) costs.back().push_back(real_of(cost));
+  }
+  return costs;
+}
+
+TEST(Golden, ProfilesHaveTheSharesThatNumPyCounts) {
+  const Profile profile = performance_profile(golden_costs());
+  const Json &factors = golden().at("factors"), &shares = golden().at("shares");
+  ASSERT_EQ(profile.solvers.size(), shares.size());
+  for (std::size_t s = 0; s < shares.size(); ++s)
+    for (std::size_t i = 0; i < factors.size(); ++i)
+      EXPECT_NEAR(profile.share(s, factors[i]), shares[s][i].get<Real>(), kRounding)
+          << "solver " << s << ", factor " << factors[i];
+}
+
+// The closed form against the trapezoidal rule over 2²⁰ intervals: each of at most 12 steps of 1/12
+// is off by half an interval of 2⁻²⁰ at most.
+TEST(Golden, AreasAreTheIntegralsOfTheProfiles) {
+  const Profile profile = performance_profile(golden_costs());
+  for (std::size_t s = 0; s < profile.solvers.size(); ++s)
+    EXPECT_NEAR(profile.area(s, 64), golden().at("areas")[s].get<Real>(), 1e-6) << s;
+}
+
+TEST(Golden, MeanRanksAreThoseOfSciPy) {
+  const Costs costs = golden_costs();
+  std::vector<Real> sum(costs[0].size(), 0), first;
+  for (const auto& row : costs) {
+    std::vector<Real> values;
+    for (const auto& cost : row) values.push_back(*cost);
+    const std::vector<Real> ranks = mid_ranks(values);
+    for (std::size_t s = 0; s < sum.size(); ++s) sum[s] += ranks[s];
+    first.push_back(ranks[0]);
+  }
+  for (std::size_t s = 0; s < sum.size(); ++s)
+    EXPECT_NEAR(sum[s] / Real(costs.size()), golden().at("mean_ranks")[s].get<Real>(), kRounding);
+  // 1,000 draws against 200,000: the 2.5 % quantile of 1,000 has a standard error of about a
+  // seventieth of the interval's width; five of them.
+  const Interval ours = bootstrap_mean(first, "golden");
+  const Real low = golden().at("first_rank_interval")[0], high = golden()["first_rank_interval"][1];
+  EXPECT_NEAR(ours.low, low, 5 * (high - low) / 70);
+  EXPECT_NEAR(ours.high, high, 5 * (high - low) / 70);
+}
+
+TEST(Golden, SignedRanksAreThePermutationTestOfSciPy) {
+  const Costs costs = golden_costs();
+  std::vector<Real> p;
+  for (std::size_t a = 0; a < costs[0].size(); ++a)
+    for (std::size_t b = a + 1; b < costs[0].size(); ++b) {
+      std::vector<Real> ratios;
+      for (const auto& row : costs)
+        ratios.push_back(*row[a] == *row[b] ? 0 : std::log(*row[a]) - std::log(*row[b]));
+      p.push_back(signed_rank_p(ratios));
+    }
+  const std::vector<Real> adjusted = holm(p);
+  ASSERT_EQ(p.size(), golden().at("signed_rank_p").size());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    EXPECT_NEAR(p[i], golden()["signed_rank_p"][i].get<Real>(), kRounding) << "pair " << i;
+    EXPECT_NEAR(adjusted[i], golden().at("holm")[i].get<Real>(), 1e-11) << "pair " << i;
+  }
+}
+
+// With 6 n = k (k + 1) the gap is the quantile itself; ours are rounded to three digits.
+TEST(Golden, GapsOfMeanRanksAreThoseOfTheStudentizedRange) {
+  for (std::size_t k = 2; k <= 12; ++k) {
+    const Real quantile = golden().at("nemenyi")[k - 2];
+    constexpr std::size_t kProblems = 10;
+    const Real expected = quantile * std::sqrt(Real(k * (k + 1)) / (6 * Real(kProblems)));
+    EXPECT_NEAR(least_gap(k, kProblems), expected, 1e-3 * expected) << k;
+  }
+}
+
+TEST(Golden, AreaOverTheCurveIsTheMeanOverEveryEvaluation) {
+  const std::vector<Real> work = golden().at("work"), gap = golden().at("gap");
+  EXPECT_NEAR(area_over_curve(work, gap, golden().at("budget"), 8), golden().at("aocc").get<Real>(),
+              kRounding);
+}
+
+TEST(Golden, ExpectedRunningTimeIsThatOfGeometricRestarts) {
+  std::vector<Attempt> attempts;
+  for (std::size_t i = 0; i < golden().at("spent").size(); ++i)
+    attempts.push_back({golden()["spent"][i], golden().at("success")[i]});
+  EXPECT_NEAR(expected_running_time(attempts), golden().at("ert").get<Real>(), 1e-10);
+}
+
+}  // namespace
+}  // namespace isoline

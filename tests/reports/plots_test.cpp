@@ -1,0 +1,176 @@
+// The plots of the statistics: hand-computed numbers, and figures that every reader can use.
+#include "reports/plots.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "core/json.h"
+#include "reports/report.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+// Work to 1e-6 is 30 times `per_hit`; 0: never.
+struct Result {
+  const char* problem;
+  const char* optimizer;
+  int per_hit;
+};
+Study study_of(const std::vector<Result>& results) {
+  Study study;
+  for (const auto& [problem, optimizer, per_hit] : results)
+    study.runs.push_back(record_of({.problem = problem,
+                                    .optimizer = optimizer,
+                                    .hits = per_hit == 0 ? 10U : 51U,
+                                    .work_per_hit = std::max(per_hit, 1)}));
+  return study;
+}
+
+// a is best on p, q and r; b is twice, four times and eight times as dear there, and alone on s.
+const Study& four_problems() {
+  static const Study study = study_of({{"p", "a", 1},
+                                       {"p", "b", 2},
+                                       {"q", "a", 1},
+                                       {"q", "b", 4},
+                                       {"r", "a", 1},
+                                       {"r", "b", 8},
+                                       {"s", "a", 0},
+                                       {"s", "b", 1}});
+  return study;
+}
+
+Real height(const PlotSeries& line, Real x) {
+  Real y = -1;
+  for (std::size_t i = 0; i < line.x.size() && line.x[i] <= x * (1 + 1e-9); ++i) y = line.y[i];
+  return y;
+}
+
+TEST(Plots, ProfilesAreThoseOfTheComparison) {
+  const Comparison c = compare_optimizers(four_problems());
+  const auto plot = profile_plot(c);
+  ASSERT_TRUE(plot.has_value());
+  ASSERT_EQ(plot->series.size(), 2U);
+  EXPECT_EQ(height(plot->series[0], 1), 0.75);
+  EXPECT_EQ(height(plot->series[0], 64), 0.75);
+  EXPECT_EQ(height(plot->series[1], 1), 0.25);
+  EXPECT_EQ(height(plot->series[1], 2), 0.5);
+  EXPECT_EQ(height(plot->series[1], 3.9), 0.5);
+  EXPECT_EQ(height(plot->series[1], 8), 1);
+  for (const PlotSeries& line : plot->series)
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      EXPECT_EQ(line.y[i], c.profiles[kTightest].share(line.optimizer, line.x[i]));
+      EXPECT_LE(line.low[i], line.y[i]);
+      EXPECT_GE(line.high[i], line.y[i]);
+    }
+}
+
+// Four problems drawn with replacement: the chance that none is one of the three on which a is best
+// is 4⁻⁴ = 0.4 %, that at most one is, 5 %, that all four are, 32 %. So 95 % reach from ¼ to 1.
+TEST(Plots, BandsAreThoseOfProblemsDrawnAnew) {
+  const auto plot = profile_plot(compare_optimizers(four_problems()));
+  EXPECT_EQ(plot->series[0].low[0], 0.25);
+  EXPECT_EQ(plot->series[0].high[0], 1);
+}
+
+TEST(Plots, PairsAreTheLeaderAgainstEachRivalAlone) {
+  const std::vector<Plot> plots = pairwise_plots(compare_optimizers(four_problems()));
+  ASSERT_EQ(plots.size(), 1U);
+  EXPECT_NE(plots[0].reading.find("a needs less on 3 of 4 problems, b on 1; 0 ties."),
+            std::string::npos)
+      << plots[0].reading;
+}
+
+// log2 of 1/8, 1/4, 1/2 and, where a never gets there, the end of the scale.
+TEST(Plots, RatiosAreSortedDoublings) {
+  const auto plot = log_ratio_plot(compare_optimizers(four_problems()));
+  ASSERT_TRUE(plot.has_value());
+  EXPECT_EQ(plot->series[0].y, (std::vector<Real>{-3, -2, -1, 10}));
+  EXPECT_EQ(plot->rows[0].name, "r");
+  EXPECT_EQ(plot->rows[3].name, "s");
+}
+
+// Work 30, 30, 30 of a: nothing within 10 forward solves, three of four within 100.
+TEST(Plots, DataProfilesCountForwardSolves) {
+  const auto plot = data_profile_plot(compare_optimizers(four_problems()));
+  EXPECT_EQ(height(plot->series[0], 10), 0);
+  EXPECT_EQ(height(plot->series[0], 100), 0.75);
+}
+
+// 10 digits on three problems, 9/5 of a digit on s: after 10 hits the loss is 10^(−0.2 · 9).
+TEST(Plots, AccuracyProfilesFallWithTheDigits) {
+  const auto plot = accuracy_plot(compare_optimizers(four_problems()));
+  EXPECT_EQ(height(plot->series[0], 1.75), 1);
+  EXPECT_EQ(height(plot->series[0], 2), 0.75);
+  EXPECT_EQ(height(plot->series[0], 9.75), 0.75);
+  EXPECT_EQ(height(plot->series[0], 10.25), 0);
+}
+
+// Of two seeds one meets target j at 2 j, the other the first ten of 51 alone, and stops after 20.
+TEST(Plots, RuntimesRestartUntilTheTargetIsMet) {
+  Study study;
+  study.runs = {record_of({.seed = 0, .work_per_hit = 2}),
+                record_of({.seed = 1, .hits = 10, .work_per_hit = 2, .status = Status::budget})};
+  const auto plot = runtime_plot(compare_optimizers(study));
+  const PlotSeries& line = plot->series[0];
+  // After k bad attempts, each with chance ½, target j is met at 20 k + 2 j.
+  Real expected = 10;
+  for (int j = 10; j <= 50; ++j)
+    for (int k = 0; 20 * k + 2 * j <= 100; ++k) expected += std::pow(0.5, k + 1);
+  // Of 1,000 draws the share of each target has a standard error of at most 0.016; three of them.
+  EXPECT_NEAR(height(line, 100), expected / 51, 0.05);
+  EXPECT_NEAR(height(line, 1e9), 1, 1e-3);
+  EXPECT_NEAR(height(line, 10), 6 / 51.0, 1e-12);  // targets 0 … 5, at 2 j
+  EXPECT_EQ(height(runtime_plot(compare_optimizers(four_problems()))->series[1], 1e9), 1);
+}
+
+TEST(Plots, AreFiguresForEveryReader) {
+  const ResultFolder folder;
+  write_sample_study(folder.path(), {.problems = 8, .optimizers = 9, .seeds = 3, .points = 30});
+  const Study study = read_study({folder.path()});
+  const Comparison c = compare_optimizers(study);
+  ASSERT_GE(c.plots.size(), 10U);
+  static const std::regex subject("data-s=([0-9]+)"), place("data-p=([0-9]+)"), wild("nan|inf");
+  for (const Plot& plot : c.plots) {
+    const std::string svg = plot_svg(plot), html = plot_html(plot);
+    EXPECT_FALSE(plot.reading.empty()) << plot.id;
+    EXPECT_NE(plot.caption.find("fail"), std::string::npos) << plot.id << ": " << plot.caption;
+    EXPECT_NE(svg.find("role=img aria-label=\""), std::string::npos) << plot.id;
+    EXPECT_NE(svg.find("<title>"), std::string::npos) << plot.id;
+    EXPECT_FALSE(
+        std::regex_search(std::regex_replace(svg, std::regex("<title>[^<]*|\"[^\"]*\""), ""), wild))
+        << plot.id;
+    const auto below = [&](const std::regex& what, std::size_t count) {
+      for (std::sregex_iterator it(svg.begin(), svg.end(), what), end; it != end; ++it)
+        EXPECT_LT(std::stoul((*it)[1]), count) << plot.id;
+    };
+    below(subject, c.optimizers.size());
+    below(place, c.problems.size());
+    EXPECT_TRUE(std::regex_search(svg, subject) || std::regex_search(svg, place)) << plot.id;
+    EXPECT_NE(html_report(c).find(svg), std::string::npos) << plot.id;
+  }
+}
+
+TEST(Plots, HaveTheirNumbersInTheReport) {
+  const Comparison c = compare_optimizers(four_problems());
+  const Json plots = parse_json(json_report(c), "report").at("statistics").at("plots");
+  ASSERT_EQ(plots.size(), c.plots.size());
+  for (std::size_t i = 0; i < plots.size(); ++i)
+    for (std::size_t s = 0; s < c.plots[i].series.size(); ++s)
+      for (std::size_t k = 0; k < c.plots[i].series[s].y.size(); ++k) {
+        const Real drawn = c.plots[i].series[s].y[k];
+        if (std::isnan(drawn)) continue;
+        EXPECT_EQ(real_of(plots[i].at("series")[s].at("y")[k]), drawn) << c.plots[i].id;
+      }
+}
+
+TEST(Plots, OfNothingAreNone) {
+  const Study none;
+  EXPECT_TRUE(compare_optimizers(none).plots.empty());
+}
+
+}  // namespace
+}  // namespace isoline

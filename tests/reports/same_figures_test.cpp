@@ -1,0 +1,184 @@
+// Each number of the statistics is the same in Markdown, LaTeX, HTML, CSV and JSON: read back from
+// what each format printed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+#include <sstream>
+
+#include "core/json.h"
+#include "reports/report.h"
+#include "reports/tables_formats.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+using Strings = std::vector<std::string>;
+using Rows = std::vector<Strings>;  // the numbers of each row as printed, the name of the row apart
+
+Strings numbers_in(const std::string& text) {
+  static const std::regex number(R"re(\d+(\.\d+)?(e-?\d+)?)re");
+  Strings found;
+  for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it)
+    found.push_back(it->str());
+  return found;
+}
+
+void append(Strings& all, const Strings& some) { all.insert(all.end(), some.begin(), some.end()); }
+
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t at = text.find(begin);
+  if (at == std::string::npos) return "";
+  return text.substr(at, text.find(end, at + begin.size()) - at);
+}
+
+Strings split(const std::string& text, const std::string& mark) {
+  Strings parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(mark, at), text.size());
+    parts.push_back(text.substr(at, end - at));
+    at = end + mark.size();
+  }
+  return parts;
+}
+
+Rows of_json(const Json& table) {
+  Rows rows;
+  for (const Json& row : table.at("rows")) {
+    rows.emplace_back();
+    for (std::size_t i = 1; i < row.size(); ++i) append(rows.back(), numbers_in(row[i]));
+  }
+  return rows;
+}
+
+// Escaped bars stand in names alone, before the first that separates.
+Rows of_markdown(const std::string& report, const std::string& title) {
+  Rows rows;
+  std::istringstream lines(between(report, "\n### " + title + "\n", "\n### "));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("| ")) continue;
+    rows.push_back(numbers_in(
+        std::regex_replace(line.substr(line.find(" | ")), std::regex("&#?\\w+;|\\\\"), " ")));
+  }
+  if (!rows.empty()) rows.erase(rows.begin());  // the headings
+  return rows;
+}
+
+Rows of_html(const std::string& page, const std::string& id) {
+  Rows rows;
+  const std::string table = std::regex_replace(between(page, "<h3 id=\"" + id + "\">", "</table>"),
+                                               std::regex("<(tr|th|td) [^>]*>"), "<$1>");
+  for (const std::string& row : split(between(table, "<tbody>", "</nothing>"), "<tr>")) {
+    const std::size_t first = row.find("<td>");
+    if (row.find("<th>") == std::string::npos) continue;
+    rows.push_back(first == std::string::npos ? Strings() : numbers_in(row.substr(first)));
+  }
+  return rows;
+}
+
+// A wide table comes in several, seven columns each.
+Rows of_latex(const std::string& report, const std::string& title) {
+  Rows rows;
+  for (const std::string& part : split(report, "\\begin{table}")) {
+    if (part.find("\\caption{" + title + ". ") == std::string::npos) continue;
+    std::size_t i = 0;
+    for (const std::string& line : split(between(part, "\\midrule\n", "    \\bottomrule"), "\n")) {
+      const std::size_t first = line.find(" & ");
+      if (first == std::string::npos) continue;
+      if (rows.size() <= i) rows.emplace_back();
+      append(rows[i++], numbers_in(line.substr(first)));
+    }
+  }
+  return rows;
+}
+
+// table,row,column,value: rows follow one another.
+Strings of_csv(const std::string& csv, const std::string& id) {
+  Strings all;
+  for (const std::string& line : split(csv, "\n"))
+    if (line.starts_with(id + ",")) append(all, numbers_in(line.substr(line.rfind(','))));
+  return all;
+}
+
+Strings joined(const Rows& rows) {
+  Strings all;
+  for (const Strings& row : rows) append(all, row);
+  return all;
+}
+
+// Half a unit of the last digit printed.
+Real rounding_of(const std::string& printed) {
+  const std::size_t e = printed.find('e'), point = printed.find('.');
+  const std::size_t end = std::min(e, printed.size());
+  const Real places = point == std::string::npos ? 0 : Real(end - point - 1);
+  const Real power = e == std::string::npos ? 0 : std::stod(printed.substr(e + 1));
+  return 0.5 * std::pow(10.0, power - places) * (1 + 1e-6);
+}
+
+class SameFigures : public testing::Test {
+ protected:
+  SameFigures() {
+    write_sample_study(folder_.path(), {.problems = 9, .optimizers = 9, .seeds = 3, .points = 30});
+    study_ = read_study({folder_.path()});
+    comparison_ = compare_optimizers(study_);
+    json_ = parse_json(json_report(comparison_), "report.json");
+  }
+
+  const Json& tables() const { return json_.at("statistics").at("tables"); }
+
+  ResultFolder folder_;
+  Study study_;
+  Comparison comparison_;
+  Json json_;
+};
+
+TEST_F(SameFigures, AreInEveryFormat) {
+  const std::string html = html_report(comparison_), markdown = markdown_report(comparison_),
+                    latex = latex_report(comparison_), csv = statistics_csv(comparison_);
+  std::size_t count = 0;
+  for (const Json& table : tables()) {
+    const std::string id = table.at("id"), title = table.at("title");
+    const Rows rows = of_json(table);
+    count += joined(rows).size();
+    if (rows.empty()) continue;
+    EXPECT_EQ(of_html(html, id), rows) << id;
+    EXPECT_EQ(joined(of_markdown(markdown, title)), joined(rows)) << id;
+    EXPECT_EQ(joined(of_latex(latex, title)).size(), joined(rows).size()) << id;
+    Strings sorted = joined(of_latex(latex, title)), expected = joined(rows);
+    std::ranges::sort(sorted);  // the parts of a wide table come one after the other
+    std::ranges::sort(expected);
+    EXPECT_EQ(sorted, expected) << id;
+    EXPECT_EQ(of_csv(csv, id), joined(rows)) << id;
+  }
+  EXPECT_GT(count, 1000U) << "the numbers were not found";
+}
+
+// The first number of a cell is the first that its text prints, to the digits printed.
+TEST_F(SameFigures, AreTheNumbersThatTheirTextsRound) {
+  std::size_t count = 0;
+  for (const Json& table : tables())
+    for (std::size_t i = 0; i < table.at("rows").size(); ++i)
+      for (std::size_t k = 1; k < table["rows"][i].size(); ++k) {
+        const std::string text = table["rows"][i][k];
+        const Json& named = table.at("values")[i][k];
+        const Strings printed = numbers_in(text);
+        for (const char* name : {"share", "median", "expected", "adjusted_p", "area", "mean", "sum",
+                                 "declared", "count", "digits", "failed"}) {
+          if (!named.contains(name) || printed.empty()) continue;
+          if (std::string(name) == "count" && named.contains("share")) continue;
+          const Real value = (std::string(name) == "share" ? 100 : 1) * real_of(named[name]);
+          if (!std::isfinite(value)) {
+            EXPECT_NE(text.find("✗"), std::string::npos) << table["id"] << ": " << text;
+            continue;
+          }
+          EXPECT_NEAR(std::abs(value), std::stod(printed[0]), rounding_of(printed[0]))
+              << table["id"] << " " << name << ": " << text;
+          ++count;
+        }
+      }
+  EXPECT_GT(count, 500U) << "the numbers were not found";
+}
+
+}  // namespace
+}  // namespace isoline
