@@ -12,11 +12,17 @@
 namespace isoline {
 namespace {
 
-// What a reader must know beside the figures: why not, and what differs from the source.
+// What a reader must know beside the figures: what it was held against, why not, and what differs
+// from the source.
 std::string remarks_of(const Judgement& judgement) {
-  std::string text = judgement.why.empty() ? "" : judgement.why + ".";
-  if (!text.empty() && !judgement.caveat.empty()) text += " ";
-  return text + judgement.caveat;
+  std::vector<std::string> parts;
+  if (const auto& contrast = judgement.contrast)
+    parts.push_back(fmt::format("Held against the {}: published {}, measured {}.",
+                                contrast->quantity, contrast->published,
+                                contrast->measured ? figure(contrast->measured->value) : "–"));
+  if (!judgement.why.empty()) parts.push_back(judgement.why + ".");
+  if (!judgement.caveat.empty()) parts.push_back(judgement.caveat);
+  return fmt::format("{}", fmt::join(parts, " "));
 }
 
 std::string value_text(const Judgement& judgement) {
@@ -36,6 +42,13 @@ std::string seeds_text(const Judgement& judgement) {
 std::string_view mark_of(Verdict verdict) {
   constexpr std::array<std::string_view, 4> kMarks = {"✓", "≈", "✗", "·"};
   return kMarks[static_cast<std::size_t>(verdict)];
+}
+
+Json measurement_json(const Measurement& measured) {
+  return {{"value", json_number(measured.value)},
+          {"low", json_number(measured.low)},
+          {"high", json_number(measured.high)},
+          {"n", measured.n}};
 }
 
 }  // namespace
@@ -116,11 +129,12 @@ Json claims_json(const std::vector<Judgement>& judgements) {
               {"why", judgement.why},
               {"caveat", judgement.caveat},
               {"measured", nullptr}};
-    if (judgement.measured)
-      json["measured"] = {{"value", json_number(judgement.measured->value)},
-                          {"low", json_number(judgement.measured->low)},
-                          {"high", json_number(judgement.measured->high)},
-                          {"n", judgement.measured->n}};
+    if (judgement.measured) json["measured"] = measurement_json(*judgement.measured);
+    if (const auto& contrast = judgement.contrast)
+      json["contrast"] = {
+          {"quantity", contrast->quantity},
+          {"published", contrast->published},
+          {"measured", contrast->measured ? measurement_json(*contrast->measured) : Json(nullptr)}};
     list.push_back(std::move(json));
   }
   return list;

@@ -9,8 +9,8 @@
 #include <unordered_map>
 
 #include "core/json.h"
+#include "reports/claim_words.h"
 #include "reports/statistics.h"
-#include "reports/text.h"
 
 namespace isoline {
 namespace {
@@ -51,12 +51,6 @@ Band around(Real value, const Json& claim) {
   return {value * (1 - t), value * (1 + t)};
 }
 
-Real published_value(const Json& published) {
-  for (const char* key : {"value", "at_least", "at_most"})
-    if (published.contains(key)) return real_of(published[key]);
-  return 0;  // a table: no distance from it
-}
-
 Band band_of(const Json& claim) {
   const Json& published = claim.at("published");
   Band band = around(published_value(published), claim);
@@ -65,111 +59,94 @@ Band band_of(const Json& claim) {
   return band;
 }
 
-std::string tolerance_text(const Json& tolerance) {
-  const std::string from = tolerance.at("from");
-  const bool is_ratio = tolerance.value("values", 1) == 2;
-  if (from == "none") return "no error stated";
-  if (from == "digits")
-    return fmt::format("±{} in its digits", figure(real_of(tolerance["absolute"])));
-  return fmt::format("±{:.0f} % {}{}", 100 * real_of(tolerance["relative"]),
-                     from == "text" ? "from text" : "off a figure", is_ratio ? ", each value" : "");
-}
-
-std::string published_text(const Json& claim) {
-  const Json& published = claim.at("published");
-  const std::string error = tolerance_text(claim.at("tolerance"));
-  if (published.contains("table"))
-    return published["table"].size() == 1
-               ? fmt::format("an end point ({})", error)
-               : fmt::format("{} rows of figures ({})", published["table"].size(), error);
-  const char* relation = published.contains("at_least")  ? "≥ "
-                         : published.contains("at_most") ? "≤ "
-                                                         : "";
-  return fmt::format("{}{} ({})", relation, figure(published_value(published)), error);
-}
-
-std::string source_text(const Json& source) {
-  std::string text = source.at("paper");
-  for (const char* part : {"section", "figure"})
-    if (source.contains(part)) text += fmt::format(", {}", source[part].get<std::string>());
-  return text;
-}
-
-Place place_of(const Json& claim) {
+Place place_of(const Json& claim, const Json& term) {
   const Json& quantity = claim.at("quantity");
   Place place{.column = quantity.at("column"), .iteration = std::nullopt, .table = {}};
-  if (quantity.contains("iteration")) place.iteration = quantity["iteration"].get<std::int64_t>();
+  const Json& from = term.contains("iteration") ? term : quantity;
+  if (from.contains("iteration")) place.iteration = from["iteration"].get<std::int64_t>();
   const Json& published = claim.at("published");
   if (published.contains("table")) published["table"].get_to(place.table);
   return place;
 }
 
-std::string quantity_text(const Json& claim) {
-  const Json& quantity = claim.at("quantity");
-  const std::string kind = quantity.at("kind");
-  const Place place = place_of(claim);
-  std::vector<std::string> terms;
-  for (const Json& term : quantity.at("terms")) {
-    const Json& optimizer = term.at("optimizer");
-    terms.push_back(optimizer.is_array() ? "best of " + std::to_string(optimizer.size())
-                                         : shown_spec(optimizer.get<std::string>()));
-    if (term.contains("at")) terms.back() += fmt::format(" at {}", figure(real_of(term["at"])));
-  }
-  return fmt::format(
-      "{} of the {}, {}: {}", kind, column_words(place.column),
-      place.iteration ? fmt::format("at iteration {}", *place.iteration) : "at the end",
-      fmt::join(terms, kind == "ratio" ? " / " : ", "));
-}
+constexpr std::array<const char*, 2> kTermLists = {"terms", "contrast_terms"};
 
 // Cells of a set that have no record, in words.
 std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
   std::vector<std::string> missing;
-  for (const Json& term : set.at("terms"))
-    for (const Json& alternative : term)
-      for (const Json& cell : alternative.at("cells")) {
-        const auto title = alternative.at("title").get<std::string>();
-        const bool is_known = runs.contains(cell.get<std::string>());
-        if (!is_known && std::ranges::find(missing, title) == missing.end())
-          missing.push_back(title);
-      }
+  const auto look = [&](const Json& alternative) {
+    const auto title = alternative.at("title").get<std::string>();
+    for (const Json& cell : alternative.at("cells")) {
+      const bool is_known = runs.contains(cell.get<std::string>());
+      if (!is_known && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
+    }
+  };
+  for (const char* list : kTermLists)
+    for (const Json& term : set.value(list, Json::array()))
+      for (const Json& alternative : term) look(alternative);
   return missing;
 }
 
-SeedValues samples_of(const Json& set, const ByCell& runs, const Place& place) {
-  SeedValues samples;
-  for (const Json& term : set.at("terms")) {
-    auto& alternatives = samples.emplace_back();
-    for (const Json& alternative : term) {
-      auto& values = alternatives.emplace_back();
+// The runs that stand for the terms of a claim, or of its contrast.
+std::vector<Term> terms_of(const Json& claim, const Json& cells, const ByCell& runs) {
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Json& asked = claim.at("quantity").at("terms").at(i);
+    const Place place = place_of(claim, asked);
+    Term& term = terms.emplace_back(Term{.figures = {},
+                                         .at = asked.value("at", 1.0),
+                                         .scale = asked.value("scale", 1.0),
+                                         .is_worst = asked.value("of", "best") == "worst"});
+    for (const Json& alternative : cells[i]) {
+      auto& values = term.figures.emplace_back();
       for (const Json& cell : alternative.at("cells"))
         values.push_back(figure_of(*runs.at(cell.get<std::string>()), place));
     }
   }
-  return samples;
+  return terms;
+}
+
+Measurement measured_in(const Json& claim, const Json& cells, const ByCell& runs,
+                        const std::string& stream) {
+  return measure(claim.at("quantity").at("kind"), terms_of(claim, cells, runs), stream);
+}
+
+void name_cells(Judgement& out, const Json& set) {
+  for (const char* list : kTermLists)
+    for (const Json& term : set.value(list, Json::array()))
+      for (const Json& alternative : term)
+        for (const Json& cell : alternative.at("cells")) out.cells.push_back(cell);
+}
+
+// The weaker of what is said of the quantity and of what it is held against.
+Verdict weaker_verdict(const Judgement& judged, const Json& claim) {
+  const Verdict verdict = verdict_of(judged.measured->value, claim);
+  if (!judged.contrast) return verdict;
+  return std::max(verdict, verdict_of(judged.contrast->measured->value, claim.at("contrast")));
 }
 
 void measure_in(Judgement& out, const Json& claim, const Json& set, const ByCell& runs) {
-  const Json& quantity = claim.at("quantity");
-  const Place place = place_of(claim);
-  std::vector<Real> at, scale;
-  for (const Json& term : quantity.at("terms")) {
-    at.push_back(term.value("at", 1.0));
-    scale.push_back(term.value("scale", 1.0));
-  }
   out.is_covered = true;
-  out.measured =
-      measure(quantity.at("kind"), samples_of(set, runs, place), at, scale, claim.at("id"));
+  name_cells(out, set);
+  out.measured = measured_in(claim, set.at("terms"), runs, out.id);
+  bool is_known = !std::isnan(out.measured->value);
+  if (out.contrast) {
+    const Json& contrast = claim.at("contrast");
+    out.contrast->measured = measured_in(contrast, set.at("contrast_terms"), runs, out.id);
+    is_known = is_known && !std::isnan(out.contrast->measured->value);
+  }
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
   const auto iterations = set.at("iterations").get<std::int64_t>();
-  if (place.iteration && iterations < *place.iteration)
-    out.why = fmt::format("too short: {} of {} iterations", iterations, *place.iteration);
-  else if (std::isnan(out.measured->value))
+  const auto asked = claim.at("quantity").value("iteration", std::int64_t{0});
+  if (iterations < asked)
+    out.why = fmt::format("too short: {} of {} iterations", iterations, asked);
+  else if (!is_known)
     out.why = "the runs have no such figure";
   else if (claim.contains("not_comparable"))
     out.why = claim["not_comparable"];
   else
-    out.verdict = verdict_of(out.measured->value, claim);
+    out.verdict = weaker_verdict(out, claim);
 }
 
 Judgement judge_one(const Json& claim, const ByCell& runs) {
@@ -180,6 +157,9 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
   out.caveat = claim.value("caveat", "");
   out.published = published_text(claim);
   if (claim.contains("quantity")) out.quantity = quantity_text(claim);
+  if (claim.contains("contrast"))
+    out.contrast =
+        Contrast{quantity_text(claim["contrast"]), published_text(claim["contrast"]), {}};
   std::vector<std::string> missing;
   for (const Json& set : claim.value("cells", Json::array())) {
     missing = missing_cells(set, runs);

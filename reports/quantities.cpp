@@ -20,25 +20,35 @@ std::size_t index_at(const Curve& curve, const std::optional<std::int64_t>& iter
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - curve.iteration.begin()) - 1);
 }
 
-const std::vector<Real>* column_of(const Curve& curve, const std::string& name) {
+constexpr std::string_view kSeries = "series: ";
+
+const std::vector<Real>* column_of(const Record& record, const std::string& name) {
   static const std::map<std::string, std::vector<Real> Curve::*> plain = {
-      {"x_error", &Curve::x_error}, {"loss", &Curve::loss}};
+      {"x_error", &Curve::x_error},
+      {"loss", &Curve::loss},
+      {"gradient_norm", &Curve::gradient_norm}};
+  const Curve& curve = record.curve;
   if (const auto found = plain.find(name); found != plain.end()) return &(curve.*found->second);
+  if (name.starts_with(kSeries)) {
+    const auto found = record.series.find(name.substr(kSeries.size()));
+    return found == record.series.end() ? nullptr : &found->second;
+  }
   const std::size_t end = name.rfind('_');
   const auto& windows = name.starts_with("batch_x") ? curve.batch_x_error : curve.batch_loss;
   const auto window = windows.find(std::atoll(name.c_str() + end + 1));
   return name.starts_with("batch_") && window != windows.end() ? &window->second : nullptr;
 }
 
-// Largest distance of any coordinate from the printed one; a table of one row is the end point.
-Real deviation(const std::vector<std::vector<Real>>& x,
-               const std::vector<std::vector<Real>>& table) {
-  const std::size_t first = table.size() == 1 ? x.size() - 1 : 1;
-  if (first + table.size() > x.size()) return kAbsent;
+// Largest distance of any coordinate from the printed one. The rows of a table are iterations 1, 2,
+// …; a single row is `row` of the path.
+Real deviation(const std::vector<std::vector<Real>>& path,
+               const std::vector<std::vector<Real>>& table, std::size_t row) {
+  const std::size_t first = table.size() == 1 ? row : 1;
+  if (first + table.size() > path.size()) return kAbsent;
   Real largest = 0;
   for (std::size_t i = 0; i < table.size(); ++i)
     for (std::size_t j = 0; j < table[i].size(); ++j)
-      largest = std::max(largest, std::abs(x[first + i].at(j) - table[i][j]));
+      largest = std::max(largest, std::abs(path[first + i].at(j) - table[i][j]));
   return largest;
 }
 
@@ -58,8 +68,10 @@ Real alignment(const std::vector<std::vector<Real>>& x) {
 
 Real path_figure(const Record& record, const Place& place) {
   const auto& x = record.trajectory->x;
-  const auto& at = x.at(index_at(record.curve, place.iteration));
-  if (place.column == "deviation") return deviation(x, place.table);
+  const std::size_t row = index_at(record.curve, place.iteration);
+  const auto& at = x.at(row);
+  if (place.column == "deviation") return deviation(x, place.table, row);
+  if (place.column == "output_deviation") return deviation(record.trajectory->y, place.table, row);
   if (place.column == "bend") return bend(record.trajectory->y);
   if (place.column == "alignment") return x.size() < 2 ? kAbsent : alignment(x);
   if (place.column == "distance") return std::hypot(at.at(0), at.at(1));
@@ -103,19 +115,25 @@ Real order(const std::vector<Real>& m) {
   return with / pairs;
 }
 
-std::vector<Real> medians(const SeedValues& samples, const std::vector<Real>& scale,
-                          const std::vector<std::size_t>& seeds) {
-  std::vector<Real> all;
-  for (std::size_t t = 0; t < samples.size(); ++t) {
-    Real least = kNever;
-    for (const auto& alternative : samples[t]) {
-      std::vector<Real> values;
-      for (const std::size_t seed : seeds) values.push_back(alternative.at(seed));
-      least = std::min(least, median_of(std::move(values)));
-    }
-    all.push_back(scale[t] * least);
+Real median_of_term(const Term& term, const std::vector<std::size_t>& seeds) {
+  std::optional<Real> chosen;
+  for (const auto& alternative : term.figures) {
+    std::vector<Real> values;
+    for (const std::size_t seed : seeds) values.push_back(alternative.at(seed));
+    const Real median = median_of(std::move(values));
+    if (!chosen || (term.is_worst ? median > *chosen : median < *chosen)) chosen = median;
   }
-  return all;
+  return term.scale * chosen.value_or(kNever);
+}
+
+Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
+                   const std::vector<std::size_t>& seeds) {
+  std::vector<Real> medians, at;
+  for (const Term& term : terms) {
+    medians.push_back(median_of_term(term, seeds));
+    at.push_back(term.at);
+  }
+  return quantity_of(kind, medians, at);
 }
 
 }  // namespace
@@ -126,7 +144,8 @@ Real figure_of(const Record& record, const Place& place) {
                ? kAbsent
                : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
   if (record.curve.iteration.empty()) return kAbsent;
-  if (const auto* column = column_of(record.curve, place.column))
+  if (place.column == "loss_peak") return std::ranges::max(record.curve.loss);
+  if (const auto* column = column_of(record, place.column))
     return column->empty() ? kAbsent : column->at(index_at(record.curve, place.iteration));
   return record.trajectory ? path_figure(record, place) : kAbsent;
 }
@@ -139,11 +158,15 @@ std::string column_words(const std::string& column) {
       {"batch_x_error_256", "error in x, running mean over 256 steps"},
       {"batch_loss_64", "loss, running mean over 64 steps"},
       {"batch_loss_256", "loss, running mean over 256 steps"},
-      {"deviation", "largest distance from the printed figures"},
+      {"loss_peak", "greatest loss on the validation"},
+      {"gradient_norm", "length of the gradient"},
+      {"deviation", "largest distance of x from the printed figures"},
+      {"output_deviation", "largest distance of y from the printed figures"},
       {"bend", "largest relative change of y2 / y1"},
       {"alignment", "first update's component along the diagonal"},
       {"distance", "distance to the origin"},
       {"milliseconds", "milliseconds an iteration"}};
+  if (column.starts_with(kSeries)) return column.substr(kSeries.size());
   const auto found = words.find(column);
   return found == words.end() ? column : found->second;
 }
@@ -167,20 +190,20 @@ std::optional<Real> neutral_of(const std::string& kind) {
   return std::nullopt;
 }
 
-Measurement measure(const std::string& kind, const SeedValues& samples, const std::vector<Real>& at,
-                    const std::vector<Real>& scale, const std::string& stream) {
+Measurement measure(const std::string& kind, const std::vector<Term>& terms,
+                    const std::string& stream) {
   constexpr int kDraws = 1000;
-  Measurement out{.low = kAbsent, .high = kAbsent, .n = samples.at(0).at(0).size()};
+  Measurement out{.low = kAbsent, .high = kAbsent, .n = terms.at(0).figures.at(0).size()};
   std::vector<std::size_t> seeds(out.n);
   for (std::size_t i = 0; i < out.n; ++i) seeds[i] = i;
-  out.value = quantity_of(kind, medians(samples, scale, seeds), at);
+  out.value = quantity_over(kind, terms, seeds);
   if (out.n < 2) return out;
   RandomStream random(0, "claims", stream);
   std::vector<Real> draws;
   for (int draw = 0; draw < kDraws; ++draw) {
     for (std::size_t& seed : seeds)
       seed = static_cast<std::size_t>(random.uniform() * static_cast<Real>(out.n));
-    const Real value = quantity_of(kind, medians(samples, scale, seeds), at);
+    const Real value = quantity_over(kind, terms, seeds);
     if (!std::isnan(value)) draws.push_back(value);
   }
   if (draws.empty()) return out;

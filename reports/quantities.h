@@ -13,9 +13,9 @@ namespace isoline {
 // Where a figure of a run is read: a column of its curve or a quantity of its path, at an
 // iteration, or at the end where none is named.
 struct Place {
-  std::string column;
+  std::string column;  // "series: …" is a quantity of the problem's own
   std::optional<std::int64_t> iteration;
-  std::vector<std::vector<Real>> table;  // of "deviation": x at iterations 1, 2, … or at the last
+  std::vector<std::vector<Real>> table;  // of deviations: at iterations 1, 2, …; one row: there
 };
 
 // Not-a-number where the record does not hold it.
@@ -32,8 +32,13 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
 // The value of a quantity at which it says nothing of a direction; none where there is none.
 std::optional<Real> neutral_of(const std::string& kind);
 
-// [term][alternative][seed], of which the best alternative counts: the least median.
-using SeedValues = std::vector<std::vector<std::vector<Real>>>;
+// One term of a quantity: figures [alternative][seed], of which the alternative of the least median
+// counts, or that of the greatest.
+struct Term {
+  std::vector<std::vector<Real>> figures;
+  Real at = 1, scale = 1;  // its abscissa, and a factor of its figures
+  bool is_worst = false;
+};
 
 struct Measurement {
   Real value = 0;
@@ -43,7 +48,7 @@ struct Measurement {
 
 // All terms are resampled by the same seeds: a ratio stays one between runs of equal start and
 // data.
-Measurement measure(const std::string& kind, const SeedValues& samples, const std::vector<Real>& at,
-                    const std::vector<Real>& scale, const std::string& stream);
+Measurement measure(const std::string& kind, const std::vector<Term>& terms,
+                    const std::string& stream);
 
 }  // namespace isoline

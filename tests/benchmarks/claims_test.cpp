@@ -1,16 +1,14 @@
-// The claims of the tree: their form, their cells, and their verdicts on the notebook's runs, with
-// the right labels, with planted falsehoods and with labels permuted.
+// The claims of the tree: their form, their cells, and how they are chosen.
 #include "benchmarks/claims.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "benchmarks/resources.h"
 #include "core/json.h"
 #include "core/schema.h"
-#include "reports/claims.h"
-#include "tests/benchmarks/matrix.h"
 
 namespace isoline {
 namespace {
@@ -35,18 +33,6 @@ std::set<std::string> cells_of_suites(const std::vector<std::string>& suites) {
   return cells;
 }
 
-const std::vector<Record>& notebook() {
-  static const FinishedMatrix all(catalog(), read_suite("notebook"), Rates::builtin());
-  return all.records;
-}
-
-Json notebook_claims() { return json_of(chosen_claims(claims(), {"notebook"})); }
-
-std::size_t count(const Json& asked, const std::vector<Record>& runs, Verdict verdict) {
-  const std::vector<Judgement> judgements = judge(asked, runs);
-  return static_cast<std::size_t>(std::ranges::count(judgements, verdict, &Judgement::verdict));
-}
-
 TEST(ClaimsOfTheTree, AreWellFormedAndEachIsThereOnce) {
   std::set<std::string> ids;
   for (const auto& [name, text] : builtin_claims()) {
@@ -56,7 +42,7 @@ TEST(ClaimsOfTheTree, AreWellFormedAndEachIsThereOnce) {
     ids.insert(name);  // a group's name must not be an id
   }
   for (const Claim& claim : claims()) EXPECT_TRUE(ids.insert(claim.id()).second) << claim.id();
-  EXPECT_GE(claims().size(), 60U);
+  EXPECT_GE(claims().size(), 120U);
 }
 
 TEST(ClaimsOfTheTree, ReuseTheCellsOfTheSuites) {
@@ -86,48 +72,6 @@ TEST(ClaimsOfTheTree, AllowNoToleranceOfOurOwnChoosing) {
   for (Json& claim : file["claims"])
     if (claim.at("tolerance").at("from") == "figure") claim["tolerance"]["relative"] = 0.5;
   EXPECT_FALSE(schema_violations(file, schema()).empty());
-}
-
-TEST(ClaimsOfTheTree, OfTheNotebookAreAllReproduced) {
-  const std::vector<Judgement> judgements = judge(notebook_claims(), notebook());
-  EXPECT_GE(judgements.size(), 12U);
-  for (const Judgement& judgement : judgements)
-    EXPECT_EQ(judgement.verdict, Verdict::reproduced)
-        << judgement.id << ": " << judgement.why << measured_text(judgement);
-}
-
-TEST(ClaimsOfTheTree, PlantedFalseOnesAreNotReproduced) {
-  Json planted = json_of(chosen_claims(
-      claims(), {"notebook-gd-table", "notebook-newton-distance", "notebook-sip-alignment"}));
-  ASSERT_EQ(planted.size(), 3U);
-  for (Json& claim : planted) {
-    Json& published = claim["published"];
-    if (published.contains("table"))
-      published["table"][9][1] = 0.97;  // 0.9617 there
-    else
-      published["value"] = 1.01 * published["value"].get<Real>();
-  }
-  EXPECT_EQ(count(planted, notebook(), Verdict::not_reproduced), 3U);
-}
-
-// Labels of the methods on one problem go round by one, two, …: every run then answers to another.
-TEST(ClaimsOfTheTree, WithLabelsPermutedAtMostOneInTenIsReproduced) {
-  std::vector<Record> runs;
-  for (const Record& record : notebook())
-    if (record.request.problem.name == "square") runs.push_back(record);
-  Json asked = Json::array();
-  for (const Json& claim : notebook_claims())  // what is said of the start is said of no method
-    if (claim.at("quantity").value("iteration", 1) > 0) asked.push_back(claim);
-  std::size_t reproduced = 0, judged = 0;
-  for (std::size_t turn = 1; turn < runs.size(); ++turn) {
-    std::vector<Record> turned = runs;
-    for (std::size_t i = 0; i < runs.size(); ++i)
-      turned[i].cell = runs[(i + turn) % runs.size()].cell;
-    reproduced += count(asked, turned, Verdict::reproduced);
-    judged += asked.size();
-  }
-  EXPECT_GE(judged, 100U);
-  EXPECT_LE(10 * reproduced, judged) << reproduced << " of " << judged;
 }
 
 TEST(ClaimsOfTheTree, AreChosenByIdOrGroupAndAMisspeltOneIsAnError) {

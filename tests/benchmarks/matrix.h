@@ -11,7 +11,9 @@ namespace isoline {
 
 struct FinishedMatrix {
   FinishedMatrix(const Catalog& catalog, const Suite& suite, const Rates& rates)
-      : requests(expand(catalog, suite, rates)), store(folder.path()) {
+      : FinishedMatrix(catalog, expand(catalog, suite, rates)) {}
+  FinishedMatrix(const Catalog& catalog, std::vector<Request> asked)
+      : requests(std::move(asked)), store(folder.path()) {
     outcome = run_all(catalog, requests, store, {.jobs = 2});
     for (const Request& request : requests) {
       const auto record = store.find(request);

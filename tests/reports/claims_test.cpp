@@ -150,6 +150,24 @@ TEST(Claims, WhoseSourceCannotBeComparedAreMeasuredBesideIt) {
   EXPECT_EQ(judgement.measured->value, 10);
 }
 
+// Adam is 10 times as far as SIP: that it is 10 is true, and refuted once Adam is to be near too.
+TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
+  Json claim = claim_of({});
+  claim["contrast"] = claim_of({.kind = "value", .published = {{"at_least", 15}}});
+  claim["cells"][0]["contrast_terms"] = {claim["cells"][0]["terms"][0]};
+  const auto judged = [&](const Json& published) {
+    claim["contrast"]["published"] = published;
+    return judge(Json::array({claim}), adam_and_sip()).at(0);
+  };
+  const Judgement kept = judged({{"at_least", 15}}), refuted = judged({{"at_most", 15}});
+  EXPECT_EQ(kept.verdict, Verdict::reproduced);
+  EXPECT_EQ(kept.contrast->measured->value, 20);
+  EXPECT_EQ(refuted.measured->value, 10);
+  EXPECT_EQ(refuted.verdict, Verdict::not_reproduced);
+  EXPECT_NE(claims_terminal({refuted}).find("Held against the value"), std::string::npos);
+  EXPECT_EQ(claims_json({refuted})[0].at("contrast").at("measured").at("value"), 20);
+}
+
 TEST(Quantities, AreThoseWorkedOutByHand) {
   const std::vector<Real> at = {1, 10, 100};
   EXPECT_EQ(quantity_of("greatest", {3, 5, 4}, {}), 5);
@@ -176,14 +194,17 @@ TEST(Quantities, ASlopeReadOffAFigureIsUncertainByItsTwoEnds) {
 }
 
 TEST(Quantities, OfSeveralAlternativesTheBestCounts) {
-  const SeedValues samples = {{{5, 6, 7}, {2, 3, 9}}, {{1, 1, 1}}};
-  EXPECT_EQ(measure("ratio", samples, {1, 1}, {1, 2}, "test").value, 1.5);
-  EXPECT_TRUE(std::isnan(measure("value", {{{4}}}, {1}, {1}, "test").low)) << "one seed";
+  Term several{.figures = {{5, 6, 7}, {2, 3, 9}}};
+  const Term one{.figures = {{1, 1, 1}}, .scale = 2};
+  EXPECT_EQ(measure("ratio", {several, one}, "test").value, 1.5);
+  several.is_worst = true;
+  EXPECT_EQ(measure("ratio", {several, one}, "test").value, 3);
+  EXPECT_TRUE(std::isnan(measure("value", {{.figures = {{4}}}}, "test").low)) << "one seed";
 }
 
 TEST(Quantities, AFailedRunCountsAsInfinite) {
-  EXPECT_TRUE(std::isinf(measure("value", {{{NAN, NAN, 1}}}, {1}, {1}, "test").value));
-  EXPECT_EQ(measure("value", {{{NAN, 2, 1}}}, {1}, {1}, "test").value, 2);
+  EXPECT_TRUE(std::isinf(measure("value", {{.figures = {{NAN, NAN, 1}}}}, "test").value));
+  EXPECT_EQ(measure("value", {{.figures = {{NAN, 2, 1}}}}, "test").value, 2);
 }
 
 TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
