@@ -82,7 +82,7 @@ std::optional<Record> Store::find_in(const fs::path& folder, const Request& requ
   const fs::path path = run_path(folder, file_name_of(request));
   if (!fs::exists(path)) return std::nullopt;
   try {
-    Record record = record_from_json(read_json(path));
+    Record record = read_record(path);
     if (record.status == Status::interrupted) return std::nullopt;
     return record;
   } catch (const UsageError&) {

@@ -24,6 +24,7 @@ isoline_library(Isoline::lapacke "openblas;lapacke" lapacke.h)
 isoline_library(Isoline::fftw "fftw3" fftw3.h)
 isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package wants OpenCL
 isoline_library(Isoline::random123 "" Random123/philox.h)
+isoline_library(Isoline::simdjson "simdjson" simdjson.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
 
 # Ceres' own CMake target is the static library. Built for other vector instructions than ours, its

@@ -5,12 +5,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "core/digest.h"
 #include "core/errors.h"
@@ -57,11 +56,19 @@ Json json_numbers(const Real* values, std::size_t count) {
 }
 
 std::string read_text(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || fs::is_directory(path)) throw UsageError(fmt::format("cannot read {}", path.string()));
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::move(text).str();
+  constexpr std::size_t kChunk = 1 << 16;
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  std::string text;
+  ssize_t count = file < 0 ? -1 : 1;
+  while (count > 0) {
+    const std::size_t size = text.size();
+    text.resize(size + kChunk);
+    while ((count = ::read(file, text.data() + size, kChunk)) < 0 && errno == EINTR) continue;
+    text.resize(size + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  }
+  if (file >= 0) ::close(file);
+  if (count < 0) throw UsageError(fmt::format("cannot read {}", path.string()));
+  return text;
 }
 
 void write_text(const fs::path& path, std::string_view text) {

@@ -5,18 +5,12 @@
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/json_view.h"
 
 namespace isoline {
 namespace {
 
 Json numbers(const std::vector<Real>& values) { return json_numbers(values.data(), values.size()); }
-
-std::vector<Real> reals(const Json& list) {
-  std::vector<Real> values;
-  values.reserve(list.size());
-  for (const Json& value : list) values.push_back(real_of(value));
-  return values;
-}
 
 Json rows(const std::vector<std::vector<Real>>& values) {
   Json list = Json::array();
@@ -24,9 +18,9 @@ Json rows(const std::vector<std::vector<Real>>& values) {
   return list;
 }
 
-std::vector<std::vector<Real>> real_rows(const Json& list) {
+std::vector<std::vector<Real>> real_rows(const JsonView& list) {
   std::vector<std::vector<Real>> values;
-  for (const Json& row : list) values.push_back(reals(row));
+  for (const JsonView& row : list.values()) values.push_back(reals_of(row));
   return values;
 }
 
@@ -36,9 +30,9 @@ Json by_window(const std::map<std::int64_t, std::vector<Real>>& columns) {
   return json;
 }
 
-std::map<std::int64_t, std::vector<Real>> windows_from(const Json& json) {
+std::map<std::int64_t, std::vector<Real>> windows_from(const JsonView& json) {
   std::map<std::int64_t, std::vector<Real>> columns;
-  for (const auto& [window, values] : json.items()) columns[std::stoll(window)] = reals(values);
+  for (const auto& [window, values] : json.items()) columns[std::stoll(window)] = reals_of(values);
   return columns;
 }
 
@@ -57,17 +51,17 @@ Json to_json(const Curve& curve) {
   return json;
 }
 
-Curve curve_from(const Json& json) {
+Curve curve_from(const JsonView& json) {
   Curve curve;
   json.at("iteration").get_to(curve.iteration);
   json.at("work").get_to(curve.work);
   json.at("counts").get_to(curve.counts);
-  curve.wall_seconds = reals(json.at("wall_seconds"));
-  curve.processor_seconds = reals(json.at("processor_seconds"));
-  curve.loss = reals(json.at("loss"));
-  curve.x_error = reals(json.at("x_error"));
-  curve.gradient_norm = reals(json.at("gradient_norm"));
-  curve.step_norm = reals(json.at("step_norm"));
+  curve.wall_seconds = reals_of(json.at("wall_seconds"));
+  curve.processor_seconds = reals_of(json.at("processor_seconds"));
+  curve.loss = reals_of(json.at("loss"));
+  curve.x_error = reals_of(json.at("x_error"));
+  curve.gradient_norm = reals_of(json.at("gradient_norm"));
+  curve.step_norm = reals_of(json.at("step_norm"));
   if (json.contains("batch_loss")) curve.batch_loss = windows_from(json["batch_loss"]);
   if (json.contains("batch_x_error")) curve.batch_x_error = windows_from(json["batch_x_error"]);
   return curve;
@@ -83,14 +77,14 @@ Json to_json(const Hits& hits) {
   return json;
 }
 
-Hits hits_from(const Json& json) {
+Hits hits_from(const JsonView& json) {
   Hits hits;
-  hits.target = reals(json.at("target"));
+  hits.target = reals_of(json.at("target"));
   json.at("iteration").get_to(hits.iteration);
   json.at("work").get_to(hits.work);
   json.at("forwards").get_to(hits.forwards);
   if (json.contains("counts")) json["counts"].get_to(hits.counts);
-  hits.wall_seconds = reals(json.at("wall_seconds"));
+  hits.wall_seconds = reals_of(json.at("wall_seconds"));
   return hits;
 }
 
@@ -109,7 +103,7 @@ Json to_json(const Summary& summary) {
           {"peak_memory_bytes", summary.peak_memory_bytes}};
 }
 
-Summary summary_from(const Json& json) {
+Summary summary_from(const JsonView& json) {
   return {.iterations = json.at("iterations"),
           .work = json.at("work"),
           .rejected_steps = json.at("rejected_steps"),
@@ -131,10 +125,10 @@ Json to_json(const OracleCounts& counts) {
   return json;
 }
 
-OracleCounts counts_from(const Json& json) {
+OracleCounts counts_from(const JsonView& json) {
   OracleCounts counts{};
   for (std::size_t kind = 0; kind < kOracles; ++kind)
-    counts[kind] = json.value(std::string(kOracleNames[kind]), std::int64_t{0});
+    if (json.contains(kOracleNames[kind])) counts[kind] = json.at(kOracleNames[kind]);
   return counts;
 }
 
@@ -144,11 +138,11 @@ Json verified_json(const Record& record) {
   return json;
 }
 
-Record parsed(const Json& json) {
+Record parsed(const JsonView& json) {
   Record record{.cell = json.at("cell"), .build = json.at("build")};
-  record.request = request_from_json(json.at("request"));
+  record.request = request_from_json(json.at("request").json());
   const auto status = status_of(json.at("status").get<std::string>());
-  require(status.has_value(), "unknown status " + json.at("status").dump());
+  require(status.has_value(), "unknown status " + json.at("status").get<std::string>());
   record.status = *status;
   record.message = json.at("message");
   record.claimed = json.at("claimed");
@@ -164,12 +158,13 @@ Record parsed(const Json& json) {
     record.trajectory = {real_rows(json["trajectory"].at("x")),
                          real_rows(json["trajectory"].at("y"))};
   if (json.contains("series"))
-    for (const auto& [name, values] : json["series"].items()) record.series[name] = reals(values);
-  if (json.contains("exhibit")) record.exhibit = exhibit_from_json(json["exhibit"]);
+    for (const auto& [name, values] : json["series"].items())
+      record.series[name] = reals_of(values);
+  if (json.contains("exhibit")) record.exhibit = exhibit_from_json(json["exhibit"].json());
   json.at("privileges").get_to(record.privileges);
   record.is_nondeterministic = json.at("nondeterministic");
-  record.repeat_wall_seconds = reals(json.at("repeat_wall_seconds"));
-  record.provenance = json.at("provenance");
+  record.repeat_wall_seconds = reals_of(json.at("repeat_wall_seconds"));
+  record.provenance = json.at("provenance").json();
   return record;
 }
 
@@ -201,13 +196,23 @@ Json to_json(const Record& record) {
   return json;
 }
 
-Record record_from_json(const Json& json) {
+Record record_from_text(const std::string& text, const std::string& origin) {
+  static thread_local JsonReader reader;
+  const JsonView json = reader.parse(text, origin);
   try {
-    require(json.at("schema") == kRunSchema, "the schema is not " + std::string(kRunSchema));
+    require(json.at("schema").get<std::string>() == kRunSchema, "its schema is another");
     return parsed(json);
-  } catch (const Json::exception& error) {
+  } catch (const Json::exception& error) {  // in what is kept as JSON: the request, the exhibit
+    throw UsageError(fmt::format("no {} record: {}", kRunSchema, error.what()));
+  } catch (const UsageError& error) {
     throw UsageError(fmt::format("no {} record: {}", kRunSchema, error.what()));
   }
+}
+
+Record record_from_json(const Json& json) { return record_from_text(json.dump(), "it"); }
+
+Record read_record(const std::filesystem::path& path) {
+  return record_from_text(read_text(path), path.string());
 }
 
 Json without_timings(Json record) {

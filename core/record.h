@@ -99,7 +99,10 @@ struct Record {
 std::string cell_digest(const Request& request);
 
 Json to_json(const Record& record);
-Record record_from_json(const Json& json);  // UsageError where it is no such record
+// UsageError where it is no such record; the origin is named where it is no JSON.
+Record record_from_json(const Json& json);
+Record record_from_text(const std::string& text, const std::string& origin);
+Record read_record(const std::filesystem::path& path);
 
 Json to_json(const Request& request);
 Request request_from_json(const Json& json);

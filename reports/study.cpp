@@ -47,9 +47,9 @@ void require_equal_columns(const Record& record) {
 
 using Answer = std::variant<std::monostate, Record, std::string>;  // a record, or why it is none
 
-Answer read_record(const fs::path& file) {
+Answer answer_of(const fs::path& file) {
   try {
-    Record record = record_from_json(read_json(file));
+    Record record = read_record(file);
     require_equal_columns(record);
     return record;
   } catch (const std::exception& error) {
@@ -57,16 +57,21 @@ Answer read_record(const fs::path& file) {
   }
 }
 
-std::vector<Answer> read_records(const std::vector<fs::path>& files) {
+// Only the calling thread tells how far all have come.
+std::vector<Answer> read_records(const std::vector<fs::path>& files, const Listener& listener) {
+  constexpr std::size_t kOften = 64;
   std::vector<Answer> answers(files.size());
   std::atomic<std::size_t> next{0};
-  const auto read_some = [&] {
-    for (std::size_t i = next++; i < files.size(); i = next++) answers[i] = read_record(files[i]);
+  const auto read_some = [&](bool is_caller) {
+    for (std::size_t i = next++; i < files.size(); i = next++) {
+      answers[i] = answer_of(files[i]);
+      if (is_caller && listener && i % kOften == 0) listener(i, files.size());
+    }
   };
   const unsigned readers = std::clamp(std::thread::hardware_concurrency(), 1U, kMostReaders);
   std::vector<std::jthread> threads;
-  for (unsigned i = 1; i < readers && i < files.size(); ++i) threads.emplace_back(read_some);
-  read_some();
+  for (unsigned i = 1; i < readers && i < files.size(); ++i) threads.emplace_back(read_some, false);
+  read_some(true);
   threads.clear();  // joins
   return answers;
 }
@@ -94,12 +99,14 @@ void keep_newest(Study& study, std::unordered_map<std::string, std::size_t>& pla
   if (is_newer(record, kept)) kept = std::move(record);
 }
 
-void read_runs(Study& study, const std::vector<fs::path>& folders) {
+void read_runs(Study& study, const std::vector<fs::path>& folders, const Listener& listener) {
   std::vector<fs::path> files;
   for (const fs::path& folder : folders)
     for (fs::path& file : json_files(folder / "runs")) files.push_back(std::move(file));
-  std::vector<Answer> answers = read_records(files);
+  std::vector<Answer> answers = read_records(files, listener);
   std::unordered_map<std::string, std::size_t> place;  // of a cell in study.runs
+  place.reserve(files.size());
+  study.runs.reserve(files.size());
   for (std::size_t i = 0; i < files.size(); ++i)
     if (auto* reason = std::get_if<std::string>(&answers[i]))
       study.unreadable.push_back({files[i], std::move(*reason)});
@@ -163,7 +170,7 @@ std::optional<Exhibit> Study::pictures_of(const Record& record) const {
   return std::nullopt;
 }
 
-Study read_study(const std::vector<fs::path>& folders) {
+Study read_study(const std::vector<fs::path>& folders, const Listener& listener) {
   for (const fs::path& folder : folders)
     require(fs::is_directory(folder), fmt::format("no result folder {}", folder.string()));
   Study study;
@@ -175,7 +182,7 @@ Study read_study(const std::vector<fs::path>& folders) {
     read_audit(study, folder);
   }
   std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
-  read_runs(study, folders);
+  read_runs(study, folders, listener);
   return study;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,10 @@ struct Study {
   std::optional<Exhibit> pictures_of(const Record& record) const;
 };
 
+// Is told now and then how many records have been read, of how many.
+using Listener = std::function<void(std::size_t read, std::size_t all)>;
+
 // Folders are laid out as core/sheet.h says; a missing one is a UsageError.
-Study read_study(const std::vector<std::filesystem::path>& folders);
+Study read_study(const std::vector<std::filesystem::path>& folders, const Listener& listener = {});
 
 }  // namespace isoline

@@ -1,0 +1,70 @@
+// JSON to read and be done with: values as they stand in parsed text, some eight times as fast as a
+// tree of them, for records by the hundred thousand. With json_view.cpp the only door to simdjson.
+// What is missing or of another type than asked for is a UsageError.
+#pragma once
+
+#include <simdjson.h>
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/array.h"
+
+namespace isoline {
+
+// Valid until its reader parses the next text. Reads as `const nlohmann::json&` would.
+class JsonView {
+ public:
+  explicit JsonView(simdjson::dom::element element) : element_(element) {}
+
+  JsonView at(std::string_view key) const;
+  JsonView operator[](std::string_view key) const { return at(key); }
+  bool contains(std::string_view key) const;
+  bool is_null() const { return element_.is_null(); }
+  std::vector<JsonView> values() const;                         // of an array
+  std::vector<std::pair<std::string, JsonView>> items() const;  // of an object
+  nlohmann::json json() const;                                  // a copy that stays
+
+  void get_to(bool& out) const;
+  void get_to(int& out) const;
+  void get_to(std::int64_t& out) const;
+  void get_to(std::string& out) const;
+  void get_to(std::vector<std::int64_t>& out) const;
+  void get_to(std::vector<std::string>& out) const;
+  void get_to(std::map<std::string, std::vector<std::int64_t>>& out) const;
+
+  template <class Value>
+  Value get() const {
+    Value value;
+    get_to(value);
+    return value;
+  }
+  template <class Value>
+  requires requires(const JsonView& view, Value& out) { view.get_to(out); }
+  operator Value() const { return get<Value>(); }
+
+ private:
+  simdjson::dom::element element_;
+
+  friend Real real_of(const JsonView& value);
+  friend std::vector<Real> reals_of(const JsonView& list);
+};
+
+Real real_of(const JsonView& value);  // also "inf", "-inf" and "nan"
+std::vector<Real> reals_of(const JsonView& list);
+
+// Keeps its buffers from text to text: one a thread.
+class JsonReader {
+ public:
+  JsonView parse(const std::string& text, const std::string& origin);
+
+ private:
+  simdjson::dom::parser parser_;
+};
+
+}  // namespace isoline

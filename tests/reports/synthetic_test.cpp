@@ -1,0 +1,108 @@
+// Invented records pass for real ones, and a report of thousands of them loses none.
+#include "tests/reports/synthetic.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/json.h"
+#include "core/schema.h"
+#include "reports/report.h"
+#include "tests/temporary_folder.h"
+
+namespace isoline {
+namespace {
+
+#ifdef ISOLINE_SANITIZE  // some ten times slower
+constexpr SyntheticSize kSize{.problems = 10, .optimizers = 10, .seeds = 2, .random_seed = 7};
+#else
+constexpr SyntheticSize kSize{.problems = 20, .optimizers = 20, .seeds = 5, .random_seed = 7};
+#endif
+
+struct Tally {
+  std::size_t runs = 0, failed = 0, planned = 0;
+};
+
+// Of the records themselves, not by way of a report.
+std::map<Status, std::size_t> statuses_drawn() {
+  std::map<Status, std::size_t> statuses;
+  for (std::size_t i = 0; i < kSize.records(); ++i) ++statuses[synthetic_record(kSize, i).status];
+  return statuses;
+}
+
+std::size_t lines_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+TEST(SyntheticRecords, AreTheSameFromTheSameSeedAndOthersFromAnother) {
+  SyntheticSize other = kSize;
+  ++other.random_seed;
+  for (const std::size_t i : {std::size_t{0}, kSize.records() / 3, kSize.records() - 1}) {
+    const Json record = to_json(synthetic_record(kSize, i));
+    EXPECT_EQ(record, to_json(synthetic_record(kSize, i))) << i;
+    EXPECT_NE(record, to_json(synthetic_record(other, i))) << i;
+  }
+}
+
+TEST(SyntheticRecords, KeepTheSchemaOfRecordsAndHaveTwelveColumns) {
+  const Json schema =
+      read_json(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas/run.json");
+  for (std::size_t i = 0; i < kSize.records(); i += 17) {
+    const Record record = synthetic_record(kSize, i);
+    EXPECT_EQ(schema_violations(to_json(record), schema), std::vector<std::string>{}) << i;
+    if (record.status == Status::inapplicable) continue;
+    const Json curve = to_json(record).at("curve");
+    EXPECT_EQ(curve.size() - 1 + curve.at("counts").size(), 12U);  // `counts` holds columns itself
+    EXPECT_EQ(curve.at("loss").size(), kSize.points);
+  }
+}
+
+TEST(Report, OfThousandsOfRecordsCountsEachOnceAndKeepsFailuresInEveryDenominator) {
+  const TemporaryFolder owned;
+  const std::filesystem::path& folder = owned.path();
+  write_synthetic_study(folder, kSize);
+  const Study study = read_study({folder});
+  ASSERT_EQ(study.runs.size(), kSize.records());
+  EXPECT_TRUE(study.unreadable.empty());
+  const Comparison comparison = compare_optimizers(study);
+  EXPECT_EQ(comparison.answered, kSize.records());
+  EXPECT_EQ(comparison.statuses, statuses_drawn());
+  EXPECT_EQ(comparison.problems.size(), kSize.problems);
+  EXPECT_EQ(comparison.optimizers.size(), kSize.optimizers);
+  Tally all;
+  for (const auto& row : comparison.cells)
+    for (const Cell& cell : row) {
+      all.runs += cell.runs.size(), all.failed += cell.failed, all.planned += cell.planned;
+      EXPECT_EQ(cell.runs.size(), kSize.seeds);
+      if (!cell.is_measured()) continue;
+      for (const Spread& work : cell.work) EXPECT_EQ(work.n, kSize.seeds);
+      EXPECT_EQ(cell.loss.n, kSize.seeds);
+    }
+  EXPECT_EQ(all.runs, kSize.records());
+  EXPECT_EQ(all.planned, kSize.records());
+  EXPECT_EQ(all.failed, comparison.failures.size());
+  EXPECT_GT(all.failed, 0U);
+}
+
+TEST(Report, OfThousandsOfRecordsGivesEachARowAndStatesTheSameNumberOfFailuresEverywhere) {
+  const TemporaryFolder owned;
+  const std::filesystem::path& folder = owned.path();
+  write_synthetic_study(folder, kSize);
+  const Study study = read_study({folder});
+  const Comparison comparison = compare_optimizers(study);
+  write_report(comparison, folder / "report");
+  EXPECT_EQ(lines_of(read_text(folder / "report/report.csv")), kSize.records() + 1);  // a header
+  const Json report = read_json(folder / "report/report.json");
+  EXPECT_EQ(report.at("failures").size(), comparison.failures.size());
+  std::size_t runs = 0, failed = 0;
+  for (const Json& optimizer : report.at("optimizers")) {
+    runs += optimizer.at("runs").get<std::size_t>();
+    failed += optimizer.at("failed").get<std::size_t>();
+  }
+  EXPECT_EQ(failed, comparison.failures.size());
+  EXPECT_EQ(runs, kSize.records() - statuses_drawn()[Status::inapplicable]);
+}
+
+}  // namespace
+}  // namespace isoline
