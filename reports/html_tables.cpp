@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "reports/html.h"
 #include "reports/text.h"
@@ -57,7 +58,33 @@ std::string time_cell(const Spread& seconds, bool is_timed_alone) {
                      range.empty() ? "" : "<small>" + range + "</small>");
 }
 
-std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
+// "0..2", where the seeds of a cell follow each other and were asked for alike; else the first.
+std::string seeds_of(const Comparison& c, const Cell& cell) {
+  const Request& first = c.runs[cell.runs.front()].record->request;
+  std::uint64_t next = first.seed;
+  for (const std::size_t run : cell.runs) {
+    const Request& request = c.runs[run].record->request;
+    const bool is_alike = request.optimizer.spec == first.optimizer.spec &&
+                          budget_options(request) == budget_options(first);
+    if (request.seed != next++ || !is_alike) return fmt::format("={}", first.seed);
+  }
+  const std::uint64_t last = next - 1;
+  return first.seed == last ? fmt::format("={}", last) : fmt::format("{}..{}", first.seed, last);
+}
+
+// What the command that repeats a cell has of its own; scripts put it together.
+std::string again_cell(const Comparison& c, const Cell& cell, std::vector<std::string>& budgets) {
+  const Request& request = c.runs[cell.runs[0]].record->request;
+  const std::string budget = budget_options(request);
+  const auto at = std::ranges::find(budgets, budget);
+  const auto place = at - budgets.begin();
+  if (at == budgets.end()) budgets.push_back(budget);
+  return fmt::format("<td data-again=\"{} {} {}\">", place, seeds_of(c, cell),
+                     html_text(request.optimizer.spec));
+}
+
+std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
+                       std::vector<std::string>& budgets) {
   const Cell& cell = c.cell(p, s);
   std::string row =
       fmt::format("<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, shown_html(c.problems[p].spec),
@@ -75,9 +102,7 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     row += time_cell(cell.seconds[t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
-  const Request& request = c.runs[cell.runs[0]].record->request;
-  return row + fmt::format("<td>{}<td data-copy=\"{}\">\n", status_text(cell.statuses),
-                           html_text(rerun_command(request)));
+  return row + fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, budgets));
 }
 
 std::string standing_row(const Comparison& c, std::size_t s) {
@@ -134,17 +159,20 @@ std::string matrix_html(const Comparison& c) {
 }
 
 std::string details_html(const Comparison& c) {
-  std::string html =
-      "<table class=sortable id=detail-table><thead><tr><th>problem<th>optimizer<th>runs<br>to "
-      "1e-6";
+  std::string rows;
+  std::vector<std::string> budgets;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s, budgets);
+  std::string html = fmt::format(
+      "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th>problem<th>"
+      "optimizer<th>runs<br>to 1e-6",
+      html_text(Json(budgets).dump()));
   for (const char* what : {"work", "time, ms,"})
     for (const Tolerance& tolerance : kTolerances)
       html += fmt::format("<th>{}<br>to {}", what, tolerance.name);
   html += "<th>final loss<th>error in x<th>how the runs ended<th>again<tbody>\n";
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).planned > 0) html += detail_row(c, p, s);
-  return html + "</table>";
+  return html + rows + "</table>";
 }
 
 std::string failures_html(const Comparison& c) {

@@ -45,7 +45,7 @@ function groupElement(kind, name, indices) {
   const only = pressable('only', undefined, () => show(kind, indices));
   only.setAttribute('aria-label', `only ${name}`);
   const group = element('fieldset', {}, element('legend', {}, name, ' ', only));
-  group.append(...indices.map((index) => choiceOf(kind, index)));
+  group.append(element('div', {className: 'choices'}, ...indices.map((index) => choiceOf(kind, index))));
   return group;
 }
 
@@ -62,7 +62,7 @@ function fillPanel(kind, panel) {
   const isGrouped = kind === 's' && groups.size > 1;
   const lists = isGrouped
       ? [...groups].map(([name, indices]) => groupElement(kind, name, indices))
-      : [element('fieldset', {}, ...KINDS[kind].names.map((_, index) => choiceOf(kind, index)))];
+      : [element('fieldset', {}, element('div', {className: 'choices'}, ...KINDS[kind].names.map((_, index) => choiceOf(kind, index))))];
   search.addEventListener('input', () => {
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     for (const label of panel.querySelectorAll('label'))

@@ -102,11 +102,16 @@ function liveProblem(article) {
 }
 
 function liveTables() {
-  const standings = document.getElementById('standings-table'), matrix = document.getElementById('matrix');
-  let areChanged = false;  // as they come they are right
+  const standings = document.getElementById('standings-table'), works = document.getElementById('works');
+  let areChanged = false, isExplained = false;  // as they come they are right
   FOLLOWERS.push(() => { areChanged = areChanged || !isPlain(); });
   live(standings, () => { if (areChanged) drawStandings(standings); });
-  live(matrix, () => { if (areChanged) drawMatrix(matrix); });
+  live(works, () => {
+    const matrix = unpacked(works);
+    if (!isExplained) explainMatrix(matrix, detailTable);
+    isExplained = true;
+    if (areChanged) drawMatrix(matrix);
+  });
 }
 
 function offerThemes(button) {
@@ -121,36 +126,66 @@ function offerThemes(button) {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
 }
 
-// A button in each cell that holds a command, once the table is seen.
+// Tables too large to be built before they are seen wait as text; without scripts they stand as they are.
+function unpacked(place) {
+  const packed = place.querySelector('noscript');
+  if (packed !== null) {
+    place.innerHTML = packed.textContent;
+    place.querySelectorAll('table.sortable').forEach(makeSortable);
+  }
+  return place.querySelector('table');
+}
+
+const shellWord = (text) => `'${text.replaceAll("'", "'\\''")}'`;
+
+// The command that repeats the runs of a row: problem, optimizer with all its options, seeds, budget.
+function commandOf(row, again, budgets) {
+  const [budget, seeds, ...optimizer] = again.split(' ');
+  return `./isoline run --problem ${shellWord(DATA.problems[Number(row.dataset.p)].asked)} ` +
+      `--optimizer ${shellWord(optimizer.join(' '))} --seeds ${seeds} ${budgets[Number(budget)]}`;
+}
+
 function offerCopies(table) {
-  for (const cell of table.querySelectorAll('[data-copy]:empty')) {
-    const button = pressable('copy', undefined, () => copyFrom(cell, button));
+  const budgets = JSON.parse(table.dataset.budgets);
+  for (const cell of table.querySelectorAll('[data-again]')) {
+    const button = pressable('copy', undefined, () => copyText(button.title, button));
     button.className = 'copy';
-    button.title = cell.dataset.copy;
+    button.title = commandOf(cell.parentElement, cell.dataset.again, budgets);
     cell.append(button);
   }
 }
 
-async function copyFrom(cell, button) {
+async function copyText(text, button) {
   try {
-    await navigator.clipboard.writeText(cell.dataset.copy);
+    await navigator.clipboard.writeText(text);
     button.textContent = 'copied';
   } catch {  // no clipboard from a file: the command is shown instead
-    window.prompt('Command', cell.dataset.copy);
+    window.prompt('Command', text);
   }
 }
+
+// The table of all cells, with what goes with it, built when first seen or asked for.
+const detailTable = (() => {
+  const place = document.getElementById('cells');
+  let count;
+  const build = () => {
+    if (count !== undefined) return place.querySelector('table');
+    const table = unpacked(place), wide = document.getElementById('wide');
+    offerCopies(table);
+    count = makeFilter(document.getElementById('filter'), table, document.getElementById('shown'));
+    document.querySelector('.filter').hidden = false;
+    wide.addEventListener('change', () => table.classList.toggle('wide', wide.checked));
+    return table;
+  };
+  live(place, () => { build(); count(); });
+  return build;
+})();
 
 document.documentElement.classList.add('js');
 readAddress();
 makeBar(document.getElementById('view'));
 offerThemes(document.getElementById('theme'));
 document.querySelectorAll('table.sortable').forEach(makeSortable);
-document.querySelector('.filter').hidden = false;
-explainMatrix(document.getElementById('matrix'));
-const DETAILS = document.getElementById('detail-table');
-document.getElementById('wide').addEventListener('change', (event) => DETAILS.classList.toggle('wide', event.target.checked));
-const filterDetails = makeFilter(document.getElementById('filter'), DETAILS, document.getElementById('shown'));
-live(DETAILS, () => { offerCopies(DETAILS); filterDetails(); });
 makeGlance(document.querySelector('.glance'));
 liveTables();
 liveProfile(document.getElementById('profile'));

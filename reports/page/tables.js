@@ -110,11 +110,11 @@ function showTip(tip, [title, ...lines], near) {
   tip.style.top = `${isBelow ? box.bottom + 6 : box.top - tip.offsetHeight - 6}px`;
 }
 
-function explainMatrix(matrix) {
+function explainMatrix(matrix, details) {
   const tip = document.getElementById('tip');
   let rows;
   const explain = (event) => {
-    rows ??= new Map([...document.getElementById('detail-table').tBodies[0].rows].map((row) => [`${row.dataset.s},${row.dataset.p}`, row]));
+    rows ??= new Map([...details().tBodies[0].rows].map((row) => [`${row.dataset.s},${row.dataset.p}`, row]));
     const cell = event.target.closest('td');
     const row = cell && rows.get(`${cell.parentElement.dataset.s},${cell.dataset.p}`);
     if (row) showTip(tip, explanationOf(row), cell); else tip.hidden = true;
