@@ -92,7 +92,8 @@ std::string table(const All& all) {
         fmt::format("<th title=\"{}\">{}", html_text(column.meaning), html_text(column.heading));
   html += "<tbody>\n";
   for (const AuditedOptimizer& audited : all) {
-    html += "<tr><th>" + html_text(shown_spec(audited.spec));
+    html += fmt::format("<tr data-method=\"{}\"><th scope=row>{}", html_text(audited.name),
+                        html_text(shown_spec(audited.spec)));
     if (!audited.reason.empty())
       html += fmt::format("<td colspan={}>{}", kAuditColumns.size(), html_text(audited.reason));
     if (audited.reason.empty())
@@ -113,9 +114,10 @@ std::string dot_plot(const std::string& title, const std::vector<std::string>& r
     legend += fmt::format("{}{} {}", i > 0 ? ", " : "", kMarks[i % std::size(kMarks)],
                           html_text(series[i].name));
   std::string svg = fmt::format(
-      "<figure><figcaption><b>{0}.</b> {1}</figcaption><svg viewBox=\"0 0 {2} {3}\" role=img "
-      "aria-label=\"{0}\" font-size=11 fill=currentColor style=\"max-width:{2}px\">",
-      html_text(title), legend, kWidth, height);
+      "<figure><figcaption><b>{0}.</b> {1}</figcaption><svg class=dots data-row={4} data-edge={5} "
+      "viewBox=\"0 0 {2} {3}\" role=img aria-label=\"{0}\" font-size=11 fill=currentColor "
+      "style=\"max-width:{2}px\">",
+      html_text(title), legend, kWidth, height, kRow, kTop + kRow);
   for (const Real tick : ticks)
     svg += fmt::format(
         "<path d=\"M{0:.0f} {1}V{2}\" stroke=currentColor opacity=.2 /><text x={0:.0f} y={3} "
@@ -123,8 +125,8 @@ std::string dot_plot(const std::string& title, const std::vector<std::string>& r
         place(tick, ticks), kTop - kRow / 2, height - kRow, kTop - kRow, figure(tick));
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const int y = kTop + kRow * static_cast<int>(row) + kRow / 2;
-    svg += fmt::format("<text x={} y={} text-anchor=end>{}</text>", kLeft - 14, y,
-                       html_text(rows[row]));
+    svg += fmt::format("<g data-method=\"{2}\"><text x={0} y={1} text-anchor=end>{2}</text>",
+                       kLeft - 14, y, html_text(rows[row]));
     for (std::size_t i = 0; i < series.size(); ++i) {
       const Real value = series[i].values[row];
       if (std::isnan(value)) continue;
@@ -132,6 +134,7 @@ std::string dot_plot(const std::string& title, const std::vector<std::string>& r
                          place(value, ticks), y, kMarks[i % std::size(kMarks)],
                          html_text(series[i].name), figure(value));
     }
+    svg += "</g>";
   }
   return svg + "</svg></figure>\n";
 }

@@ -34,17 +34,24 @@ std::vector<std::int64_t> iterations_of(const std::vector<Traced>& curves, std::
 
 // value(traced, point) of every run.
 template <class Value>
-Real median_at(const std::vector<Traced>& curves, const std::vector<std::size_t>& at,
-               std::size_t without_curve, Value value) {
+Spread spread_at(const std::vector<Traced>& curves, const std::vector<std::size_t>& at,
+                 std::size_t without_curve, Value value) {
   std::vector<Real> values(without_curve, kNever);
   for (std::size_t i = 0; i < curves.size(); ++i)
     values.push_back(static_cast<Real>(value(curves[i], at[i])));
-  return median_of(std::move(values));
+  return spread_of(std::move(values));
 }
 
 Real gap_of(const Traced& traced, std::size_t point) {
   const Real descent = traced.start - traced.minimum;
   return descent > 0 ? std::max(traced.curve->loss[point] - traced.minimum, 0.0) / descent : kNever;
+}
+
+void add(const Spread& spread, std::vector<Real>& median, std::vector<Real>& low,
+         std::vector<Real>& high) {
+  median.push_back(spread.median);
+  low.push_back(spread.low);
+  high.push_back(spread.high);
 }
 
 std::vector<Traced> curves_of(const Comparison& comparison, const Cell& cell) {
@@ -83,16 +90,17 @@ MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::si
   for (const std::int64_t iteration : iterations_of(curves, points)) {
     std::vector<std::size_t> at;
     for (const Traced& one : curves) at.push_back(point_at(*one.curve, iteration));
-    const auto median_of_all = [&](std::size_t lost, auto value) {
-      return median_at(curves, at, lost, value);
+    const auto over_all = [&](std::size_t lost, auto value) {
+      return spread_at(curves, at, lost, value);
     };
+    const auto work = [](const Traced& t, At i) { return t.curve->work[i]; };
+    const auto seconds = [](const Traced& t, At i) { return t.curve->wall_seconds[i]; };
+    const auto x_error = [](const Traced& t, At i) { return t.curve->x_error[i]; };
     median.iteration.push_back(static_cast<Real>(iteration));
-    median.work.push_back(median_of_all(0, [](const Traced& t, At i) { return t.curve->work[i]; }));
-    median.seconds.push_back(
-        median_of_all(0, [](const Traced& t, At i) { return t.curve->wall_seconds[i]; }));
-    median.gap.push_back(median_of_all(without_curve, gap_of));
-    median.x_error.push_back(
-        median_of_all(without_curve, [](const Traced& t, At i) { return t.curve->x_error[i]; }));
+    median.work.push_back(over_all(0, work).median);
+    median.seconds.push_back(over_all(0, seconds).median);
+    add(over_all(without_curve, gap_of), median.gap, median.gap_low, median.gap_high);
+    add(over_all(without_curve, x_error), median.x_error, median.x_error_low, median.x_error_high);
   }
   return median;
 }

@@ -13,6 +13,7 @@ namespace isoline {
 // the loss, (f − f_L) / (f₀ − f_L): the τ of the tables is a height in its plot.
 struct MedianCurve {
   std::vector<Real> iteration, work, seconds, gap, x_error;
+  std::vector<Real> gap_low, gap_high, x_error_low, x_error_high;  // least and greatest over seeds
 };
 MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::size_t points);
 

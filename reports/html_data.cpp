@@ -1,5 +1,6 @@
 // What the charts of the page draw: curves, profiles, contours and paths as compact JSON.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "reports/contour.h"
 #include "reports/curves.h"
 #include "reports/html.h"
+#include "reports/targets.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -15,7 +17,7 @@ namespace {
 
 // Points a line, so that all lines together stay within a few megabytes.
 std::size_t points_per_curve(const Comparison& c) {
-  constexpr std::size_t kAll = 60000, kLeast = 6, kMost = 64;
+  constexpr std::size_t kAll = 40000, kLeast = 6, kMost = 64;
   const std::size_t curves = std::max<std::size_t>(1, c.problems.size() * c.optimizers.size());
   return std::clamp(kAll / curves, kLeast, kMost);
 }
@@ -25,6 +27,9 @@ std::size_t points_per_path(std::size_t paths) {
 }
 
 std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
+std::string coarse(Real value) {  // of a band: three digits
+  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "null";
+}
 
 std::string quoted(const std::string& text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -41,11 +46,57 @@ std::string list(const Range& range, Item item) {
   return text + "]";
 }
 
+// A median with its range over seeds; without it where seeds agree or there is but one.
+std::string band_json(const char* name, const std::vector<Real>& median,
+                      const std::vector<Real>& low, const std::vector<Real>& high) {
+  std::string text = fmt::format(",\"{}\":{}", name, list(median, number));
+  if (low == high) return text;
+  return text + fmt::format(",\"{0}_low\":{1},\"{0}_high\":{2}", name, list(low, coarse),
+                            list(high, coarse));
+}
+
 std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
-  return fmt::format(
-      "{{\"s\":{},\"iterations\":{},\"work\":{},\"seconds\":{},\"gap\":{},\"x_error\":{}}}",
-      optimizer, list(curve.iteration, number), list(curve.work, number),
-      list(curve.seconds, number), list(curve.gap, number), list(curve.x_error, number));
+  std::string text = fmt::format("{{\"s\":{},\"iterations\":{},\"work\":{},\"seconds\":{}",
+                                 optimizer, list(curve.iteration, number), list(curve.work, number),
+                                 list(curve.seconds, number));
+  text += band_json("gap", curve.gap, curve.gap_low, curve.gap_high);
+  if (std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); }))
+    text += band_json("x_error", curve.x_error, curve.x_error_low, curve.x_error_high);
+  return text + "}";
+}
+
+// Medians to the 51 targets, comma-separated; nothing stands for the same as before.
+std::string targets_text(const std::vector<Real>& medians, std::string (*written)(Real)) {
+  std::string text, last;
+  for (std::size_t j = 0; j < medians.size(); ++j) {
+    const std::string one = written(medians[j]);
+    if (j > 0) text += ',';
+    if (one != last) text += one;
+    last = one;
+  }
+  return text;
+}
+
+// What each optimizer asked of this problem took: tables and profiles of the page are made of it.
+std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
+  const Cell& cell = c.cell(p, s);
+  std::string text = fmt::format("{{\"s\":{}", s);
+  if (cell.planned > cell.runs.size())
+    text += fmt::format(",\"missing\":{}", cell.planned - cell.runs.size());
+  if (!cell.runs.empty() && !cell.is_measured()) return text + ",\"na\":1}";
+  if (cell.failed > 0) text += fmt::format(",\"failed\":{}", cell.failed);
+  const TargetMedians medians = target_medians(c, cell);
+  return text + fmt::format(",\"reached\":{},\"work\":\"{}\",\"time\":\"{}\"}}",
+                            list(medians.reached, [](std::size_t n) { return std::to_string(n); }),
+                            targets_text(medians.work, exact_figure),
+                            targets_text(medians.seconds, milliseconds));
+}
+
+std::string cells_json(const Comparison& c, std::size_t p) {
+  std::vector<std::size_t> asked;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (c.cell(p, s).planned > 0) asked.push_back(s);
+  return list(asked, [&](std::size_t s) { return cell_json(c, p, s); });
 }
 
 // In order of rank, so that the page can show the best by default.
@@ -89,8 +140,9 @@ std::string plane_json(const Landscape& landscape, const std::vector<Path>& all,
 
 std::string problem_json(const Comparison& c, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
-  std::string text = fmt::format("{{\"spec\":{},\"curves\":{}", quoted(shown_spec(problem.spec)),
-                                 curves_json(c, p));
+  std::string text = fmt::format("{{\"spec\":{},\"name\":{},\"cells\":{},\"curves\":{}",
+                                 quoted(shown_spec(problem.spec)), quoted(problem.name()),
+                                 cells_json(c, p), curves_json(c, p));
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)
@@ -101,23 +153,20 @@ std::string problem_json(const Comparison& c, std::size_t p) {
   return text + "}";
 }
 
-// [[problems, ratio, …], …], one list an optimizer.
-std::string profile_json(const Profile& profile) {
-  return list(profile.solvers, [](const ProfileLine& line) {
-    std::string text = fmt::format("[{}", line.problems);
-    for (const Real ratio : line.ratios) text += "," + number(ratio);
-    return text + "]";
-  });
-}
-
 }  // namespace
 
 std::string page_data(const Comparison& c, const std::vector<Figure>& figures) {
   std::string text = fmt::format(
-      "{{\"optimizers\":{},\"profiles\":{},\"figures\":{},\"problems\":[",
+      "{{\"optimizers\":{},\"families\":{},\"privileges\":{},\"figures\":{},\"problems\":[",
       list(c.optimizers,
            [](const OptimizerAxis& optimizer) { return quoted(shown_spec(optimizer.label)); }),
-      list(c.profiles, profile_json), figures_json(figures));
+      list(c.optimizers,
+           [](const OptimizerAxis& optimizer) { return quoted(family_title(optimizer.family())); }),
+      list(c.optimizers,
+           [](const OptimizerAxis& optimizer) {
+             return quoted(fmt::format("{}", fmt::join(optimizer.privileges, ", ")));
+           }),
+      figures_json(figures));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (p > 0) text += ',';
     text += problem_json(c, p);

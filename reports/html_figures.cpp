@@ -56,17 +56,24 @@ Json lines_json(const std::vector<FigureLine>& lines) {
   return list;
 }
 
+std::string problem_attribute(const Comparison& c, const Figure& figure) {
+  const auto at = std::ranges::find_if(c.problems, [&](const ProblemAxis& problem) {
+    return shown_spec(problem.spec) == shown_spec(figure.problem);
+  });
+  return at == c.problems.end() ? "" : fmt::format(" data-p={}", at - c.problems.begin());
+}
+
 }  // namespace
 
-std::string figures_html(const std::vector<Figure>& all) {
+std::string figures_html(const Comparison& c, const std::vector<Figure>& all) {
   std::string html;
   for (std::size_t i = 0; i < all.size(); ++i)
     html += fmt::format(
-        "<figure class=\"panel{}\" data-figure={}><figcaption><b>{}</b> <span "
+        "<figure class=\"panel{}\" data-figure={}{}><figcaption><b>{}</b> <span "
         "class=formula>{}</span>"
         "<p class=reading>{}</p></figcaption></figure>\n",
-        all[i].pictures.empty() ? "" : " wide", i, html_text(all[i].title),
-        html_text(all[i].problem), html_text(all[i].reading));
+        all[i].pictures.empty() ? "" : " wide", i, problem_attribute(c, all[i]),
+        html_text(all[i].title), html_text(all[i].problem), html_text(all[i].reading));
   return html.empty() ? "<p class=lead>No problem of this report has figures of its own.</p>"
                       : "<div class=panels>" + html + "</div>";
 }

@@ -87,20 +87,21 @@ std::string learned_html(const Comparison& c) {
   for (const LearnedProblem& learned : learned_problems(c)) {
     const Sheet* sheet = c.problems[learned.problem].sheet;
     html += fmt::format(
-        "<h3>{}</h3><p class=reading>{}</p><p class=legend>{}</p><div class=scroll tabindex=0 "
-        "role=region "
+        "<div data-p={}><h3>{}</h3><p class=reading>{}</p><p class=legend>{}</p><div class=scroll "
+        "tabindex=0 role=region "
         "aria-label=\"Learned\"><table class=sortable><thead><tr><th>optimizer<th>error in "
         "x<th>loss "
         "in y<th>iterations<th>ms each<th>runs<th>failed<tbody>\n",
-        html_text(shown_spec(c.problems[learned.problem].spec)), html_text(learned.reading),
-        sheet == nullptr ? "" : html_text(sheet->note));
+        learned.problem, html_text(shown_spec(c.problems[learned.problem].spec)),
+        html_text(learned.reading), sheet == nullptr ? "" : html_text(sheet->note));
     for (const LearnedRow& row : learned.rows)
-      html += fmt::format("<tr><th>{}{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}</tr>\n",
-                          html_text(label(c, row)),
-                          c.cell(learned.problem, row.optimizer).privileges.empty() ? "" : " †",
-                          html_text(figure(row.x_error)), html_text(figure(row.loss)),
-                          figure(row.iterations), milliseconds_text(row), row.runs, row.failed);
-    html += "</table></div>\n";
+      html +=
+          fmt::format("<tr data-s={}><th scope=row>{}{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}</tr>\n",
+                      row.optimizer, html_text(label(c, row)),
+                      c.cell(learned.problem, row.optimizer).privileges.empty() ? "" : " †",
+                      html_text(figure(row.x_error)), html_text(figure(row.loss)),
+                      figure(row.iterations), milliseconds_text(row), row.runs, row.failed);
+    html += "</table></div></div>\n";
   }
   return html.empty() ? "<p class=lead>No problem of this report is learned.</p>" : html;
 }

@@ -15,21 +15,23 @@
 namespace isoline {
 namespace {
 
+// What the i-th row or column is about, as attributes by which the page filters.
+std::string about(const std::vector<TableSubject>& subjects, std::size_t i) {
+  if (i >= subjects.size()) return "";
+  std::string attributes;
+  if (subjects[i].optimizer) attributes += fmt::format(" data-s={}", *subjects[i].optimizer);
+  if (subjects[i].problem) attributes += fmt::format(" data-p={}", *subjects[i].problem);
+  return attributes;
+}
+
 std::string html_of(const StatisticTable& table) {
   std::string html = fmt::format(
       "<h3 id=\"{}\">{}</h3><p class=reading>{}</p>\n<details><summary>Table</summary><div "
       "class=scroll tabindex=0 role=region aria-label=\"{}\"><table class=sortable><thead><tr>",
       table.id, html_text(table.title), html_text(table.reading), html_text(table.title));
-  const auto about = [](const std::vector<TableSubject>& subjects, std::size_t i) {
-    std::string tag;
-    if (i < subjects.size() && subjects[i].optimizer)
-      tag += fmt::format(" data-s={}", *subjects[i].optimizer);
-    if (i < subjects.size() && subjects[i].problem)
-      tag += fmt::format(" data-p={}", *subjects[i].problem);
-    return tag;
-  };
   for (std::size_t i = 0; i < table.columns.size(); ++i)
-    html += fmt::format("<th{}>{}", about(table.column_subjects, i), html_text(table.columns[i]));
+    html += fmt::format("<th scope=col{}>{}", about(table.column_subjects, i),
+                        html_text(table.columns[i]));
   html += "<tbody>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     html += fmt::format("<tr{}>", about(table.row_subjects, r));
@@ -37,8 +39,8 @@ std::string html_of(const StatisticTable& table) {
       const TableCell& cell = table.rows[r][i];
       const std::string note =
           cell.note.empty() ? "" : fmt::format(" title=\"{}\"", html_text(cell.note));
-      html += fmt::format("<{}{}{}>{}", i == 0 ? "th" : "td", about(table.column_subjects, i), note,
-                          html_text(cell.text));
+      html += fmt::format("<{}{}{}>{}", i == 0 ? "th scope=row" : "td",
+                          about(table.column_subjects, i), note, html_text(cell.text));
     }
     html += "\n";
   }

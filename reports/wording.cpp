@@ -136,17 +136,20 @@ bool is_complete(const Cell& cell, std::size_t tolerance) {
   return cell.work[tolerance].unsolved == 0 && cell.failed == 0 && cell.planned == cell.runs.size();
 }
 
-std::string rerun_command(const Request& request) {
+std::string budget_options(const Request& request) {
   const Budget& budget = request.budget;
-  std::string command =
-      fmt::format("./isoline run --problem {} --optimizer {} --seeds ={} --iterations {}",
-                  shell_word(request.problem.spec), shell_word(request.optimizer.spec),
-                  request.seed, budget.iterations);
-  if (budget.work < Budget{}.work) command += fmt::format(" --work {}", budget.work);
-  if (budget.seconds < Budget{}.seconds) command += fmt::format(" --time {}s", budget.seconds);
-  if (budget.target != Budget{}.target) command += fmt::format(" --target {}", budget.target);
-  if (request.threads != 1) command += fmt::format(" --threads {}", request.threads);
-  return command;
+  std::string options = fmt::format("--iterations {}", budget.iterations);
+  if (budget.work < Budget{}.work) options += fmt::format(" --work {}", budget.work);
+  if (budget.seconds < Budget{}.seconds) options += fmt::format(" --time {}s", budget.seconds);
+  if (budget.target != Budget{}.target) options += fmt::format(" --target {}", budget.target);
+  if (request.threads != 1) options += fmt::format(" --threads {}", request.threads);
+  return options + " --rates none";
+}
+
+std::string rerun_command(const Request& request) {
+  return fmt::format("./isoline run --problem {} --optimizer {} --seeds ={} {}",
+                     shell_word(request.problem.spec), shell_word(request.optimizer.spec),
+                     request.seed, budget_options(request));
 }
 
 }  // namespace isoline

@@ -27,7 +27,8 @@ bool is_complete(const Cell& cell, std::size_t tolerance);
 // The median work, ✗, "n/a", "missing", or nothing where nothing was planned.
 std::string matrix_text(const Cell& cell, std::size_t tolerance);
 
-// The command that asks for the same cell again.
+// The command that asks for the same cell again: all its options explicit, no table of rates.
 std::string rerun_command(const Request& request);
+std::string budget_options(const Request& request);  // "--iterations 1000 --rates none"
 
 }  // namespace isoline

@@ -1,4 +1,4 @@
-// Charts over the page's data: learning curves, paths over contours, performance profiles.
+// Charts over the page's data: axes, and learning curves with their range over seeds.
 'use strict';
 
 function axis(title, rest = {}) {
@@ -72,37 +72,50 @@ function least(values) {
   return values.reduce((low, value) => (value > 0 && value < low ? value : low), Infinity);
 }
 
+// The range over seeds, where the curve has one: two unseen lines with what is between them filled.
+function bandDatasets(curve, state, place) {
+  const low = curve[`${state.vertical}_low`], high = curve[`${state.vertical}_high`];
+  if (low === undefined || state.seeds !== 'band' || state.visible.size > FEW) return [];
+  const band = {
+    bandOf: curve.s, borderWidth: 0, pointRadius: 0, pointHitRadius: 0, pointHoverRadius: 0, showLine: true,
+    backgroundColor: colourOf(curve.s) + BAND, order: 4,
+  };
+  const line = (values, never) => place((i) => (values[i] === null ? never : values[i]));
+  return [{...band, data: line(low, null), fill: false}, {...band, data: line(high, HIGHEST), fill: '-1'}];
+}
+
 // Zero has no logarithm: it is drawn below all others, and what is below the floor on the floor.
 function curveDatasets(state) {
-  const curves = state.problem.curves;
+  const curves = state.problem.curves.filter((curve) => curve[state.vertical] !== undefined);
   const zeroX = least(curves.flatMap((curve) => curve[state.horizontal])) / 2;
   const zeroY = Math.max(LOWEST, least(curves.flatMap((curve) => curve[state.vertical])) / 10);
-  return curves.filter((curve) => state.visible.has(curve.s)).map((curve) => {
-    const data = [];
-    curve[state.horizontal].forEach((x, i) => {
-      const y = curve[state.vertical][i];
-      if (x !== null && y !== null) data.push({x: x > 0 ? x : zeroX, y: Math.max(y, zeroY)});
+  return curves.filter((curve) => state.visible.has(curve.s) && isShown('s', curve.s)).flatMap((curve) => {
+    const place = (height) => curve[state.horizontal].flatMap((x, i) => {
+      const y = curve[state.vertical][i] === null ? null : height(i);
+      return x === null || y === null ? [] : [{x: x > 0 ? x : zeroX, y: Math.max(y, zeroY)}];
     });
-    return {label: DATA.optimizers[curve.s], data, ...lineStyle(curve.s)};
+    const data = place((i) => curve[state.vertical][i]);
+    return [{label: DATA.optimizers[curve.s], data, ...lineStyle(curve.s)}, ...bandDatasets(curve, state, place)];
   });
 }
 
+const HIGHEST = 1e3;  // of a loss gap: a run that diverges would flatten all others
 const LOWEST = 1e-12;  // of a loss gap or error: below lies rounding
 const AXES = {
   iterations: 'iterations', work: 'work, forward solves', seconds: 'time, s',
   gap: 'what is left of the loss', x_error: 'error in x',
 };
 
-// The tolerance of the tables, as a line to cross.
+// The tolerance of the page, as a line to cross.
 function toleranceLine(from, to) {
-  const tau = Number(TOLERANCES[tolerance]);
+  const tau = tauOf(view.target);
   return {
-    label: `τ = ${TOLERANCES[tolerance]}`, data: [{x: from, y: tau}, {x: to, y: tau}], showLine: true, pointRadius: 0,
+    label: `τ = ${tauName(view.target)}`, data: [{x: from, y: tau}, {x: to, y: tau}], showLine: true, pointRadius: 0,
     pointHitRadius: 0, borderColor: cssColour('--soft'), borderDash: [3, 4], borderWidth: 1.2, order: 5,
   };
 }
 
-function drawCurves(place, state) {
+function drawCurves(place, state, reading) {
   const datasets = curveDatasets(state);
   const points = datasets.flatMap((set) => set.data);
   const ends = (key) => {
@@ -113,90 +126,11 @@ function drawCurves(place, state) {
   };
   const across = ends('x'), up = ends('y');
   if (state.vertical === 'gap') {
-    up[1] = Math.min(up[1] * 1.5, 1e3);  // a run that diverges would flatten all others
+    up[1] = Math.min(up[1] * 1.5, HIGHEST);
     datasets.push(toleranceLine(...across));
   }
   const scales = {x: logAxis(AXES[state.horizontal], ...across), y: logAxis(AXES[state.vertical], ...up)};
-  const label = `${AXES[state.vertical]} against ${AXES[state.horizontal]} on ${state.problem.spec}`;
+  const label = `${AXES[state.vertical]} against ${AXES[state.horizontal]} on ${state.problem.spec}. ${reading}`;
   return newChart(place, label, datasets, scales,
       tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`), true);
-}
-
-function pairs(flat) {
-  const points = [];
-  for (let i = 0; i + 1 < flat.length; i += 2)
-    points.push(flat[i] === null || flat[i + 1] === null ? {x: NaN, y: NaN} : {x: flat[i], y: flat[i + 1]});
-  return points;
-}
-
-function contourDatasets(contours) {
-  return contours.map((contour, i) => ({
-    data: contour.lines.flatMap((line) => [...pairs(line), {x: NaN, y: NaN}]),
-    borderColor: cssColour('--soft') + (i % 4 === 3 ? '90' : '50'), borderWidth: 1, pointRadius: 0,
-    pointHoverRadius: 0, pointHitRadius: 0, showLine: true, order: 3,
-  }));
-}
-
-function markerDataset(point, style, label) {
-  return {
-    data: [point], label, pointStyle: style, pointRadius: style === 'star' ? 9 : 6, borderWidth: 2,
-    borderColor: cssColour('--ink'), backgroundColor: cssColour('--paper'), order: 0,
-  };
-}
-
-// A short run is drawn with a marker a step, as the published figures have it; a long one as a line.
-const isShort = (path) => path.points.length <= 2 * 16;
-
-function pathDataset(path) {
-  const style = lineStyle(path.s);
-  if (!isShort(path)) return {...style, borderDash: dashOf(path.s), borderWidth: 2.2, pointHitRadius: 2};
-  const isCross = STYLES[path.s].marker === 'crossRot';
-  return {
-    ...style, borderDash: [3, 3], borderWidth: 1.2, pointRadius: isCross ? 5 : 4.2, pointStyle: STYLES[path.s].marker,
-    pointBorderWidth: 1.6, backgroundColor: cssColour('--paper'),
-  };
-}
-
-function drawPlane(place, state, space) {
-  const plane = state.problem[space];
-  const shown = plane.paths.filter((path) => state.visible.has(path.s));
-  const datasets = contourDatasets(plane.contours);
-  for (const path of shown)
-    datasets.push({label: DATA.optimizers[path.s], data: pairs(path.points), ...pathDataset(path), order: 1});
-  if (plane.paths.length > 0) datasets.push(markerDataset(pairs(plane.paths[0].points)[0], 'circle', 'start'));
-  if (plane.goal.length === 2) datasets.push(markerDataset(pairs(plane.goal)[0], 'star', space === 'x' ? 'solution' : 'target'));
-  const [left, right, bottom, top] = plane.window;
-  const plain = {ticks: {autoSkip: true, includeBounds: false}, grid: {display: false, borderColor: cssColour('--line')}};
-  const scales = {
-    x: axis(`${space}₁`, {min: left, max: right, ...plain}), y: axis(`${space}₂`, {min: bottom, max: top, ...plain}),
-  };
-  return newChart(place, `Paths in ${space} on ${state.problem.spec}`, datasets, scales,
-      tooltipOf((point) => `(${short(point.x)}, ${short(point.y)})`));
-}
-
-// ρ(τ) as a staircase over log2 τ.
-function staircase([problems, ...ratios], end) {
-  const points = [{x: 0, y: 0}];
-  ratios.forEach((ratio, i) => {
-    const x = Math.log2(ratio);
-    if (x > end) return;
-    points.push({x, y: 100 * i / problems}, {x, y: 100 * (i + 1) / problems});
-  });
-  points.push({x: end, y: points[points.length - 1].y});
-  return points;
-}
-
-function drawProfile(place, profile, visible) {
-  const ratios = [...visible].flatMap((s) => profile[s].slice(1));
-  const end = Math.min(Math.ceil(Math.max(2, ...ratios.map(Math.log2)) + 0.5), 10);
-  const datasets = [...visible].map((s) => ({
-    label: DATA.optimizers[s], problems: profile[s][0], data: staircase(profile[s], end), ...lineStyle(s),
-  }));
-  const scales = {
-    x: axis('work, as a multiple of the least on the same problem', {min: 0, max: end, ticks: {stepSize: 1, callback: (x) => `${2 ** x}×`}}),
-    y: axis('problems solved', {min: 0, max: 100, ticks: {callback: (y) => `${y} %`}}),
-  };
-  const tooltip = tooltipOf((point) => `${point.y.toFixed(0)} % within ${short(2 ** point.x)}×`);
-  tooltip.callbacks.afterLabel = (item) => `of ${item.dataset.problems} problems`;
-  return newChart(place, 'Performance profile', datasets, scales, tooltip, true);
 }

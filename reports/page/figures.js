@@ -15,7 +15,7 @@ function pointsOf(figure, xs, ys) {
 
 function figureDatasets(figure, visible) {
   const sets = [];
-  for (const line of figure.lines.filter((one) => visible.has(one.s))) {
+  for (const line of figure.lines.filter((one) => visible.has(one.s) && isShown('s', one.s))) {
     const style = lineStyle(line.s), name = DATA.optimizers[line.s];
     const isScatter = figure.kind === 'scatter', isSparse = line.x.length <= 16;
     sets.push({
@@ -24,7 +24,7 @@ function figureDatasets(figure, visible) {
     });
     if (line.low.length === 0 || isScatter) continue;
     const band = {
-      borderWidth: 0, pointRadius: 0, pointHitRadius: 0, showLine: true, backgroundColor: colourOf(line.s) + '26', order: 4,
+      bandOf: line.s, borderWidth: 0, pointRadius: 0, pointHitRadius: 0, showLine: true, backgroundColor: colourOf(line.s) + BAND, order: 4,
     };
     sets.push({...band, data: pointsOf(figure, line.x, line.low), fill: false});
     sets.push({...band, data: pointsOf(figure, line.x, line.high), fill: '-1'});
@@ -41,7 +41,7 @@ function extent(points, key) {
 
 // All lines at first where they are not too many, but for the tuned twins of published settings.
 function firstLines(figure) {
-  const published = figure.lines.map((line) => line.s).filter((s) => !DATA.optimizers[s].endsWith(', tuned'));
+  const published = figure.lines.map((line) => line.s).filter((s) => isShown('s', s) && !DATA.optimizers[s].endsWith(', tuned'));
   return new Set(published.length <= MOST_LINES ? published : published.slice(0, SHOWN_AT_FIRST));
 }
 
@@ -53,7 +53,7 @@ function extentOf(figure, sets, key) {
   return [low - margin, high + margin];
 }
 
-function drawFigure(place, figure, visible) {
+function drawFigure(place, figure, visible, reading) {
   const sets = figureDatasets(figure, visible);
   const across = extentOf(figure, sets, 'x'), up = extentOf(figure, sets, 'y');
   if (figure.diagonal)
@@ -63,7 +63,7 @@ function drawFigure(place, figure, visible) {
     });
   const scale = (isLog, title, [low, high]) => (isLog ? logAxis(title, low, high) : axis(title, {type: 'linear', ...(figure.kind === 'path' ? {min: low, max: high} : {})}));
   const scales = {x: scale(figure.log_x, figure.x_label, across), y: scale(figure.log_y, figure.y_label, up)};
-  return newChart(place, `${figure.title}: ${figure.y_label} against ${figure.x_label}`, sets, scales,
+  return newChart(place, `${figure.title}: ${figure.y_label} against ${figure.x_label}. ${reading}`, sets, scales,
       tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`));
 }
 
@@ -84,21 +84,29 @@ function pictureElement(picture) {
   return figure;
 }
 
-function buildFigure(element) {
-  const figure = DATA.figures[Number(element.dataset.figure)];
+function figureDrawer(element, figure) {
   if (figure.pictures.length > 0) {
     const row = document.createElement('div');
     row.className = 'pictures';
     row.append(...figure.pictures.map(pictureElement));
     element.append(row);
-    return;
+    return () => {};
   }
-  const ranked = figure.lines.map((line) => line.s), visible = firstLines(figure);
-  const place = document.createElement('div');
-  const draw = redrawer(place, () => drawFigure(place, figure, visible));
-  const point = (index) => highlight(draw.chart, index);
-  const legend = newLegend(ranked, visible, draw, point);
-  element.append(place, legend);
-  redraws.push(() => { draw(); fillLegend(legend, ranked, visible, draw, point); });
-  draw();
+  const ranked = figure.lines.map((line) => line.s), place = document.createElement('div');
+  const choice = newChoice(ranked, () => firstLines(figure)), reading = element.querySelector('.reading').textContent;
+  const draw = redrawer(place, () => drawFigure(place, figure, choice(), reading));
+  const legend = newLegend(ranked, draw, (index) => highlight(draw.chart, index));
+  element.append(place, legend.place);
+  return () => {
+    draw();
+    legend.fill(choice());
+  };
+}
+
+function liveFigure(element) {
+  let draw;
+  live(element, () => {
+    draw ??= figureDrawer(element, DATA.figures[Number(element.dataset.figure)]);
+    draw();
+  });
 }

@@ -10,6 +10,7 @@ const COLOURS = {  // Okabe and Ito (2008), told apart by colour-blind readers t
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3], [14, 4]];
 const MARKERS = ['circle', 'rect', 'triangle', 'rectRot', 'crossRot'];
 const FEW = 12;  // as many lines are all shown at first
+const BAND = '22';  // how much of its colour a range over seeds has
 const NARROW = 640;  // pixels
 
 function isDark() {
@@ -46,6 +47,8 @@ function highlight(chart, index) {
   if (!chart || chart.lit === index) return;
   chart.lit = index;
   for (const set of chart.data.datasets) {
+    if (set.bandOf !== undefined)
+      set.backgroundColor = colourOf(set.bandOf) + (index !== undefined && set.bandOf !== index ? '08' : BAND);
     if (set.optimizer === undefined) continue;
     const isFaded = index !== undefined && set.optimizer !== index;
     set.borderColor = colourOf(set.optimizer) + (isFaded ? '28' : '');

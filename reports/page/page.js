@@ -1,9 +1,5 @@
-// What the page does: themes, switches, legends, copying, and charts built when first seen.
+// What the page does: themes, switches, copying, and what is built when first seen.
 'use strict';
-
-const TOLERANCES = ['1e-1', '1e-3', '1e-6'];
-let tolerance = TOLERANCES.length - 1;
-const redraws = [];  // one for each chart group already seen
 
 function pressable(text, isPressed, onPress) {
   const button = document.createElement('button');
@@ -35,54 +31,6 @@ function newSwitch(caption, choices, chosen, onChoose) {
   return group;
 }
 
-const GLYPHS = {circle: '○', rect: '□', triangle: '△', rectRot: '◇', crossRot: '×'};
-
-// The line of the curves; with the marker of the path where the path has them.
-function swatch(index, hasMarkers) {
-  const glyph = hasMarkers
-      ? `<text x="34" y="8" font-size="13" text-anchor="middle" fill="${colourOf(index)}">${GLYPHS[STYLES[index].marker]}</text>` : '';
-  const svg = `<svg width="${hasMarkers ? 42 : 24}" height="12" aria-hidden="true"><line x1="0" y1="6" x2="24" y2="6" ` +
-      `stroke="${colourOf(index)}" stroke-width="2.4" stroke-dasharray="${dashOf(index).join(' ')}"/>${glyph}</svg>`;
-  return document.createRange().createContextualFragment(svg);
-}
-
-// A legend that shows and hides lines; `ranked` is in order of rank.
-function fillLegend(legend, ranked, visible, onChange, onPoint) {
-  const show = (some) => () => {
-    visible.clear();
-    some.forEach((index) => visible.add(index));
-    fillLegend(legend, ranked, visible, onChange, onPoint);
-    onChange();
-  };
-  const presets = ranked.length <= FEW
-      ? []
-      : [pressable(`best ${SHOWN_AT_FIRST}`, undefined, show(ranked.slice(0, SHOWN_AT_FIRST))),
-         pressable('all', undefined, show(ranked)), pressable('none', undefined, show([]))];
-  presets.forEach((button) => button.classList.add('preset'));
-  const names = ranked.map((index) => {
-    const button = pressable(DATA.optimizers[index], visible.has(index), () => {
-      if (!visible.delete(index)) visible.add(index);
-      button.setAttribute('aria-pressed', visible.has(index));
-      onChange();
-    });
-    button.prepend(swatch(index, legend.withMarkers?.has(index)));
-    for (const [event, lit] of [['pointerenter', index], ['pointerleave', undefined], ['focus', index], ['blur', undefined]])
-      button.addEventListener(event, () => onPoint(lit));
-    return button;
-  });
-  legend.replaceChildren(...presets, ...names);
-}
-
-function newLegend(ranked, visible, onChange, onPoint, withMarkers = new Set()) {
-  const legend = document.createElement('div');
-  legend.withMarkers = withMarkers;
-  legend.className = 'names';
-  fillLegend(legend, ranked, visible, onChange, onPoint);
-  return legend;
-}
-
-const shownAtFirst = (ranked) => new Set(ranked.length <= FEW ? ranked : ranked.slice(0, SHOWN_AT_FIRST));
-
 // Draws into a place anew, whatever it held before; `redraw.chart` is what stands there.
 function redrawer(place, draw) {
   const redraw = () => {
@@ -93,72 +41,82 @@ function redrawer(place, draw) {
   return redraw;
 }
 
-function buildProfile(section) {
+// The parts of a page that follow the view: each is drawn when first seen, and after each change.
+function liveProfile(section) {
   const place = section.querySelector('.chart');
   if (place === null) return;  // too few problems
-  const all = DATA.optimizers.map((_, index) => index);
-  const visible = shownAtFirst(all);
-  const draw = redrawer(place, () => drawProfile(place, DATA.profiles[tolerance], visible));
-  const point = (index) => highlight(draw.chart, index);
-  const legend = newLegend(all, visible, draw, point);
-  place.after(legend);
-  redraws.push(() => { draw(); fillLegend(legend, all, visible, draw, point); });
-  draw();
+  const reading = document.getElementById('profile-reading'), plainReading = reading.textContent;
+  const all = DATA.optimizers.map((_, index) => index), choice = newChoice(all);
+  let profile;
+  const draw = redrawer(place, () => drawProfile(place, profile, choice(), reading.textContent));
+  const legend = newLegend(all, draw, (index) => highlight(draw.chart, index));
+  place.after(legend.place);
+  live(section, () => {
+    profile = profileOf(view.target);
+    reading.textContent = isPlain() ? plainReading : profileReading(profile);
+    draw();
+    legend.fill(choice());
+  });
 }
 
-function buildProblem(article) {
-  const problem = DATA.problems[Number(article.dataset.problem)];
-  const ranked = problem.curves.map((curve) => curve.s);
-  if (ranked.length === 0) return;
-  const state = {problem, visible: shownAtFirst(ranked), horizontal: 'work', vertical: 'gap'};
-  const curves = article.querySelector('.curves');
-  const place = document.createElement('div');
-  const draws = [redrawer(place, () => drawCurves(place, state))];
+function curveSwitches(state, problem, redraw) {
+  const choose = (key) => (value) => { state[key] = value; redraw(); };
+  const switches = [newSwitch('against', {iterations: 'iterations', work: 'work', seconds: 'time'}, 'work', choose('horizontal'))];
+  if (problem.curves.some((curve) => curve.x_error !== undefined))
+    switches.push(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, 'gap', choose('vertical')));
+  if (problem.curves.some((curve) => curve.gap_low !== undefined))
+    switches.push(newSwitch('seeds', {band: 'band', median: 'median'}, 'band', choose('seeds')));
+  return switches;
+}
+
+// Built at the first call, drawn anew at each.
+function problemDrawer(article, problem) {
+  const ranked = problem.curves.map((curve) => curve.s), choice = newChoice(ranked);
+  const state = {problem, visible: new Set(), horizontal: 'work', vertical: 'gap', seeds: 'band'};
+  const reading = article.querySelector('.reading'), plainReading = reading.textContent;
+  const curves = article.querySelector('.curves'), place = document.createElement('div');
+  const draws = [redrawer(place, () => drawCurves(place, state, reading.textContent))];
   for (const plane of article.querySelectorAll('.plane'))
     draws.push(redrawer(plane, () => drawPlane(plane, state, plane.dataset.space)));
   const drawAll = () => draws.forEach((draw) => draw());
-  const point = (index) => draws.forEach((draw) => highlight(draw.chart, index));
-  const choose = (key) => (value) => { state[key] = value; draws[0](); };
-  curves.append(newSwitch('against', {iterations: 'iterations', work: 'work', seconds: 'time'}, 'work', choose('horizontal')));
-  if (problem.curves.some((curve) => curve.x_error.some((error) => error !== null)))
-    curves.append(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, 'gap', choose('vertical')));
   const short = (problem.x?.paths ?? []).filter(isShort).map((path) => path.s);
-  const legend = newLegend(ranked, state.visible, drawAll, point, new Set(short));
-  curves.append(place, legend);
-  redraws.push(() => { drawAll(); fillLegend(legend, ranked, state.visible, drawAll, point); });
-  drawAll();
-}
-
-// Once each, when about to be seen; all of them before printing, since paper does not scroll.
-function whenSeen(elements, build) {
-  const waiting = new Set(elements);
-  const buildOnce = (element) => {
-    observer.unobserve(element);
-    if (waiting.delete(element)) build(element);
+  const legend = newLegend(ranked, drawAll, (index) => draws.forEach((draw) => highlight(draw.chart, index)), new Set(short));
+  curves.append(...curveSwitches(state, problem, draws[0]), place, legend.place);
+  return () => {
+    reading.textContent = isPlain() ? plainReading : curveReading(problem);
+    drawReached(article.querySelector('.reached'), problem, false);
+    state.visible = choice();
+    drawAll();
+    legend.fill(state.visible);
   };
-  const observer = new IntersectionObserver(
-      (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => buildOnce(entry.target)),
-      {rootMargin: '300px'});
-  waiting.forEach((element) => observer.observe(element));
-  addEventListener('beforeprint', () => [...waiting].forEach(buildOnce));
 }
 
-function chooseTolerance(chosen) {
-  tolerance = Number(chosen);
-  for (const pane of document.querySelectorAll('.pane'))
-    pane.classList.toggle('shown', Number(pane.dataset.tau) === tolerance);
-  for (const group of document.querySelectorAll('.switch.tau'))
-    fillSwitch(group, 'to τ =', {...TOLERANCES}, String(tolerance), (value) => {
-      const position = [...document.querySelectorAll('.switch.tau')].indexOf(group);
-      chooseTolerance(value);
-      document.querySelectorAll('.switch.tau')[position].querySelectorAll('button')[tolerance].focus();
-      redraws.forEach((redraw) => redraw());
-    });
+function liveProblem(article) {
+  const problem = DATA.problems[Number(article.dataset.p)];
+  if (problem.curves.length === 0) return;
+  let draw;
+  live(article, () => {
+    draw ??= problemDrawer(article, problem);
+    draw();
+  });
+}
+
+function liveTables() {
+  const standings = document.getElementById('standings-table'), works = document.getElementById('works');
+  let areChanged = false, isExplained = false;  // as they come they are right
+  FOLLOWERS.push(() => { areChanged = areChanged || !isPlain(); });
+  live(standings, () => { if (areChanged) drawStandings(standings); });
+  live(works, () => {
+    const matrix = unpacked(works);
+    if (!isExplained) explainMatrix(matrix, detailTable);
+    isExplained = true;
+    if (areChanged) drawMatrix(matrix);
+  });
 }
 
 function offerThemes(button) {
   const label = () => { button.textContent = isDark() ? 'Light' : 'Dark'; };
-  const redrawAll = () => { label(); redraws.forEach((redraw) => redraw()); };
+  const redrawAll = () => { label(); refreshAll(); };
   button.hidden = false;
   label();
   button.addEventListener('click', () => {
@@ -168,35 +126,70 @@ function offerThemes(button) {
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
 }
 
-// A button in each cell that holds a command.
-function offerCopies() {
-  for (const cell of document.querySelectorAll('[data-copy]')) {
-    const button = pressable('copy', undefined, () => copyFrom(cell, button));
+// Tables too large to be built before they are seen wait as text; without scripts they stand as they are.
+function unpacked(place) {
+  const packed = place.querySelector('noscript');
+  if (packed !== null) {
+    place.innerHTML = packed.textContent;
+    place.querySelectorAll('table.sortable').forEach(makeSortable);
+  }
+  return place.querySelector('table');
+}
+
+const shellWord = (text) => `'${text.replaceAll("'", "'\\''")}'`;
+
+// The command that repeats the runs of a row: problem, optimizer with all its options, seeds, budget.
+function commandOf(row, again, budgets) {
+  const [budget, seeds, ...optimizer] = again.split(' ');
+  return `./isoline run --problem ${shellWord(DATA.problems[Number(row.dataset.p)].asked)} ` +
+      `--optimizer ${shellWord(optimizer.join(' '))} --seeds ${seeds} ${budgets[Number(budget)]}`;
+}
+
+function offerCopies(table) {
+  const budgets = JSON.parse(table.dataset.budgets);
+  for (const cell of table.querySelectorAll('[data-again]')) {
+    const button = pressable('copy', undefined, () => copyText(button.title, button));
     button.className = 'copy';
-    button.title = 'Copy the command that repeats the first of these runs';
+    button.title = commandOf(cell.parentElement, cell.dataset.again, budgets);
     cell.append(button);
   }
 }
 
-async function copyFrom(cell, button) {
+async function copyText(text, button) {
   try {
-    await navigator.clipboard.writeText(cell.dataset.copy);
+    await navigator.clipboard.writeText(text);
     button.textContent = 'copied';
   } catch {  // no clipboard from a file: the command is shown instead
-    window.prompt('Command', cell.dataset.copy);
+    window.prompt('Command', text);
   }
 }
 
+// The table of all cells, with what goes with it, built when first seen or asked for.
+const detailTable = (() => {
+  const place = document.getElementById('cells');
+  let count;
+  const build = () => {
+    if (count !== undefined) return place.querySelector('table');
+    const table = unpacked(place), wide = document.getElementById('wide');
+    offerCopies(table);
+    count = makeFilter(document.getElementById('filter'), table, document.getElementById('shown'));
+    document.querySelector('.filter').hidden = false;
+    wide.addEventListener('change', () => table.classList.toggle('wide', wide.checked));
+    return table;
+  };
+  live(place, () => { build(); count(); });
+  return build;
+})();
+
 document.documentElement.classList.add('js');
-chooseTolerance(tolerance);
+readAddress();
+makeBar(document.getElementById('view'));
 offerThemes(document.getElementById('theme'));
-offerCopies();
 document.querySelectorAll('table.sortable').forEach(makeSortable);
-document.querySelector('.filter').hidden = false;
-explainMatrices();
-document.getElementById('wide').addEventListener('change', (event) =>
-  document.getElementById('detail-table').classList.toggle('wide', event.target.checked));
-makeFilter(document.getElementById('filter'), document.getElementById('detail-table'), document.getElementById('shown'));
-whenSeen([document.getElementById('profile')], buildProfile);
-whenSeen(document.querySelectorAll('article.problem'), buildProblem);
-whenSeen(document.querySelectorAll('figure.panel'), buildFigure);
+makeGlance(document.querySelector('.glance'));
+liveTables();
+liveProfile(document.getElementById('profile'));
+document.querySelectorAll('article.problem').forEach(liveProblem);
+document.querySelectorAll('figure.panel').forEach(liveFigure);
+document.querySelectorAll('svg.dots').forEach((plot) => live(plot, () => closeRows(plot)));
+applyView();

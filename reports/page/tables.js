@@ -41,6 +41,7 @@ function makeSortable(table) {
     button.type = 'button';
     button.className = 'sort';
     button.append(...head.childNodes);
+    head.scope = 'col';
     head.append(button);
     button.addEventListener('click', () => {
       const isDescending = head.getAttribute('aria-sort') === 'ascending';
@@ -51,20 +52,35 @@ function makeSortable(table) {
   });
 }
 
-// Shows the rows that hold every word of the input.
+// Shows the rows that hold every word of the input, among those of the view; returns how to count anew.
 function makeFilter(input, table, output) {
-  const rows = [...table.tBodies[0].rows].map((row) => ({row, text: row.textContent.toLowerCase()}));
+  const rows = [...table.tBodies[0].rows];
+  let texts;
   const apply = () => {
     const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
+    texts ??= words.length > 0 ? rows.map((row) => row.textContent.toLowerCase()) : undefined;
     let shown = 0;
-    for (const {row, text} of rows) {
-      row.hidden = !words.every((word) => text.includes(word));
-      if (!row.hidden) ++shown;
-    }
+    rows.forEach((row, i) => {
+      row.hidden = !words.every((word) => texts[i].includes(word));
+      if (!row.hidden && isShown('s', Number(row.dataset.s)) && isShown('p', Number(row.dataset.p))) ++shown;
+    });
     output.textContent = `${shown} of ${rows.length} rows`;
   };
   input.addEventListener('input', apply);
-  apply();
+  return apply;
+}
+
+// Rows of an SVG plot move up into the places of those filtered out.
+function closeRows(plot) {
+  const step = Number(plot.dataset.row), rows = [...plot.querySelectorAll('g[data-method]')];
+  const hidden = new Set(hiddenMethods());
+  let place = 0;
+  rows.forEach((row, i) => {
+    row.setAttribute('transform', `translate(0 ${step * (place - i)})`);
+    if (!hidden.has(row.dataset.method)) ++place;
+  });
+  const [left, top, width] = plot.getAttribute('viewBox').split(' '), edge = Number(plot.dataset.edge);
+  plot.setAttribute('viewBox', `${left} ${top} ${width} ${edge + step * place}`);
 }
 
 // What the table of all cells says of one of them: the matrix has no room for it.
@@ -94,30 +110,17 @@ function showTip(tip, [title, ...lines], near) {
   tip.style.top = `${isBelow ? box.bottom + 6 : box.top - tip.offsetHeight - 6}px`;
 }
 
-// Rows of the detail table stand by problem, then optimizer, as planned: found by counting, once.
-function rowsByCell(matrix, details) {
-  const rows = [...details.tBodies[0].rows], lines = [...matrix.tBodies[0].rows], found = new Map();
-  let next = 0;
-  for (let column = 2; column < lines[0]?.cells.length; ++column)
-    lines.forEach((line, s) => {
-      if (!line.cells[column].classList.contains('none')) found.set(`${s},${column}`, rows[next++]);
-    });
-  return found;
-}
-
-function explainMatrices() {
+function explainMatrix(matrix, details) {
   const tip = document.getElementById('tip');
-  const matrices = [...document.querySelectorAll('table.matrix')];
-  const rows = rowsByCell(matrices[0], document.getElementById('detail-table'));
-  for (const matrix of matrices) {
-    const explain = (event) => {
-      const cell = event.target.closest('td');
-      const row = cell && rows.get(`${cell.parentElement.sectionRowIndex},${cell.cellIndex}`);
-      if (row) showTip(tip, explanationOf(row), cell); else tip.hidden = true;
-    };
-    matrix.addEventListener('pointerover', explain);
-    matrix.addEventListener('click', explain);
-    matrix.addEventListener('pointerleave', () => { tip.hidden = true; });
-  }
+  let rows;
+  const explain = (event) => {
+    rows ??= new Map([...details().tBodies[0].rows].map((row) => [`${row.dataset.s},${row.dataset.p}`, row]));
+    const cell = event.target.closest('td');
+    const row = cell && rows.get(`${cell.parentElement.dataset.s},${cell.dataset.p}`);
+    if (row) showTip(tip, explanationOf(row), cell); else tip.hidden = true;
+  };
+  matrix.addEventListener('pointerover', explain);
+  matrix.addEventListener('click', explain);
+  matrix.addEventListener('pointerleave', () => { tip.hidden = true; });
   addEventListener('scroll', () => { tip.hidden = true; }, {passive: true});
 }

@@ -1,7 +1,6 @@
-// The optimizers by family, and where the results come from.
+// Where the results come from: builds, machines, commands.
 #include <fmt/format.h>
 
-#include <map>
 #include <set>
 
 #include "core/json.h"
@@ -11,35 +10,6 @@
 
 namespace isoline {
 namespace {
-
-std::string family_title(const std::string& family) {
-  static const std::map<std::string, std::string> kTitles = {
-      {"first-order", "First order"},
-      {"curvature", "Curvature"},
-      {"inversion", "Inversion of the physics"},
-      {"ceres", "Ceres"},
-      {"nlopt", "NLopt, with gradients"},
-      {"nlopt-derivative-free", "NLopt, without derivatives"}};
-  const auto at = kTitles.find(family);
-  return at == kTitles.end() ? family : at->second;
-}
-
-std::string optimizer_item(const OptimizerAxis& optimizer) {
-  std::string html = fmt::format("<li><b>{}</b>", html_text(shown_spec(optimizer.label)));
-  if (const Sheet* sheet = optimizer.sheet; sheet != nullptr)
-    html +=
-        fmt::format(" {} <span class=formula>{}</span> <cite>{}</cite>", html_text(sheet->title),
-                    html_text(sheet->formula), html_text(sheet->source));
-  html += fmt::format("<span class=count>solves {} of {} to 1e-6", optimizer.tightest().solved,
-                      optimizer.planned);
-  if (optimizer.applicable < optimizer.planned)
-    html += fmt::format(" · applies to {}", optimizer.applicable);
-  if (!optimizer.privileges.empty())
-    html += fmt::format(" · <span class=privilege>† sees {}</span>",
-                        html_text(fmt::format("{}", fmt::join(optimizer.privileges, ", "))));
-  html += "</span>";
-  return html + "</li>\n";
-}
 
 // Text of any JSON value, "" where there is none.
 std::string text_at(const Json& json, const char* key) {
@@ -83,19 +53,6 @@ std::string build_html(const Json& provenance) {
 }
 
 }  // namespace
-
-std::string families_html(const Comparison& c) {
-  std::map<std::string, std::string> families;
-  for (const OptimizerAxis& optimizer : c.optimizers) {
-    const std::string family = optimizer.family();
-    families[family.empty() ? "Others" : family] += optimizer_item(optimizer);
-  }
-  std::string html;
-  for (const auto& [family, items] : families)
-    html += fmt::format("<section class=family><h3>{}</h3>\n<ul>{}</ul></section>\n",
-                        html_text(family_title(family)), items);
-  return html;
-}
 
 std::string provenance_html(const Comparison& c) {
   constexpr std::size_t kMostBuilds = 8;

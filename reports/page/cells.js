@@ -1,0 +1,92 @@
+// Standings and profiles of what is shown, computed from the medians to each of 51 targets: best
+// means best among the shown, exactly as the tables of the report are made.
+'use strict';
+
+const PROFILE_END = 64;  // the factor up to which a profile's area ranks
+
+// "5,,6" is 5, 5, 6: nothing stands for the same as before.
+function listOf(text) {
+  const list = [];
+  if (text !== '') text.split(',').forEach((one, i) => list.push(one === '' ? list[i - 1] : Number(one)));
+  return list;
+}
+
+const isMeasured = (cell) => cell.work !== undefined && cell.reached.length > 0;
+function workOf(cell, target) {
+  if (!isMeasured(cell)) return Infinity;
+  cell.works ??= listOf(cell.work);
+  return cell.works[target] ?? Infinity;
+}
+function timeOf(cell, target) {  // ms
+  cell.times ??= listOf(cell.time);
+  return cell.times[target] ?? Infinity;
+}
+const reachedOf = (cell, target) => cell.reached.filter((count) => count > target).length;
+
+const shownCells = (problem) => problem.cells.filter((cell) => isShown('s', cell.s));
+const leastWork = (cells, target) => cells.reduce((low, cell) => Math.min(low, workOf(cell, target)), Infinity);
+
+// As the report writes figures: whole numbers in full, others to four digits.
+function figure(value) {
+  if (value === Infinity) return '✗';
+  if (Math.abs(value) < 1e7 && Number.isInteger(value)) return String(value);
+  const power = Math.floor(Math.log10(Math.abs(value)));
+  if (power >= -3 && power < 4) return String(Number(value.toPrecision(4)));
+  return value.toExponential(3).replace(/\.?0*e\+?/, 'e');
+}
+
+// Work over the least of the same problem; below one forward solve counts as one.
+const ratioOf = (work, low) => (work === Infinity ? Infinity : Math.max(work, 1) / Math.max(low, 1));
+const scoreOf = (ratio) => Math.max(0, Math.log2(PROFILE_END) - Math.log2(ratio)) / Math.log2(PROFILE_END);
+
+const order = (a, b) => (a < b ? -1 : a > b ? 1 : 0);  // also of two infinities
+
+function median(values) {
+  const sorted = [...values].sort(order), half = Math.floor(sorted.length / 2);
+  if (sorted.length === 0) return Infinity;
+  return sorted.length % 2 === 1 ? sorted[half] : sorted[half - 1] / 2 + sorted[half] / 2;
+}
+
+function emptyStanding(s) {
+  return {s, problems: 0, solved: 0, wins: 0, runs: 0, reached: 0, failed: 0, ratios: [], score: 0};
+}
+
+function addCell(standing, cell, low, target) {
+  const work = workOf(cell, target);
+  ++standing.problems;
+  standing.solved += work < Infinity;
+  standing.wins += work < Infinity && work === low;
+  standing.ratios.push(ratioOf(work, low));
+  standing.score += scoreOf(standing.ratios[standing.ratios.length - 1]);
+  if (!isMeasured(cell)) return;
+  standing.runs += cell.reached.length;
+  standing.reached += reachedOf(cell, target);
+  standing.failed += cell.failed ?? 0;
+}
+
+// Best first. `isAsked` says which optimizers are compared.
+function standingsOf(target, isAsked = (s) => isShown('s', s)) {
+  const all = DATA.optimizers.map((_, s) => emptyStanding(s));
+  for (const p of shownOf('p')) {
+    const cells = DATA.problems[p].cells.filter((cell) => isAsked(cell.s)), low = leastWork(cells, target);
+    for (const cell of cells) addCell(all[cell.s], cell, low, target);
+  }
+  const asked = all.filter((standing) => standing.problems > 0);
+  for (const standing of asked) standing.score /= standing.problems;
+  return asked.sort((a, b) => b.score - a.score || b.reached - a.reached || a.s - b.s);
+}
+
+// [problems, ratio, …] an optimizer, ascending: those solved.
+function profileOf(target) {
+  const profile = new Map();
+  for (const standing of standingsOf(target))
+    profile.set(standing.s, [standing.problems, ...standing.ratios.filter((ratio) => ratio < Infinity).sort((a, b) => a - b)]);
+  return profile;
+}
+
+// The optimizers of a problem, best first.
+function rankingOf(problem, target) {
+  const place = new Map(problem.curves.map((curve, i) => [curve.s, i]));
+  return shownCells(problem).filter(isMeasured)
+      .sort((a, b) => order(workOf(a, target), workOf(b, target)) || place.get(a.s) - place.get(b.s));
+}

@@ -1,0 +1,111 @@
+// What the reader looks at: which optimizers and problems, to which tolerance. Kept in the address,
+// so that a view can be shared. Any element with data-s or data-p follows, whoever made it.
+'use strict';
+
+const TARGETS = 51;  // τ = 10^(−j/5), j from 0
+const DEFAULT_TARGET = 30;
+const KINDS = {s: {names: DATA.optimizers, address: 'o'}, p: {names: DATA.problems.map((problem) => problem.spec), address: 'p'}};
+const view = {target: DEFAULT_TARGET, hidden: {s: new Set(), p: new Set()}};
+
+const isShown = (kind, index) => !view.hidden[kind].has(index);
+const shownOf = (kind) => KINDS[kind].names.map((_, index) => index).filter((index) => isShown(kind, index));
+const isFiltered = () => view.hidden.s.size > 0 || view.hidden.p.size > 0;
+const isPlain = () => !isFiltered() && view.target === DEFAULT_TARGET;
+const tauOf = (target) => 10 ** (-target / 5);
+
+function tauName(target) {
+  return target % 5 === 0 ? (target === 0 ? '1' : `1e-${target / 5}`) : tauOf(target).toExponential(1).replace('.0e', 'e');
+}
+
+// Methods by name: the audit has one row for all settings of a method.
+const methodOf = (label) => label.split(/[[,]/)[0];
+
+function hiddenMethods() {
+  const shown = new Set(shownOf('s').map((index) => methodOf(DATA.optimizers[index])));
+  return [...new Set(DATA.optimizers.map(methodOf))].filter((method) => !shown.has(method));
+}
+
+const RULES = document.head.appendChild(document.createElement('style'));
+
+function hideElements() {
+  const selectors = ['s', 'p'].flatMap((kind) => [...view.hidden[kind]].map((index) => `[data-${kind}="${index}"]`));
+  selectors.push(...hiddenMethods().map((method) => `[data-method="${CSS.escape(method)}"]`));
+  RULES.textContent = selectors.length === 0 ? '' : `:is(${selectors.join(',')}) { display: none !important; }`;
+  document.documentElement.classList.toggle('filtered', isFiltered());
+}
+
+// The shorter of both lists: "o" names those shown, "-o" those left out.
+function writeAddress() {
+  const asked = new URLSearchParams();
+  for (const [kind, {names, address}] of Object.entries(KINDS)) {
+    const hidden = [...view.hidden[kind]].sort((a, b) => a - b), shown = shownOf(kind);
+    if (hidden.length === 0) continue;
+    const isShort = hidden.length <= shown.length || shown.length === 0;
+    for (const index of isShort ? hidden : shown) asked.append(isShort ? `-${address}` : address, names[index]);
+  }
+  if (view.target !== DEFAULT_TARGET) asked.set('tau', tauName(view.target));
+  const text = asked.toString();
+  try {
+    history.replaceState(null, '', (text === '' ? location.pathname : `?${text}`) + location.hash);
+  } catch { /* a page inside another may not have an address of its own */ }
+}
+
+function readAddress() {
+  const asked = new URLSearchParams(location.search);
+  for (const [kind, {names, address}] of Object.entries(KINDS)) {
+    const shown = asked.getAll(address), hidden = asked.getAll(`-${address}`);
+    names.forEach((name, index) => {
+      if (hidden.includes(name) || (shown.length > 0 && !shown.includes(name))) view.hidden[kind].add(index);
+    });
+  }
+  const tau = Number(asked.get('tau'));
+  if (tau > 0) view.target = Math.min(TARGETS - 1, Math.max(0, Math.round(-5 * Math.log10(tau))));
+}
+
+// What is drawn anew when the view changes: at once where it is seen, else when it comes into sight.
+const LIVE = new Map(), STALE = new Set();
+
+function refresh(element) {
+  if (STALE.delete(element)) LIVE.get(element)();
+}
+
+const SIGHT = new IntersectionObserver(
+    (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => refresh(entry.target)),
+    {rootMargin: '300px'});
+
+function live(element, draw) {
+  if (element === null) return;
+  LIVE.set(element, draw);
+  STALE.add(element);
+  SIGHT.observe(element);
+}
+
+function refreshAll() {
+  for (const element of LIVE.keys()) {
+    STALE.add(element);
+    SIGHT.unobserve(element);
+    SIGHT.observe(element);  // tells at once whether it is seen
+  }
+}
+
+addEventListener('beforeprint', () => [...STALE].forEach(refresh));  // paper does not scroll
+
+const FOLLOWERS = [];  // called after each change, before anything is drawn
+let isChanging = false;
+
+function changeView(change) {
+  change();
+  if (isChanging) return;
+  isChanging = true;
+  requestAnimationFrame(() => {
+    isChanging = false;
+    applyView();
+    writeAddress();
+  });
+}
+
+function applyView() {
+  hideElements();
+  FOLLOWERS.forEach((follow) => follow());
+  refreshAll();
+}
