@@ -10,7 +10,7 @@
 namespace isoline {
 namespace {
 
-constexpr const char* kFormat = "isoline.checkpoint/1 ";
+constexpr const char* kFormat = "isoline.checkpoint/2 ";
 
 constexpr std::size_t kDigits = 16;  // of the digest that follows
 

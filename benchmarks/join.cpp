@@ -109,9 +109,14 @@ Json join_plans(const Json& a, const Json& b) {
   return to_json(plan);
 }
 
-std::string sheet_wording(Json sheet) {
-  if (sheet.is_object()) sheet.erase("prices");
-  return sheet.dump();
+bool have_other_wordings(const std::vector<std::string>& sheets) {
+  std::set<std::string> wordings;
+  for (const std::string& text : sheets) {
+    Json sheet = Json::parse(text, nullptr, false);
+    if (sheet.is_object()) sheet.erase("prices");
+    wordings.insert(sheet.is_object() ? sheet.dump() : text);
+  }
+  return wordings.size() > 1;
 }
 
 }  // namespace isoline

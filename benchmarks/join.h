@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/record.h"
 
@@ -19,7 +20,8 @@ JoinedRecord join_records(const Json& a, const Json& b);
 // The union of two plans, sorted; suites and cells once each. Plan schema in, plan schema out.
 Json join_plans(const Json& a, const Json& b);
 
-// What a sheet says of its component, without prices: no two measurements are alike.
-std::string sheet_wording(Json sheet);
+// Whether sheets of one component, as JSON texts, differ in more than measured prices: no two
+// measurements are alike.
+bool have_other_wordings(const std::vector<std::string>& sheets);
 
 }  // namespace isoline

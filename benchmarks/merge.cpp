@@ -159,9 +159,7 @@ class Merge {
   void sheet(const std::string& name, const Group& files) {
     const std::vector<std::string> texts = texts_of(files);
     if (texts.empty()) return;
-    std::set<std::string> wordings;
-    for (const std::string& text : texts) wordings.insert(sheet_wording(parse_json(text, name)));
-    other_sheets_ += wordings.size() > 1;
+    other_sheets_ += have_other_wordings(texts);
     save(out_ / "components" / name, *std::ranges::min_element(texts));
   }
 

@@ -70,7 +70,7 @@ TEST(Checkpoint, OfAnotherCellOrDamagedIsLeftAlone) {
   const Request request = request_of("exponential[mode=learn,batch=5]", "adam");
   const Json whole = trace_of(request, {});
   for (const std::string text :
-       {"", "isoline.checkpoint/1 other\n", "isoline.checkpoint/1 cell\nshort"}) {
+       {"", "isoline.checkpoint/2 other\n", "isoline.checkpoint/2 cell\nshort"}) {
     write_text(file, text);
     EXPECT_EQ(trace_of(request, Checkpoint(file, "cell", 1e9)), whole) << text;
   }

@@ -152,6 +152,23 @@ TEST(Merge, ARunThatEndedByItselfStandsBeforeOneThatTheClockEnded) {
   EXPECT_EQ(record_from_json(read_json(out / "runs" / whole.file_name())).status, Status::target);
 }
 
+TEST(Merge, SheetsThatDifferInMeasuredPricesAloneAreNotCalledDifferent) {
+  Sheet sheet{.kind = "problem", .name = "square", .spec = "square", .options_text = "[]"};
+  sheet.prices = MeasuredPrices{"b0", "processor", 1e-6, {{"forward", 1, 1, 1, 1, 31, 62}}};
+  const ResultFolder a, b, c;
+  a.add(sheet);
+  sheet.prices->forward_seconds = 2e-6;
+  b.add(sheet);
+  sheet.title = "another";
+  c.add(sheet);
+  Merger merged;
+  const fs::path out = merged({a.path(), b.path()});
+  EXPECT_TRUE(merged.last.remarks.empty());
+  EXPECT_TRUE(read_json(out / "components" / sheet.file_name()).contains("prices"));
+  merged({a.path(), c.path()});
+  EXPECT_EQ(merged.last.remarks.size(), 1U);
+}
+
 TEST(Merge, ADamagedFileIsNamedAndLeftOut) {
   const ResultFolder a;
   a.add(record_of({}));
