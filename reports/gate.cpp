@@ -196,7 +196,7 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   std::vector<std::string> remarks;
   std::optional<BestKnown> reference;
   const auto subjects_in = [&](const fs::path& folder) {
-    const Study study = read_study({folder}, options.listener);  // one at a time is in memory
+    const Study study = read_study({folder});  // one at a time is in memory
     remark_on(study, folder, remarks);
     if (!reference) reference.emplace(study);
     return subjects_of(study, *reference);

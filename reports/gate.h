@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "core/share.h"
 #include "reports/differences.h"
 #include "reports/timing.h"
 
@@ -23,7 +22,6 @@ struct GateOptions {
   Real least_noise = kLeastNoise;
   std::vector<std::string> timed;  // beginnings of the keys of cells whose times are judged
   bool is_common_only = false;     // cells that only BASE has do not count
-  Listener listener = {};          // is told of the records read
 };
 
 struct Incomparable {

@@ -19,13 +19,11 @@ struct CompareArguments {
 
 void compare(const CompareArguments& given, Session& session) {
   GateOptions options = given.options;
-  options.listener = on_terminal("reading records");
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   require(
       options.timed.size() <= kMostTimed,
       fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed, options.timed.size()));
   const GateResult result = compare_results(given.before, given.after, options);
-  options.listener = {};  // takes its line off the terminal
   const auto text = given.as_json ? gate_json : given.as_markdown ? gate_markdown : gate_terminal;
   fmt::print("{}", text(result));
   session.exit_code = result.exit_code;

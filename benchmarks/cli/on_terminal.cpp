@@ -8,11 +8,9 @@ namespace isoline {
 
 Listener on_terminal(const char* what) {
   if (Progress::style_of(STDERR_FILENO) != Progress::Style::live) return {};
-  return [what, last = std::size_t{0}, line = std::shared_ptr<Progress>()](
-             std::size_t done, std::size_t all) mutable {
-    if (line == nullptr || done < last)  // the next folder
+  return [what, line = std::shared_ptr<Progress>()](std::size_t done, std::size_t all) mutable {
+    if (line == nullptr)
       line = std::make_shared<Progress>(Progress::Style::live, what, std::int64_t(all), 0);
-    last = done;
     line->reached(std::int64_t(done));
     line->show();
   };
