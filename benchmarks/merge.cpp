@@ -15,7 +15,6 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 
 #include "benchmarks/join.h"
 #include "core/errors.h"
@@ -55,18 +54,6 @@ void flush(const fs::path& folder) {
   ::syncfs(descriptor), ::close(descriptor);
 }
 
-void share(std::size_t count, const std::function<void(std::size_t)>& work) {
-  constexpr unsigned kMostThreads = 8;
-  std::atomic<std::size_t> next{0};
-  const auto some = [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
-  };
-  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads);
-  std::vector<std::jthread> others;
-  for (unsigned i = 1; i < threads && i < count; ++i) others.emplace_back(some);
-  some();
-}
-
 std::string title_of(const Json& record) {
   const Request request = request_from_json(record.at("request"));
   return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
@@ -75,7 +62,8 @@ std::string title_of(const Json& record) {
 
 class Merge {
  public:
-  Merge(const std::vector<fs::path>& folders, const fs::path& out) : folders_(folders), out_(out) {}
+  Merge(const std::vector<fs::path>& folders, const fs::path& out, const Listener& listener)
+      : folders_(folders), out_(out), listener_(listener) {}
 
   MergeOutcome run() {
     read_old_conflicts();
@@ -105,7 +93,8 @@ class Merge {
     fs::create_directories(out_ / part);
     const Groups groups = files_of(folders_, part);
     const std::vector<std::pair<std::string, Group>> list(groups.begin(), groups.end());
-    share(list.size(), [&](std::size_t i) { one(list[i].first, list[i].second); });
+    share(
+        list.size(), [&](std::size_t i) { one(list[i].first, list[i].second); }, listener_);
   }
 
   // The texts of a group, once each, without those that are damaged.
@@ -218,6 +207,7 @@ class Merge {
 
   const std::vector<fs::path>& folders_;
   fs::path out_;
+  const Listener& listener_;
   std::mutex mutex_;
   std::set<std::string> disputed_;        // by the folders; threads only read it
   std::set<std::string> newly_disputed_;  // by this merge
@@ -227,7 +217,8 @@ class Merge {
 
 }  // namespace
 
-MergeOutcome merge_folders(const std::vector<fs::path>& folders, const fs::path& out) {
+MergeOutcome merge_folders(const std::vector<fs::path>& folders, const fs::path& out,
+                           const Listener& listener) {
   for (const fs::path& folder : folders)
     require(fs::is_directory(folder), fmt::format("no result folder {}", folder.string()));
   require(!fs::exists(out) || (fs::is_directory(out) && fs::is_empty(out)),
@@ -236,7 +227,7 @@ MergeOutcome merge_folders(const std::vector<fs::path>& folders, const fs::path&
   const fs::path unfinished = place.string() + fmt::format(".{}.tmp", ::getpid());
   try {
     fs::create_directories(unfinished);
-    MergeOutcome outcome = Merge(folders, unfinished).run();
+    MergeOutcome outcome = Merge(folders, unfinished, listener).run();
     flush(unfinished);
     fs::rename(unfinished, place);
     return outcome;

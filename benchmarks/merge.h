@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/share.h"
+
 namespace isoline {
 
 struct MergeOutcome {
@@ -24,7 +26,7 @@ struct MergeOutcome {
 // other difference is a conflict: that record is left out, and `conflicts.json` remembers it, so
 // that a later merge does not choose by accident.
 MergeOutcome merge_folders(const std::vector<std::filesystem::path>& folders,
-                           const std::filesystem::path& out);
+                           const std::filesystem::path& out, const Listener& listener = {});
 
 inline constexpr const char* kConflictsSchema = "isoline.conflicts/1";
 

@@ -18,6 +18,7 @@ class Progress {
 
   void started(const std::string& name) { current_ = name; }
   void finished() { ++done_; }
+  void reached(std::int64_t done) { done_ = done; }
   void show(bool now = false);  // often called; prints seldom
 
  private:

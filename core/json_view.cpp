@@ -119,6 +119,8 @@ std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
   return all;
 }
 
+std::string JsonView::text() const { return simdjson::minify(element_); }
+
 Json JsonView::json() const { return copy_of(element_); }
 
 void JsonView::get_to(bool& out) const { out = checked(element_.get_bool(), "a truth", element_); }

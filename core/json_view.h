@@ -28,6 +28,7 @@ class JsonView {
   bool is_null() const { return element_.is_null(); }
   std::vector<JsonView> values() const;                         // of an array
   std::vector<std::pair<std::string, JsonView>> items() const;  // of an object
+  std::string text() const;                                     // as JSON, without spaces
   nlohmann::json json() const;                                  // a copy that stays
 
   void get_to(bool& out) const;

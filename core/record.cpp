@@ -164,7 +164,7 @@ Record parsed(const JsonView& json) {
   json.at("privileges").get_to(record.privileges);
   record.is_nondeterministic = json.at("nondeterministic");
   record.repeat_wall_seconds = reals_of(json.at("repeat_wall_seconds"));
-  record.provenance = json.at("provenance").json();
+  record.provenance = provenance_from(json.at("provenance"));
   return record;
 }
 
@@ -187,7 +187,7 @@ Json to_json(const Record& record) {
             {"privileges", record.privileges},
             {"nondeterministic", record.is_nondeterministic},
             {"repeat_wall_seconds", numbers(record.repeat_wall_seconds)},
-            {"provenance", record.provenance}};
+            {"provenance", record.provenance.json()}};
   if (record.hits) json["hits"] = to_json(*record.hits);
   if (record.trajectory)
     json["trajectory"] = {{"x", rows(record.trajectory->x)}, {"y", rows(record.trajectory->y)}};

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +13,10 @@
 #include "core/budget.h"
 #include "core/exhibit.h"
 #include "core/oracle.h"
+#include "core/origin.h"
 #include "core/status.h"
 
 namespace isoline {
-
-using Json = nlohmann::json;
 
 // A component as asked for: its name and all its options, defaults filled in.
 struct Component {
@@ -91,7 +89,7 @@ struct Record {
   std::vector<std::string> privileges;
   bool is_nondeterministic = false;       // ended by a clock or a kill
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
-  Json provenance = Json::object();       // version, commit, compiler, processor, libraries, …
+  Provenance provenance;
 
   std::string file_name() const { return record_file_name(cell, build); }
 };

@@ -13,16 +13,31 @@
 
 namespace isoline {
 
-std::vector<std::string> schema_violations(const Json& document, const Json& schema) {
-  using Adapter = valijson::adapters::NlohmannJsonAdapter;
-  valijson::Schema parsed;
-  valijson::SchemaParser().populateSchema(Adapter(schema), parsed);
+using Adapter = valijson::adapters::NlohmannJsonAdapter;
+
+struct Schema::Parsed {
+  valijson::Schema schema;
+};
+
+Schema::Schema(const Json& schema) {
+  auto parsed = std::make_unique<Parsed>();
+  valijson::SchemaParser().populateSchema(Adapter(schema), parsed->schema);
+  parsed_ = std::move(parsed);
+}
+
+Schema::~Schema() = default;
+
+std::vector<std::string> Schema::violations(const Json& document) const {
   valijson::ValidationResults results;
-  valijson::Validator().validate(parsed, Adapter(document), &results);
+  valijson::Validator().validate(parsed_->schema, Adapter(document), &results);
   std::vector<std::string> violations;
   for (valijson::ValidationResults::Error error; results.popError(error);)
     violations.push_back(fmt::format("{}: {}", fmt::join(error.context, ""), error.description));
   return violations;
+}
+
+std::vector<std::string> schema_violations(const Json& document, const Json& schema) {
+  return Schema(schema).violations(document);
 }
 
 }  // namespace isoline

@@ -1,19 +1,20 @@
-// Writes all formats of a report into a folder.
+// Writes all formats of a report into a folder, several at a time.
 #include "reports/report.h"
 
 #include "core/json.h"
+#include "core/share.h"
 #include "reports/tables_formats.h"
 
 namespace isoline {
 
 void write_report(const Comparison& comparison, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
-  write_text(out / "index.html", html_report(comparison));
-  write_text(out / "report.md", markdown_report(comparison));
-  write_text(out / "report.tex", latex_report(comparison));
-  write_text(out / "report.csv", csv_report(comparison));
-  write_text(out / "statistics.csv", statistics_csv(comparison));
-  write_text(out / "report.json", json_report(comparison));
+  const std::vector<std::pair<const char*, std::string (*)(const Comparison&)>> formats = {
+      {"index.html", html_report},  {"report.csv", csv_report},
+      {"report.json", json_report}, {"report.md", markdown_report},
+      {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
+  share(formats.size(),
+        [&](std::size_t i) { write_text(out / formats[i].first, formats[i].second(comparison)); });
 }
 
 }  // namespace isoline

@@ -5,12 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <set>
-#include <thread>
 #include <tuple>
 #include <unordered_map>
-#include <variant>
 
 #include "core/errors.h"
 #include "core/json.h"
@@ -19,8 +16,6 @@ namespace isoline {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr unsigned kMostReaders = 8;
 
 std::vector<fs::path> json_files(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -45,35 +40,15 @@ void require_equal_columns(const Record& record) {
     require(size == hits.iteration.size(), "the columns of its hits differ in length");
 }
 
-using Answer = std::variant<std::monostate, Record, std::string>;  // a record, or why it is none
-
-Answer answer_of(const fs::path& file) {
+// The record, or why it is none.
+std::string read_into(Record& record, const fs::path& file) {
   try {
-    Record record = read_record(file);
+    record = read_record(file);
     require_equal_columns(record);
-    return record;
+    return "";
   } catch (const std::exception& error) {
-    return std::string(error.what());
+    return error.what();
   }
-}
-
-// Only the calling thread tells how far all have come.
-std::vector<Answer> read_records(const std::vector<fs::path>& files, const Listener& listener) {
-  constexpr std::size_t kOften = 64;
-  std::vector<Answer> answers(files.size());
-  std::atomic<std::size_t> next{0};
-  const auto read_some = [&](bool is_caller) {
-    for (std::size_t i = next++; i < files.size(); i = next++) {
-      answers[i] = answer_of(files[i]);
-      if (is_caller && listener && i % kOften == 0) listener(i, files.size());
-    }
-  };
-  const unsigned readers = std::clamp(std::thread::hardware_concurrency(), 1U, kMostReaders);
-  std::vector<std::jthread> threads;
-  for (unsigned i = 1; i < readers && i < files.size(); ++i) threads.emplace_back(read_some, false);
-  read_some(true);
-  threads.clear();  // joins
-  return answers;
 }
 
 std::string started(const Record& record) {
@@ -88,30 +63,34 @@ bool is_newer(const Record& a, const Record& b) {
   return std::pair(started(a), a.file_name()) > std::pair(started(b), b.file_name());
 }
 
-void keep_newest(Study& study, std::unordered_map<std::string, std::size_t>& place, Record record) {
-  const auto [at, is_first] = place.emplace(record.cell, study.runs.size());
-  if (is_first) {
-    study.runs.push_back(std::move(record));
-    return;
-  }
-  ++study.superseded;
-  Record& kept = study.runs[at->second];
-  if (is_newer(record, kept)) kept = std::move(record);
+// Where the record of each cell stands among the `kept` first ones of all.
+using Places = std::unordered_map<std::string, std::size_t>;
+
+void keep_newest(Study& study, Places& place, std::size_t index) {
+  Record& record = study.runs[index];
+  const std::size_t kept = place.size();
+  const auto [at, is_first] = place.emplace(record.cell, kept);
+  Record& known = study.runs[at->second];
+  if (!is_first) ++study.superseded;
+  if (&known != &record && (is_first || is_newer(record, known))) known = std::move(record);
 }
 
 void read_runs(Study& study, const std::vector<fs::path>& folders, const Listener& listener) {
   std::vector<fs::path> files;
   for (const fs::path& folder : folders)
     for (fs::path& file : json_files(folder / "runs")) files.push_back(std::move(file));
-  std::vector<Answer> answers = read_records(files, listener);
-  std::unordered_map<std::string, std::size_t> place;  // of a cell in study.runs
-  place.reserve(files.size());
-  study.runs.reserve(files.size());
+  std::vector<std::string> reasons(files.size());
+  study.runs.resize(files.size());
+  share(
+      files.size(), [&](std::size_t i) { reasons[i] = read_into(study.runs[i], files[i]); },
+      listener);
+  Places place;
   for (std::size_t i = 0; i < files.size(); ++i)
-    if (auto* reason = std::get_if<std::string>(&answers[i]))
-      study.unreadable.push_back({files[i], std::move(*reason)});
+    if (reasons[i].empty())
+      keep_newest(study, place, i);
     else
-      keep_newest(study, place, std::get<Record>(std::move(answers[i])));
+      study.unreadable.push_back({files[i], std::move(reasons[i])});
+  study.runs.resize(place.size());
   const auto order = [](const Record& r) {
     return std::tie(r.request.problem.spec, r.request.optimizer.spec, r.request.seed, r.cell);
   };

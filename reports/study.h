@@ -2,12 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/audit.h"
 #include "core/record.h"
+#include "core/share.h"
 #include "core/sheet.h"
 
 namespace isoline {
@@ -31,10 +31,8 @@ struct Study {
   std::optional<Exhibit> pictures_of(const Record& record) const;
 };
 
-// Is told now and then how many records have been read, of how many.
-using Listener = std::function<void(std::size_t read, std::size_t all)>;
-
-// Folders are laid out as core/sheet.h says; a missing one is a UsageError.
+// Folders are laid out as core/sheet.h says; a missing one is a UsageError. The listener is told of
+// the records.
 Study read_study(const std::vector<std::filesystem::path>& folders, const Listener& listener = {});
 
 }  // namespace isoline

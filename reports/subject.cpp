@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/share.h"
 #include "reports/report.h"
 #include "reports/text.h"
 
@@ -123,8 +124,8 @@ Quantity work_quantity(Real tau, Real work) {
 }
 
 std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference) {
-  std::vector<Subject> all;
-  for (const Record& record : study.runs) all.push_back(subject_of(record, reference));
+  std::vector<Subject> all(study.runs.size());
+  share(all.size(), [&](std::size_t i) { all[i] = subject_of(study.runs[i], reference); });
   return all;
 }
 

@@ -17,7 +17,7 @@ struct MergeArguments {
 
 void merge(const MergeArguments& given, Session& session) {
   const std::vector<std::filesystem::path> folders(given.folders.begin(), given.folders.end());
-  const MergeOutcome outcome = merge_folders(folders, given.out);
+  const MergeOutcome outcome = merge_folders(folders, given.out, on_terminal("files"));
   for (const std::string& sentence : outcome.conflicts)
     fmt::print(stderr, "conflict: {}\n", sentence);
   for (const std::string& sentence : outcome.unreadable)

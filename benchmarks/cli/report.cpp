@@ -24,7 +24,7 @@ void add_report(CLI::App& app, Session& session) {
     namespace fs = std::filesystem;
     const std::vector<fs::path> folders(options->folders.begin(), options->folders.end());
     const fs::path out = options->out.empty() ? folders.front() / "report" : fs::path(options->out);
-    const Study study = read_study(folders);
+    const Study study = read_study(folders, on_terminal("reading records"));
     Comparison comparison = compare_optimizers(study);
     comparison.claims = covered_claims(session, study);
     write_report(comparison, out);

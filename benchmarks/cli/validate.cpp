@@ -3,16 +3,27 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <map>
 
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/resources.h"
 #include "core/json.h"
 #include "core/schema.h"
+#include "core/share.h"
 
 namespace isoline {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The schema of that name, read once a thread.
+const Schema* schema_of(const std::string& name) {
+  static thread_local std::map<std::string, Schema> known;
+  if (const auto at = known.find(name); at != known.end()) return &at->second;
+  const auto found = builtin_schemas().find(name);
+  if (found == builtin_schemas().end()) return nullptr;
+  return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
+}
 
 std::vector<std::string> violations_in(const fs::path& path) {
   try {
@@ -23,9 +34,9 @@ std::vector<std::string> violations_in(const fs::path& path) {
     const auto claimed = document["schema"].get<std::string>();  // "isoline.run/1"
     const auto dot = claimed.find('.'), slash = claimed.find('/');
     const std::string name = claimed.substr(dot + 1, slash - dot - 1);
-    const auto found = builtin_schemas().find(name);
-    if (found == builtin_schemas().end()) return {fmt::format("unknown schema '{}'", claimed)};
-    return schema_violations(document, parse_json(std::string(found->second), name));
+    const Schema* schema = schema_of(name);
+    if (schema == nullptr) return {fmt::format("unknown schema '{}'", claimed)};
+    return schema->violations(document);
   } catch (const UsageError& error) {
     return {error.what()};
   }
@@ -56,11 +67,14 @@ void add_validate(CLI::App& app, Session& session) {
   verb->callback([paths, &session] {
     std::size_t wrong = 0;
     const std::vector<fs::path> files = files_under(*paths);
-    for (const fs::path& file : files) {
-      const auto violations = violations_in(file);
-      wrong += !violations.empty();
-      for (const std::string& violation : violations)
-        fmt::print("{}: {}\n", file.string(), violation);
+    std::vector<std::vector<std::string>> violations(files.size());
+    share(
+        files.size(), [&](std::size_t i) { violations[i] = violations_in(files[i]); },
+        on_terminal("files"));
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      wrong += !violations[i].empty();
+      for (const std::string& violation : violations[i])
+        fmt::print("{}: {}\n", files[i].string(), violation);
     }
     fmt::print("{} files, {} wrong\n", files.size(), wrong);
     if (wrong > 0) session.exit_code = kWorse;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "benchmarks/catalog.h"
+#include "core/share.h"
 
 namespace CLI {
 class App;
@@ -35,6 +36,9 @@ class Session {
   std::string command_;
   std::unique_ptr<Catalog> catalog_;
 };
+
+// A live line of how far the work is, on a terminal; nothing elsewhere.
+Listener on_terminal(const char* what);
 
 // The claims of the tree whose cells are among the runs, judged.
 std::vector<Judgement> covered_claims(Session& session, const Study& study);

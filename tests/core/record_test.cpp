@@ -61,6 +61,19 @@ TEST(Record, WhatIsNoRecordIsAUsageError) {
   EXPECT_THROW(record_from_json(json), UsageError);
 }
 
+TEST(Provenance, IsSharedInMemoryByTheRecordsOfOneBuildUntilOneIsChanged) {
+  Record first = record_from_json(to_json(sample()));
+  Json other = to_json(sample());
+  other["provenance"]["run"]["concurrent_jobs"] = 5;
+  const Record second = record_from_json(other);
+  EXPECT_EQ(first.provenance.find("version"), second.provenance.find("version"));
+  EXPECT_EQ(second.provenance["run"]["concurrent_jobs"], 5);
+  first.provenance["version"] = "1";
+  EXPECT_EQ(first.provenance["version"], "1");
+  EXPECT_EQ(second.provenance["version"], "0");
+  EXPECT_EQ(first.provenance["run"]["concurrent_jobs"], 2);
+}
+
 TEST(Record, TimesAreLeftOutOfComparisons) {
   Record other = sample();
   other.summary.wall_seconds = 9;

@@ -1,0 +1,84 @@
+// What is read without a tree is what the tree holds; what is missing or of another type is said.
+#include "core/json_view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+
+namespace isoline {
+namespace {
+
+constexpr const char* kText =
+    R"({"integer":-7,"large":18446744073709551615,"real":5.266142885157513e-10,"text":"½ \"quoted\"",)"
+    R"("truth":true,"nothing":null,"list":[0,1,2],"reals":[1.0,"inf","-inf","nan",3],)"
+    R"("lists":{"b":[1],"a":[]},"words":["x","y"]})";
+
+// What was thrown, or nothing.
+template <class Action>
+std::string refusal(Action action) {
+  try {
+    action();
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(JsonView, CopiesToTheTreeThatTheOtherParserBuilds) {
+  JsonReader reader;
+  EXPECT_EQ(reader.parse(kText, "it").json(), nlohmann::json::parse(kText));
+}
+
+TEST(JsonView, ReadsEachTypeAsItStands) {
+  JsonReader reader;
+  const JsonView json = reader.parse(kText, "it");
+  EXPECT_EQ(json.at("integer").get<std::int64_t>(), -7);
+  EXPECT_EQ(json.at("text").get<std::string>(), "½ \"quoted\"");
+  EXPECT_TRUE(json.at("truth").get<bool>());
+  EXPECT_TRUE(json.at("nothing").is_null());
+  EXPECT_TRUE(json.contains("list"));
+  EXPECT_FALSE(json.contains("absent"));
+  EXPECT_EQ(json.at("list").get<std::vector<std::int64_t>>(), (std::vector<std::int64_t>{0, 1, 2}));
+  EXPECT_EQ(json.at("words").get<std::vector<std::string>>(), (std::vector<std::string>{"x", "y"}));
+  const auto lists = json.at("lists").get<std::map<std::string, std::vector<std::int64_t>>>();
+  EXPECT_EQ(lists.at("b"), std::vector<std::int64_t>{1});
+  EXPECT_TRUE(lists.at("a").empty());
+}
+
+TEST(JsonView, RealsKeepEveryBitAndWhatIsNotFinite) {
+  JsonReader reader;
+  const JsonView json = reader.parse(kText, "it");
+  EXPECT_EQ(real_of(json.at("real")), 5.266142885157513e-10);
+  const std::vector<Real> reals = reals_of(json.at("reals"));
+  ASSERT_EQ(reals.size(), 5U);
+  EXPECT_EQ(reals[1], INFINITY);
+  EXPECT_EQ(reals[2], -INFINITY);
+  EXPECT_TRUE(std::isnan(reals[3]));
+  EXPECT_EQ(reals[4], 3);
+}
+
+TEST(JsonView, SaysWhatItLacksAndWhatItFoundInstead) {
+  JsonReader reader;
+  const JsonView json = reader.parse(kText, "it");
+  EXPECT_NE(refusal([&] { json.at("absent"); }).find("absent"), std::string::npos);
+  EXPECT_NE(refusal([&] { json.at("text").get<std::int64_t>(); }).find("integer"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { real_of(json.at("text")); }).find("number"), std::string::npos);
+  EXPECT_NE(refusal([&] { reals_of(json.at("words")); }).find("number"), std::string::npos);
+  EXPECT_NE(refusal([&] { json.at("large").get<std::int64_t>(); }).find("integer"),
+            std::string::npos);
+}
+
+TEST(JsonView, TextCutShortIsRefusedByName) {
+  JsonReader reader;
+  const std::string cut = std::string(kText).substr(0, 60);
+  EXPECT_NE(refusal([&] { reader.parse(cut, "runs/a.json"); }).find("runs/a.json"),
+            std::string::npos);
+  EXPECT_EQ(refusal([&] { reader.parse(kText, "it"); }), "") << "the reader is good for the next";
+}
+
+}  // namespace
+}  // namespace isoline
