@@ -17,7 +17,7 @@ namespace {
 
 // Points a line, so that all lines together stay within a few megabytes.
 std::size_t points_per_curve(const Comparison& c) {
-  constexpr std::size_t kAll = 40000, kLeast = 6, kMost = 64;
+  constexpr std::size_t kAll = 40000, kLeast = 5, kMost = 64;
   const std::size_t curves = std::max<std::size_t>(1, c.problems.size() * c.optimizers.size());
   return std::clamp(kAll / curves, kLeast, kMost);
 }
@@ -27,7 +27,7 @@ std::size_t points_per_path(std::size_t paths) {
 }
 
 std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
-std::string coarse(Real value) {  // of a band: three digits
+std::string coarse(Real value) {  // three digits: enough for a curve
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : "null";
 }
 
@@ -46,30 +46,55 @@ std::string list(const Range& range, Item item) {
   return text + "]";
 }
 
-// A median with its range over seeds; without it where seeds agree or there is but one.
-std::string band_json(const char* name, const std::vector<Real>& median,
-                      const std::vector<Real>& low, const std::vector<Real>& high) {
-  std::string text = fmt::format(",\"{}\":{}", name, list(median, number));
-  if (low == high) return text;
-  return text + fmt::format(",\"{0}_low\":{1},\"{0}_high\":{2}", name, list(low, coarse),
-                            list(high, coarse));
+// [s, iterations, work, seconds, gap, its least, its greatest, error in x, its least, its
+// greatest]; what says nothing is empty: a range where seeds agree, an error where no truth is
+// known.
+std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
+  const auto band = [](const std::vector<Real>& low, const std::vector<Real>& high) {
+    if (low == high) return std::string("[],[]");
+    return list(low, coarse) + "," + list(high, coarse);
+  };
+  std::string text = fmt::format("[{},{},{},{},{},{}", optimizer, list(curve.iteration, number),
+                                 list(curve.work, number), list(curve.seconds, coarse),
+                                 list(curve.gap, coarse), band(curve.gap_low, curve.gap_high));
+  if (std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); }))
+    text += "," + list(curve.x_error, coarse) + "," + band(curve.x_error_low, curve.x_error_high);
+  return text + "]";
 }
 
-std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
-  std::string text = fmt::format("{{\"s\":{},\"iterations\":{},\"work\":{},\"seconds\":{}",
-                                 optimizer, list(curve.iteration, number), list(curve.work, number),
-                                 list(curve.seconds, number));
-  text += band_json("gap", curve.gap, curve.gap_low, curve.gap_high);
-  if (std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); }))
-    text += band_json("x_error", curve.x_error, curve.x_error_low, curve.x_error_high);
-  return text + "}";
+std::string in_base_36(std::uint64_t value) {
+  constexpr std::string_view kDigits = "0123456789abcdefghijklmnopqrstuvwxyz";
+  std::string text;
+  for (; value > 0 || text.empty(); value /= kDigits.size())
+    text.insert(text.begin(), kDigits[value % kDigits.size()]);
+  return text;
+}
+
+// Twice a median of whole numbers is whole.
+std::string work_code(Real work) {
+  return in_base_36(static_cast<std::uint64_t>(std::llround(2 * work)));
+}
+
+// The very digits that the tables print, as a whole number, and a capital for the power of ten: J
+// is 0, I is −1. "0.0931" is 931 and F.
+std::string time_code(Real seconds) {
+  const std::string text = milliseconds(seconds);
+  const std::size_t e = std::min(text.find('e'), text.size());
+  int power = e < text.size() ? std::stoi(text.substr(e + 1)) : 0;
+  std::string digits = text.substr(0, e);
+  if (const std::size_t point = digits.find('.'); point != std::string::npos) {
+    power -= static_cast<int>(digits.size() - point) - 1;
+    digits.erase(point, 1);
+  }
+  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return "";
+  return in_base_36(std::stoull(digits)) + static_cast<char>('J' + std::clamp(power, -9, 9));
 }
 
 // Medians to the 51 targets, comma-separated; nothing stands for the same as before.
-std::string targets_text(const std::vector<Real>& medians, std::string (*written)(Real)) {
+std::string targets_text(const std::vector<Real>& medians, std::string (*code)(Real)) {
   std::string text, last;
   for (std::size_t j = 0; j < medians.size(); ++j) {
-    const std::string one = written(medians[j]);
+    const std::string one = code(medians[j]);
     if (j > 0) text += ',';
     if (one != last) text += one;
     last = one;
@@ -77,19 +102,18 @@ std::string targets_text(const std::vector<Real>& medians, std::string (*written
   return text;
 }
 
-// What each optimizer asked of this problem took: tables and profiles of the page are made of it.
+// [optimizer, targets reached by each run, work, time, runs failed, runs missing]: tables and
+// profiles of the page are made of it. The optimizer alone where the pair makes no sense.
 std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
-  std::string text = fmt::format("{{\"s\":{}", s);
-  if (cell.planned > cell.runs.size())
-    text += fmt::format(",\"missing\":{}", cell.planned - cell.runs.size());
-  if (!cell.runs.empty() && !cell.is_measured()) return text + ",\"na\":1}";
-  if (cell.failed > 0) text += fmt::format(",\"failed\":{}", cell.failed);
+  if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
   const TargetMedians medians = target_medians(c, cell);
-  return text + fmt::format(",\"reached\":{},\"work\":\"{}\",\"time\":\"{}\"}}",
-                            list(medians.reached, [](std::size_t n) { return std::to_string(n); }),
-                            targets_text(medians.work, exact_figure),
-                            targets_text(medians.seconds, milliseconds));
+  const std::size_t missing = cell.planned - cell.runs.size();
+  return fmt::format("[{},{},\"{}\",\"{}\"{}]", s,
+                     list(medians.reached, [](std::size_t n) { return std::to_string(n); }),
+                     targets_text(medians.work, work_code),
+                     targets_text(medians.seconds, time_code),
+                     cell.failed + missing > 0 ? fmt::format(",{},{}", cell.failed, missing) : "");
 }
 
 std::string cells_json(const Comparison& c, std::size_t p) {
@@ -140,9 +164,10 @@ std::string plane_json(const Landscape& landscape, const std::vector<Path>& all,
 
 std::string problem_json(const Comparison& c, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
-  std::string text = fmt::format("{{\"spec\":{},\"name\":{},\"cells\":{},\"curves\":{}",
-                                 quoted(shown_spec(problem.spec)), quoted(problem.name()),
-                                 cells_json(c, p), curves_json(c, p));
+  std::string text =
+      fmt::format("{{\"spec\":{},\"asked\":{},\"name\":{},\"cells\":{},\"curves\":{}",
+                  quoted(shown_spec(problem.spec)), quoted(problem.spec), quoted(problem.name()),
+                  cells_json(c, p), curves_json(c, p));
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)

@@ -72,15 +72,18 @@ std::string seeds_of(const Comparison& c, const Cell& cell) {
   return first.seed == last ? fmt::format("={}", last) : fmt::format("{}..{}", first.seed, last);
 }
 
-// What the command that repeats a cell has of its own; scripts put it together.
-std::string again_cell(const Comparison& c, const Cell& cell, std::vector<std::string>& budgets) {
+// What the command that repeats a cell has of its own, for scripts to put together: which budget,
+// the seeds, and the optimizer where its name in the row is not its spec.
+std::string again_cell(const Comparison& c, const Cell& cell, std::size_t s,
+                       std::vector<std::string>& budgets) {
   const Request& request = c.runs[cell.runs[0]].record->request;
-  const std::string budget = budget_options(request);
+  const std::string budget = budget_options(request), &spec = request.optimizer.spec;
   const auto at = std::ranges::find(budgets, budget);
   const auto place = at - budgets.begin();
   if (at == budgets.end()) budgets.push_back(budget);
-  return fmt::format("<td data-again=\"{} {} {}\">", place, seeds_of(c, cell),
-                     html_text(request.optimizer.spec));
+  const bool is_shown = shown_spec(c.optimizers[s].label) == spec;
+  return fmt::format("<td data-again=\"{} {}{}\">", place, seeds_of(c, cell),
+                     is_shown ? "" : " " + html_text(spec));
 }
 
 std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
@@ -88,7 +91,7 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
   const Cell& cell = c.cell(p, s);
   std::string row =
       fmt::format("<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, shown_html(c.problems[p].spec),
-                  shown_html(c.optimizers[s].label), dagger(cell.privileges));
+                  shown_html(c.optimizers[s].label), cell.privileges.empty() ? "" : "<sup>†</sup>");
   if (!cell.is_measured()) {
     row += cell.runs.empty() ? "<td>" : "<td>n/a";
     for (int empty = 0; empty < 8; ++empty) row += "<td>";
@@ -102,7 +105,8 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     row += time_cell(cell.seconds[t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
-  return row + fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, budgets));
+  return row +
+         fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, s, budgets));
 }
 
 std::string standing_row(const Comparison& c, std::size_t s) {

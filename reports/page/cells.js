@@ -4,21 +4,35 @@
 
 const PROFILE_END = 64;  // the factor up to which a profile's area ranks
 
+// Rows of the data by name; an empty one is none.
+const present = (list) => (list === undefined || list.length === 0 ? undefined : list);
+for (const problem of DATA.problems) {
+  problem.cells = problem.cells.map(([s, reached = [], work = '', time = '', failed = 0, missing = 0]) =>
+    ({s, reached, work, time, failed, missing}));
+  problem.curves = problem.curves.map(([s, iterations, work, seconds, gap, low, high, error, least, greatest]) => ({
+    s, iterations, work, seconds, gap, gap_low: present(low), gap_high: present(high),
+    x_error: present(error), x_error_low: present(least), x_error_high: present(greatest),
+  }));
+}
+
 // "5,,6" is 5, 5, 6: nothing stands for the same as before.
-function listOf(text) {
+function listOf(text, decoded) {
   const list = [];
-  if (text !== '') text.split(',').forEach((one, i) => list.push(one === '' ? list[i - 1] : Number(one)));
+  if (text !== '') text.split(',').forEach((one, i) => list.push(one === '' ? list[i - 1] : decoded(one)));
   return list;
 }
 
-const isMeasured = (cell) => cell.work !== undefined && cell.reached.length > 0;
+const halved = (code) => parseInt(code, 36) / 2;
+// Digits, and a letter for the power of ten: J is 0.
+const power = (code) => Number(`${parseInt(code.slice(0, -1), 36)}e${code.charCodeAt(code.length - 1) - 74}`);
+
+const isMeasured = (cell) => cell.reached.length > 0;
 function workOf(cell, target) {
-  if (!isMeasured(cell)) return Infinity;
-  cell.works ??= listOf(cell.work);
+  cell.works ??= listOf(cell.work, halved);
   return cell.works[target] ?? Infinity;
 }
 function timeOf(cell, target) {  // ms
-  cell.times ??= listOf(cell.time);
+  cell.times ??= listOf(cell.time, power);
   return cell.times[target] ?? Infinity;
 }
 const reachedOf = (cell, target) => cell.reached.filter((count) => count > target).length;
@@ -61,7 +75,7 @@ function addCell(standing, cell, low, target) {
   if (!isMeasured(cell)) return;
   standing.runs += cell.reached.length;
   standing.reached += reachedOf(cell, target);
-  standing.failed += cell.failed ?? 0;
+  standing.failed += cell.failed;
 }
 
 // Best first. `isAsked` says which optimizers are compared.

@@ -142,7 +142,7 @@ const shellWord = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 function commandOf(row, again, budgets) {
   const [budget, seeds, ...optimizer] = again.split(' ');
   return `./isoline run --problem ${shellWord(DATA.problems[Number(row.dataset.p)].asked)} ` +
-      `--optimizer ${shellWord(optimizer.join(' '))} --seeds ${seeds} ${budgets[Number(budget)]}`;
+      `--optimizer ${shellWord(optimizer.join(' ') || DATA.optimizers[Number(row.dataset.s)])} --seeds ${seeds} ${budgets[Number(budget)]}`;
 }
 
 function offerCopies(table) {

@@ -35,7 +35,7 @@ const heatOf = (work, low) => `h${Math.min(7, Math.ceil(Math.log2(ratioOf(work, 
 function drawCell(place, cell, low) {
   const work = workOf(cell, view.target);
   if (!isMeasured(cell)) return;  // not applicable, or missing: to every tolerance
-  const all = cell.reached.length, reached = reachedOf(cell, view.target), failed = cell.failed ?? 0, missing = cell.missing ?? 0;
+  const {failed, missing} = cell, all = cell.reached.length, reached = reachedOf(cell, view.target);
   const isTold = (reached > 0 && reached < all) || failed > 0 || missing > 0;
   const told = `${reached}/${all}${failed > 0 ? `, ${failed} failed` : ''}${missing > 0 ? `, ${missing} missing` : ''}`;
   place.className = work === Infinity ? 'no' : work === low ? 'h0 best' : heatOf(work, low);

@@ -1,0 +1,83 @@
+// What the page is made of: medians to targets as the tables have them, filters' attributes, size.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "reports/report.h"
+#include "reports/targets.h"
+#include "reports/text.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline {
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// Three seeds, one of which stops at target 20: τ = 1e-4.
+Study uneven_study(bool has_hits) {
+  Study study;
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    study.runs.push_back(record_of({.seed = seed,
+                                    .hits = seed == 2 ? 21U : 51U,
+                                    .work_per_hit = static_cast<std::int64_t>(2 + 2 * seed)}));
+    if (!has_hits) study.runs.back().hits.reset();
+  }
+  return study;
+}
+
+TEST(Targets, AgreeWithTheTablesAtEachTolerance) {
+  for (const bool has_hits : {true, false}) {
+    const Study study = uneven_study(has_hits);
+    const Comparison c = compare_optimizers(study);
+    const TargetMedians medians = target_medians(c, c.cell(0, 0));
+    for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+      const Spread& work = c.cell(0, 0).work[t];
+      const std::size_t hit = kTolerances[t].hit;
+      EXPECT_EQ(medians.work.at(hit), work.median);
+      const auto reached =
+          std::ranges::count_if(medians.reached, [hit](std::size_t count) { return count > hit; });
+      EXPECT_EQ(static_cast<std::size_t>(reached), work.n - work.unsolved);
+    }
+  }
+}
+
+TEST(Targets, EndWhereTheMedianIsNeverReached) {
+  Study study = uneven_study(true);
+  study.runs[1].hits->iteration.at(10) = -1;  // two of three runs miss target 21
+  study.runs[1].hits->work.at(10) = -1;
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(target_medians(c, c.cell(0, 0)).work.size(), 21U);
+  EXPECT_EQ(target_medians(c, c.cell(0, 0)).reached, (std::vector<std::size_t>{51, 10, 21}));
+}
+
+// By these attributes the page hides what is filtered out.
+TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
+  Study study;
+  for (const char* problem : {"a", "b"})
+    for (const char* optimizer : {"gd", "newton"})
+      study.runs.push_back(record_of({.problem = problem, .optimizer = optimizer}));
+  const std::string page = html_report(compare_optimizers(study));
+  for (const char* part :
+       {"<article class=problem id=problem-1 data-p=1>",
+        "<article class=optimizer id=optimizer-1 data-s=1>", "<tr data-p=1 data-s=1><th>b",
+        "<th scope=col data-p=1>", "<a href=\"#optimizer-1\" data-s=1>"})
+    EXPECT_TRUE(has(page, part)) << part;
+}
+
+TEST(Page, TenThousandRecordsStayBelowEightMegabytes) {
+  constexpr std::size_t kMost = 8'000'000, kProblems = 250, kOptimizers = 40;
+  Study study;
+  for (std::size_t p = 0; p < kProblems; ++p)
+    for (std::size_t s = 0; s < kOptimizers; ++s)
+      study.runs.push_back(record_of({.problem = "problem-" + std::to_string(p),
+                                      .optimizer = "optimizer-" + std::to_string(s),
+                                      .hits = 20 + (7 * p + 3 * s) % 32,
+                                      .work_per_hit = static_cast<std::int64_t>(5 + p + 11 * s)}));
+  EXPECT_EQ(study.runs.size(), 10'000U);
+  EXPECT_LT(html_report(compare_optimizers(study)).size(), kMost);
+}
+
+}  // namespace
+}  // namespace isoline
