@@ -150,10 +150,17 @@ std::vector<Real> reals_of(const JsonView& list) {
   return values;
 }
 
+struct JsonReader::Parser {
+  simdjson::dom::parser parser;
+};
+
+JsonReader::JsonReader() : parser_(std::make_unique<Parser>()) {}
+JsonReader::~JsonReader() = default;
+
 // What is wrong and where is told by the parser that knows.
 JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
   element root;
-  const simdjson::error_code error = parser_.parse(text).get(root);
+  const simdjson::error_code error = parser_->parser.parse(text).get(root);
   if (error == simdjson::SUCCESS) return JsonView(root);
   parse_json(text, origin);
   throw UsageError(fmt::format("{} is no JSON: {}", origin, simdjson::error_message(error)));

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -59,13 +60,17 @@ class JsonView {
 Real real_of(const JsonView& value);  // also "inf", "-inf" and "nan"
 std::vector<Real> reals_of(const JsonView& list);
 
-// Keeps its buffers from text to text: one a thread.
+// Keeps its buffers from text to text: one a thread. The parser stays in json_view.cpp: simdjson
+// lays it out otherwise where a file is compiled with threads than where it is not.
 class JsonReader {
  public:
+  JsonReader();
+  ~JsonReader();
   JsonView parse(const std::string& text, const std::string& origin);
 
  private:
-  simdjson::dom::parser parser_;
+  struct Parser;
+  std::unique_ptr<Parser> parser_;
 };
 
 }  // namespace isoline

@@ -11,10 +11,9 @@
 namespace isoline {
 namespace {
 
-constexpr const char* kText =
-    R"({"integer":-7,"large":18446744073709551615,"real":5.266142885157513e-10,"text":"½ \"quoted\"",)"
-    R"("truth":true,"nothing":null,"list":[0,1,2],"reals":[1.0,"inf","-inf","nan",3],)"
-    R"("lists":{"b":[1],"a":[]},"words":["x","y"]})";
+constexpr const char* kText = R"({"integer":-7,"large":18446744073709551615,
+  "real":5.266142885157513e-10,"text":"½ \"quoted\"","truth":true,"nothing":null,"list":[0,1,2],
+  "reals":[1.0,"inf","-inf","nan",3],"lists":{"b":[1],"a":[]},"words":["x","y"]})";
 
 // What was thrown, or nothing.
 template <class Action>
