@@ -15,7 +15,7 @@ namespace isoline {
 namespace {
 
 constexpr double kRoundSeconds = 5e-5;  // of forward solves: two hundred readings of the clock
-constexpr double kOracleSeconds = 5e-3, kLongOracleSeconds = 5e-2, kCallSeconds = 1;
+constexpr double kOracleSeconds = 5e-3, kLongOracleSeconds = 5e-2, kMatrixSeconds = 1e-2;
 constexpr std::size_t kMostRounds = 31, kFewRounds = 3;
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
 
@@ -65,6 +65,11 @@ void ask(Oracle oracle, const Problem& problem, Point& at, Room& room) {
     case Oracle::truth:  // nothing is computed
       return;
   }
+}
+
+bool is_matrix(Oracle oracle) {
+  return oracle == Oracle::jacobian || oracle == Oracle::hessian || oracle == Oracle::curvature ||
+         oracle == Oracle::sensitivity;
 }
 
 // Of the processor: what others take of a busy machine does not count.
@@ -128,7 +133,8 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   for (std::size_t kind = 1; kind < kOracles; ++kind) {
     const auto oracle = static_cast<Oracle>(kind);
     const double expected = measured.forward_seconds * static_cast<double>(declared[kind]);
-    if (!offered.contains(oracle) || oracle == Oracle::truth || expected > kCallSeconds) continue;
+    if (!offered.contains(oracle) || oracle == Oracle::truth) continue;
+    if (is_matrix(oracle) && expected > kMatrixSeconds) continue;
     const std::function<void()> both = [&] {
       problem.forward(problem.start(), at);
       ask(oracle, problem, at, room);

@@ -9,8 +9,8 @@
 
 namespace isoline {
 
-// Every oracle that the problem offers, at its start. Some 5 ms an oracle; one that would take
-// more than a second a call, as its declared price has it, is left out.
+// Every oracle that the problem offers, at its start. Some 5 ms an oracle; a dense matrix that
+// would take more than 10 ms, as its declared price has it, is left out.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 
 // Whose prices these are: they hold for one build on one processor.

@@ -51,29 +51,32 @@ std::vector<Real> Prices::curve_costs(const Record& record) const {
   std::vector<Real> costs(curve.work.size(), 0);
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     const auto* column = column_of(curve.counts, kind);
+    const Real each = price(record, kind);
     for (std::size_t i = 0; column != nullptr && i < std::min(costs.size(), column->size()); ++i)
-      costs[i] += price(record, kind) * Real((*column)[i]);
+      costs[i] += each * Real((*column)[i]);
   }
   return costs;
 }
 
 std::vector<Real> Prices::hit_costs(const Record& record) const {
   const Hits& hits = *record.hits;
-  std::vector<Real> costs(hits.iteration.size(), kNever), curve;
+  const std::size_t n = hits.iteration.size();
+  std::vector<Real> costs(n, 0), curve;
   const bool is_read_off = are_measured() && hits.counts.empty();
   if (is_read_off) curve = curve_costs(record);
-  for (std::size_t j = 0; j < costs.size(); ++j) {
-    if (hits.iteration[j] < 0) continue;
-    if (!are_measured() || (is_read_off && curve.empty())) {
+  for (std::size_t kind = 0; kind < kOracles && are_measured(); ++kind) {
+    const auto* column = column_of(hits.counts, kind);
+    const Real each = price(record, kind);
+    for (std::size_t j = 0; column != nullptr && j < std::min(n, column->size()); ++j)
+      costs[j] += each * Real((*column)[j]);
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    if (hits.iteration[j] < 0)
+      costs[j] = kNever;
+    else if (!are_measured() || (is_read_off && curve.empty()))
       costs[j] = Real(hits.work[j]);
-    } else if (is_read_off) {
+    else if (is_read_off)
       costs[j] = between(record.curve.work, curve, Real(hits.work[j]));
-    } else {
-      costs[j] = 0;
-      for (std::size_t kind = 0; kind < kOracles; ++kind)
-        if (const auto* column = column_of(hits.counts, kind); column && j < column->size())
-          costs[j] += price(record, kind) * Real((*column)[j]);
-    }
   }
   return costs;
 }

@@ -44,8 +44,8 @@ const MeasuredPrice* price_of(const Sheet& sheet, std::string_view oracle) {
 
 TableCell price_cell(const MeasuredPrice* price) {
   if (price == nullptr) return "";
-  return {fmt::format("{} : {:.3g} [{:.3g}–{:.3g}]", price->declared, price->price, price->low,
-                      price->high),
+  return {fmt::format("{} : {} [{}–{}]", price->declared, figure(price->price), figure(price->low),
+                      figure(price->high)),
           {{"declared", Real(price->declared)},
            {"measured", price->price},
            {"low", price->low},
@@ -62,8 +62,8 @@ struct Farthest {
     const Real away = std::abs(std::log(price.price / Real(price.declared)));
     if (away <= distance) return;
     distance = away;
-    words = fmt::format("{} of {}, declared {}, measured {:.3g}", price.oracle, problem,
-                        price.declared, price.price);
+    words = fmt::format("{} of {}, declared {}, measured {}", price.oracle, problem, price.declared,
+                        figure(price.price));
   }
 };
 
@@ -144,8 +144,7 @@ StatisticTable prices_table(const Comparison& c) {
     table.row_subjects.push_back({std::nullopt, p});
     const std::string name = shown_spec(problem.spec);
     const Real microseconds = 1e6 * problem.sheet->prices->forward_seconds;
-    std::vector<TableCell> row = {
-        name, {fmt::format("{:.3g}", microseconds), {{"microseconds", microseconds}}}};
+    std::vector<TableCell> row = {name, {figure(microseconds), {{"microseconds", microseconds}}}};
     for (const std::string_view oracle : oracles)
       row.push_back(price_cell(price_of(*problem.sheet, oracle)));
     for (const MeasuredPrice& price : problem.sheet->prices->oracles) {

@@ -49,6 +49,20 @@ TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
   }
 }
 
+TEST(Prices, OfMatricesAreLeftOutWhereOneWouldTakeTooLong) {
+  const Json grid{{"N", 64}};  // 4096 unknowns: a Jacobian of 128 MiB
+  const Problem problem = make_problem(catalog(), request_of("poisson", grid).problem, 0);
+  const MeasuredPrices measured = measure_prices(problem, "b");
+  const auto has = [&](const char* oracle) {
+    return std::ranges::find(measured.oracles, oracle, &MeasuredPrice::oracle) !=
+           measured.oracles.end();
+  };
+  for (const char* product : {"pullback", "pushforward", "hessian_product", "inverse"})
+    EXPECT_TRUE(has(product)) << product;
+  for (const char* matrix : {"jacobian", "hessian", "curvature", "sensitivity"})
+    EXPECT_FALSE(has(matrix)) << matrix;
+}
+
 // y = x after so many additions forward, and twenty times as many back.
 class Laborious final : public DensePhysics {
  public:

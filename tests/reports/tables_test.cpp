@@ -175,7 +175,8 @@ TEST(Tables, EveryFormatPrintsTheSameFigures) {
         << table.id;
     for (const auto& row : table.rows) {
       ASSERT_EQ(row.size(), table.columns.size()) << table.id;
-      for (const auto& [cell, numbers] : row) {
+      for (const TableCell& each : row) {
+        const std::string& cell = each.text;
         const bool is_figure = cell.find_first_not_of("0123456789.e-") == std::string::npos;
         if (!is_figure || cell.empty()) continue;
         for (const std::string* text : {&html, &markdown, &latex})

@@ -34,10 +34,10 @@ def area(s):
     return float(integrate.trapezoid(height, fine) / 6)
 
 
-def signed_rank(a, b):
-    big = np.where(np.isfinite(costs), np.log(np.where(np.isfinite(costs), costs, 1)), 1e6)
-    d = big[:, a] - big[:, b]
-    d = d[d != 0]
+def signed_rank(a, b):  # unsolved by one: infinite, and tied with all others so
+    with np.errstate(invalid="ignore"):
+        d = np.log(costs[:, a]) - np.log(costs[:, b])
+    d = d[~np.isnan(d) & (d != 0)]
     ranks = stats.rankdata(np.abs(d)) * np.sign(d)
     test = stats.permutation_test((ranks,), lambda x, axis: np.sum(np.maximum(x, 0), axis=axis),
                                   permutation_type="samples", n_resamples=np.inf, vectorized=True)
