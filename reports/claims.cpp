@@ -157,6 +157,9 @@ void measure_in(Judgement& out, const Json& claim, const Json& set, const ByCell
     scale.push_back(term.value("scale", 1.0));
   }
   out.is_covered = true;
+  for (const Json& term : set.at("terms"))
+    for (const Json& alternative : term)
+      for (const Json& cell : alternative.at("cells")) out.cells.push_back(cell);
   out.measured =
       measure(quantity.at("kind"), samples_of(set, runs, place), at, scale, claim.at("id"));
   if (set.contains("deviation"))

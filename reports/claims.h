@@ -25,7 +25,8 @@ struct Judgement {
   Verdict verdict = Verdict::not_comparable;
   std::string why;  // it is not comparable
   std::optional<Measurement> measured;
-  bool is_covered = false;  // all cells of one of its lengths are among the records
+  std::vector<std::string> cells;  // that decide it, of those there are
+  bool is_covered = false;         // all cells of one of its lengths are among the records
 };
 
 // In the order of the claims. The first set of cells that is complete counts: the longest.

@@ -7,36 +7,22 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/table.h"
-#include "reports/tables.h"
 #include "reports/text.h"
 
 namespace isoline {
 namespace {
 
-// The optimizer that a row or a column is about, as an attribute by which the page filters.
-std::string optimizer_attribute(const Comparison& c, const std::string& name) {
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    if (name == optimizer_text(c, s) || name == shown_spec(c.optimizers[s].label))
-      return fmt::format(" data-s={}", s);
-  return "";
-}
-
-std::string html_of(const Comparison& c, const StatisticTable& table) {
+std::string html_of(const StatisticTable& table) {
   std::string html = fmt::format(
       "<h3 id=\"{}\">{}</h3><p class=reading>{}</p>\n<details><summary>Table</summary><div "
       "class=scroll tabindex=0 role=region aria-label=\"{}\"><table class=sortable><thead><tr>",
       table.id, html_text(table.title), html_text(table.reading), html_text(table.title));
-  std::vector<std::string> about;
-  for (const std::string& column : table.columns) {
-    about.push_back(optimizer_attribute(c, column));
-    html += fmt::format("<th scope=col{}>{}", about.back(), html_text(column));
-  }
+  for (const std::string& column : table.columns) html += fmt::format("<th>{}", html_text(column));
   html += "<tbody>\n";
   for (const auto& row : table.rows) {
-    html +=
-        fmt::format("<tr{}><th scope=row>{}", optimizer_attribute(c, row[0]), html_text(row[0]));
-    for (std::size_t i = 1; i < row.size(); ++i)
-      html += fmt::format("<td{}>{}", about[i], html_text(row[i]));
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      html += (i == 0 ? "<th>" : "<td>") + html_text(row[i]);
     html += "\n";
   }
   return html +
@@ -110,7 +96,7 @@ std::string statistics_html(const Comparison& c) {
     html += fmt::format("<li>{}</li>", html_text(sentence));
   if (!html.empty())
     html = "<h3>What cannot be concluded</h3><ul class=remarks>" + html + "</ul>\n";
-  for (const StatisticTable& table : c.tables) html += html_of(c, table);
+  for (const StatisticTable& table : c.tables) html += html_of(table);
   return html;
 }
 
