@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+#include <unordered_map>
 
 #include "reports/contour.h"
 #include "reports/curves.h"
@@ -178,11 +181,33 @@ std::string problem_json(const Comparison& c, std::size_t p) {
   return text + "}";
 }
 
+// {"id": [optimizers, problems]}: what the cells that decide a claim are about.
+std::string claims_about(const Comparison& c) {
+  std::unordered_map<std::string_view, const Run*> by_cell;
+  for (const Run& run : c.runs) by_cell.emplace(run.record->cell, &run);
+  const auto indices = [](const std::set<std::size_t>& all) {
+    return list(all, [](std::size_t index) { return std::to_string(index); });
+  };
+  std::string text = "{";
+  for (const Judgement& judgement : c.claims) {
+    std::set<std::size_t> optimizers, problems;
+    for (const std::string& cell : judgement.cells)
+      if (const auto at = by_cell.find(cell); at != by_cell.end()) {
+        optimizers.insert(at->second->optimizer);
+        problems.insert(at->second->problem);
+      }
+    text += fmt::format("{}{}:[{},{}]", text.size() > 1 ? "," : "", quoted(judgement.id),
+                        indices(optimizers), indices(problems));
+  }
+  return text + "}";
+}
+
 }  // namespace
 
 std::string page_data(const Comparison& c, const std::vector<Figure>& figures) {
   std::string text = fmt::format(
-      "{{\"optimizers\":{},\"families\":{},\"privileges\":{},\"figures\":{},\"problems\":[",
+      "{{\"optimizers\":{},\"families\":{},\"privileges\":{},\"claims\":{},\"figures\":{},"
+      "\"problems\":[",
       list(c.optimizers,
            [](const OptimizerAxis& optimizer) { return quoted(shown_spec(optimizer.label)); }),
       list(c.optimizers,
@@ -191,7 +216,7 @@ std::string page_data(const Comparison& c, const std::vector<Figure>& figures) {
            [](const OptimizerAxis& optimizer) {
              return quoted(fmt::format("{}", fmt::join(optimizer.privileges, ", ")));
            }),
-      figures_json(figures));
+      claims_about(c), figures_json(figures));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (p > 0) text += ',';
     text += problem_json(c, p);

@@ -6,16 +6,19 @@
 #include <map>
 
 #include "core/random.h"
-#include "reports/orders.h"
 
 namespace isoline {
 namespace {
 
+// Median work to the tightest tolerance, of those compared where it was asked of them.
 Costs costs_among(const Comparison& c, bool is_open) {
-  Costs costs = costs_of(c, &Cell::work);
-  for (auto& row : costs)
+  Costs costs;
+  for (const auto& row : c.cells) {
+    costs.emplace_back(row.size());
     for (std::size_t s = 0; s < row.size(); ++s)
-      if (is_open && !c.optimizers[s].privileges.empty()) row[s].reset();
+      if (row[s].planned > 0 && !(is_open && !c.optimizers[s].privileges.empty()))
+        costs.back()[s] = row[s].work[kTightest].median;
+  }
   return costs;
 }
 

@@ -109,6 +109,19 @@ function fillCard(card, isAsked) {
       element('dl', {}, element('dt', {}, 'by how much'), much, element('dt', {}, 'how sure'), sure), podiumOf(standings));
 }
 
+function fillGround(ground) {
+  const [problems, , runs, failed] = ground.querySelectorAll('.tiles li'), shown = shownOf('p');
+  const cells = shown.flatMap((p) => shownCells(DATA.problems[p])), sum = (count) => cells.reduce((all, cell) => all + count(cell), 0);
+  problems.replaceChildren(element('b', {}, String(shown.length), element('small', {}, `/${KINDS.p.names.length}`)), 'problems shown');
+  runs.replaceChildren(element('b', {}, String(sum((cell) => cell.reached.length))), 'runs that apply');
+  failed.replaceChildren(element('b', {}, String(sum((cell) => cell.failed))), 'failed');
+  failed.className = sum((cell) => cell.failed) > 0 ? 'bad' : '';
+  const limit = isFiltered()
+      ? 'What was left out was chosen, not drawn, and perhaps after its results were seen: an order among the rest is no evidence for problems or methods beyond them. '
+      : `Another tolerance than the report's own, 1e-6, was chosen${view.target === 5 || view.target === 15 ? '' : ', and is in none of its tables'}: an order that changes with it is no order. `;
+  ground.querySelector('p').replaceChildren(limit, element('a', {href: '#statistics'}, 'All limits'), '.');
+}
+
 function makeGlance(glance) {
   const whole = [...glance.children].map((card) => card.cloneNode(true));
   let isWhole = true;
@@ -123,6 +136,6 @@ function makeGlance(glance) {
       card.querySelector('h3').textContent = card.dataset.who === 'all' ? `Of the ${count} shown` : `Of the ${count} shown that see no more than they are given`;
       fillCard(card, isAsked);
     }
-    glance.querySelector('.ground').prepend(element('p', {className: 'alert'}, `${shownOf('p').length} of ${KINDS.p.names.length} problems are shown, to τ = ${tauName(view.target)}.`));
+    fillGround(glance.querySelector('.ground'));
   });
 }

@@ -3,9 +3,10 @@
 
 const DATA = JSON.parse(document.getElementById('data').textContent);
 const SHOWN_AT_FIRST = 8;
-const COLOURS = {  // Okabe and Ito (2008), told apart by colour-blind readers too
-  light: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#5b4bb5', '#555555'],
-  dark: ['#4aa8e8', '#f0803c', '#2cc295', '#e09cc2', '#f2b632', '#8fd0f7', '#a394f0', '#b8b8b8'],
+// Near Okabe and Ito (2008), moved apart until every two differ to readers with any colour blindness.
+const COLOURS = {
+  light: ['#1a4796', '#9a3d04', '#0d8b59', '#ce97af', '#f29102', '#07b7ff', '#04014f', '#6a556f'],
+  dark: ['#587ba7', '#c65a00', '#14c56f', '#f1c8cd', '#ffa50e', '#b7c7ff', '#c562f8', '#887e7b'],
 };
 const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3], [14, 4]];
 const MARKERS = ['circle', 'rect', 'triangle', 'rectRot', 'crossRot'];

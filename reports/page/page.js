@@ -192,4 +192,5 @@ liveProfile(document.getElementById('profile'));
 document.querySelectorAll('article.problem').forEach(liveProblem);
 document.querySelectorAll('figure.panel').forEach(liveFigure);
 document.querySelectorAll('svg.dots').forEach((plot) => live(plot, () => closeRows(plot)));
+FOLLOWERS.push(hideClaims);
 applyView();

@@ -50,7 +50,8 @@ function curveReading(problem) {
   const solved = works.filter((work) => work < Infinity).length;
   if (ranked.length === 0) return 'No optimizer shown has run on this problem.';
   if (solved === 0) return `None of the ${ranked.length} shown reaches ${tau}.`;
-  const next = solved > 1 ? `; next ${DATA.optimizers[ranked[1].s]}, ${multiple(ratioOf(works[1], works[0]))} as much` : '';
+  const isTied = solved > 1 && works[1] === works[0];
+  const next = isTied ? `, tied with ${DATA.optimizers[ranked[1].s]}` : solved > 1 ? `; next ${DATA.optimizers[ranked[1].s]}, ${multiple(ratioOf(works[1], works[0]))} as much` : '';
   return `Least median work to ${tau} among the shown: ${DATA.optimizers[ranked[0].s]}, ${figure(works[0])} forward solves${next}. ` +
       (solved === ranked.length ? `All ${solved} get there.` : `${ranked.length - solved} of ${ranked.length} do not get there.`);
 }

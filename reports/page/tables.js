@@ -70,6 +70,14 @@ function makeFilter(input, table, output) {
   return apply;
 }
 
+// A claim is of interest as long as one of its optimizers and one of its problems are.
+function hideClaims() {
+  for (const [id, [optimizers, problems]] of Object.entries(DATA.claims)) {
+    const row = document.getElementById(`claim-${id}`), isOf = (kind, all) => all.length === 0 || all.some((index) => isShown(kind, index));
+    if (row !== null) row.hidden = !isOf('s', optimizers) || !isOf('p', problems);
+  }
+}
+
 // Rows of an SVG plot move up into the places of those filtered out.
 function closeRows(plot) {
   const step = Number(plot.dataset.row), rows = [...plot.querySelectorAll('g[data-method]')];

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "benchmarks/catalog.h"
-#include "networks/registry.h"
 #include "reports/mathml.h"
 #include "reports/mathml_letters.h"
 

@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 import browser
+import colours
 
 PROBLEMS = "rosenbrock,square,beale,scaling,helical-valley"
 OPTIMIZERS = "gd,adam,newton,gauss-newton,sip,ceres-lm,nlopt-bobyqa"
@@ -173,6 +174,13 @@ class Page(unittest.TestCase):
         self.browser.press("escape")
         self.assertEqual(self.browser.run("return document.activeElement.tagName"), "SUMMARY")
         self.assertFalse(self.browser.run("return document.querySelector('.pick').open"))
+
+    def test_colours_differ_to_readers_who_see_fewer_of_them(self):
+        told_apart = 20  # in Lab; 2.3 is just noticeable side by side, lines are thin and apart
+        for theme, palette in self.browser.run("return COLOURS").items():
+            for vision in colours.VISIONS:
+                self.assertGreater(colours.least_distance(palette, vision), told_apart,
+                                   f"{theme}, {vision}")
 
     def test_every_cell_offers_the_command_that_repeats_it(self):
         script = """document.getElementById('cells').scrollIntoView({behavior: 'instant'});
