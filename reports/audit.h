@@ -9,6 +9,8 @@
 
 namespace isoline {
 
+struct Comparison;
+
 struct AuditColumn {
   const char* heading;
   const char* meaning;  // for a reader who meets it first
@@ -24,6 +26,9 @@ std::vector<AuditReading> audit_readings(const std::vector<AuditedOptimizer>& al
 
 // Empty where nothing was audited.
 std::string audit_html(const std::vector<AuditedOptimizer>& all);
+// Its rows say by data-s which optimizers of the comparison they are about, for the page's filters;
+// by none where it has none of that name.
+std::string audit_html(const Comparison& comparison);
 std::string audit_markdown(const std::vector<AuditedOptimizer>& all);
 std::string audit_latex(const std::vector<AuditedOptimizer>& all);
 std::string audit_terminal(const std::vector<AuditedOptimizer>& all);
@@ -33,7 +38,11 @@ struct DotSeries {
   std::string name;
   std::vector<Real> values;  // one a row; not-a-number is not drawn
 };
-std::string dot_plot(const std::string& title, const std::vector<std::string>& rows,
+struct DotRow {
+  std::string name;
+  std::string attributes;  // of its marks, as HTML
+};
+std::string dot_plot(const std::string& title, const std::vector<DotRow>& rows,
                      const std::vector<DotSeries>& series, const std::vector<Real>& ticks);
 
 }  // namespace isoline

@@ -1,10 +1,12 @@
 // The audit on the page: sentences, one plot a property, the table. All of it needs no script.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "reports/audit.h"
+#include "reports/comparison.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -33,7 +35,7 @@ Real decade(Real value) {  // 1e-16 is as small as rounding lets be told
   return std::isnan(value) ? value : std::log10(std::max(value, 1e-16));
 }
 
-std::string exponents_plot(const All& all, const std::vector<std::string>& rows) {
+std::string exponents_plot(const All& all, const std::vector<DotRow>& rows) {
   std::vector<DotSeries> series;
   for (std::size_t i = 0; i < kScalingNames.size(); ++i)
     series.push_back(series_of(all, std::string(kScalingNames[i]), [i](const auto& audited) {
@@ -44,7 +46,7 @@ std::string exponents_plot(const All& all, const std::vector<std::string>& rows)
                   {-1, -0.5, 0, 0.5, 1, 1.5, 2});
 }
 
-std::string deviations_plot(const All& all, const std::vector<std::string>& rows) {
+std::string deviations_plot(const All& all, const std::vector<DotRow>& rows) {
   std::vector<DotSeries> series;
   for (std::size_t i = 0; i < kChangeNames.size(); ++i)
     series.push_back(series_of(all, std::string(kChangeNames[i]),
@@ -53,7 +55,7 @@ std::string deviations_plot(const All& all, const std::vector<std::string>& rows
                   {-16, -12, -8, -4, 0});
 }
 
-std::string orders_plot(const All& all, const std::vector<std::string>& rows) {
+std::string orders_plot(const All& all, const std::vector<DotRow>& rows) {
   const auto order = [](const Approach& approach) {
     return approach.residual <= kMostOrderResidual ? approach.order : kUnknown;
   };
@@ -64,7 +66,7 @@ std::string orders_plot(const All& all, const std::vector<std::string>& rows) {
       {0, 0.5, 1, 1.5, 2, 2.5});
 }
 
-std::string angles_plot(const All& all, const std::vector<std::string>& rows) {
+std::string angles_plot(const All& all, const std::vector<DotRow>& rows) {
   return dot_plot(
       "Angle between promised and made step, degrees", rows,
       {series_of(all, "linear stage", [](const auto& audited) { return audited.linear_angle; }),
@@ -72,7 +74,7 @@ std::string angles_plot(const All& all, const std::vector<std::string>& rows) {
       {0, 15, 30, 45, 60, 75, 90});
 }
 
-std::string oracles_plot(const All& all, const std::vector<std::string>& rows) {
+std::string oracles_plot(const All& all, const std::vector<DotRow>& rows) {
   std::vector<DotSeries> series;
   for (const char* oracle : {"forward", "pullback", "jacobian", "hessian", "inverse", "truth"})
     series.push_back(series_of(all, oracle, [oracle](const AuditedOptimizer& audited) {
@@ -83,7 +85,7 @@ std::string oracles_plot(const All& all, const std::vector<std::string>& rows) {
   return dot_plot("Oracle calls an iteration, as counted", rows, series, {0, 1, 2, 3, 4});
 }
 
-std::string table(const All& all) {
+std::string table(const All& all, const std::vector<DotRow>& rows) {
   std::string html =
       "<div class=\"scroll tall\" tabindex=0 role=region aria-label=\"Audit\"><table "
       "class=sortable><thead><tr><th>optimizer";
@@ -91,8 +93,9 @@ std::string table(const All& all) {
     html +=
         fmt::format("<th title=\"{}\">{}", html_text(column.meaning), html_text(column.heading));
   html += "<tbody>\n";
-  for (const AuditedOptimizer& audited : all) {
-    html += "<tr><th>" + html_text(shown_spec(audited.spec));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const AuditedOptimizer& audited = all[i];
+    html += fmt::format("<tr{}><th>{}", rows[i].attributes, html_text(shown_spec(audited.spec)));
     if (!audited.reason.empty())
       html += fmt::format("<td colspan={}>{}", kAuditColumns.size(), html_text(audited.reason));
     if (audited.reason.empty())
@@ -103,9 +106,33 @@ std::string table(const All& all) {
   return html + "</table></div>\n";
 }
 
+std::string attributes_of(const AuditedOptimizer& audited, const Comparison& comparison) {
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < comparison.optimizers.size(); ++i) {
+    const std::string& label = comparison.optimizers[i].label;
+    if (label.substr(0, label.find('[')) == audited.name) own.push_back(i);
+  }
+  return own.empty() ? "" : fmt::format(" data-s=\"{}\"", fmt::join(own, " "));
+}
+
+std::string section(const All& all, const std::vector<DotRow>& rows) {
+  if (all.empty()) return "<p class=lead>These results hold no audit of properties.</p>";
+  const std::vector<std::string> plots = {exponents_plot(all, rows), deviations_plot(all, rows),
+                                          orders_plot(all, rows), angles_plot(all, rows),
+                                          oracles_plot(all, rows)};
+  std::string html;
+  const std::vector<AuditReading> readings = audit_readings(all);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    html += fmt::format("<p class=reading><b>{}.</b> {}</p>\n", readings[i].property,
+                        html_text(readings[i].sentence));
+    if (i < plots.size()) html += "<details><summary>Plot</summary>" + plots[i] + "</details>\n";
+  }
+  return html + table(all, rows);
+}
+
 }  // namespace
 
-std::string dot_plot(const std::string& title, const std::vector<std::string>& rows,
+std::string dot_plot(const std::string& title, const std::vector<DotRow>& rows,
                      const std::vector<DotSeries>& series, const std::vector<Real>& ticks) {
   const int height = kTop + kRow * static_cast<int>(rows.size()) + kRow;
   std::string legend;
@@ -123,8 +150,8 @@ std::string dot_plot(const std::string& title, const std::vector<std::string>& r
         place(tick, ticks), kTop - kRow / 2, height - kRow, kTop - kRow, figure(tick));
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const int y = kTop + kRow * static_cast<int>(row) + kRow / 2;
-    svg += fmt::format("<text x={} y={} text-anchor=end>{}</text>", kLeft - 14, y,
-                       html_text(rows[row]));
+    svg += fmt::format("<g{}><text x={} y={} text-anchor=end>{}</text>", rows[row].attributes,
+                       kLeft - 14, y, html_text(rows[row].name));
     for (std::size_t i = 0; i < series.size(); ++i) {
       const Real value = series[i].values[row];
       if (std::isnan(value)) continue;
@@ -132,25 +159,22 @@ std::string dot_plot(const std::string& title, const std::vector<std::string>& r
                          place(value, ticks), y, kMarks[i % std::size(kMarks)],
                          html_text(series[i].name), figure(value));
     }
+    svg += "</g>";
   }
   return svg + "</svg></figure>\n";
 }
 
 std::string audit_html(const All& all) {
-  if (all.empty()) return "<p class=lead>These results hold no audit of properties.</p>";
-  std::vector<std::string> rows;
-  for (const AuditedOptimizer& audited : all) rows.push_back(audited.name);
-  const std::vector<std::string> plots = {exponents_plot(all, rows), deviations_plot(all, rows),
-                                          orders_plot(all, rows), angles_plot(all, rows),
-                                          oracles_plot(all, rows)};
-  std::string html;
-  const std::vector<AuditReading> readings = audit_readings(all);
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    html += fmt::format("<p class=reading><b>{}.</b> {}</p>\n", readings[i].property,
-                        html_text(readings[i].sentence));
-    if (i < plots.size()) html += "<details><summary>Plot</summary>" + plots[i] + "</details>\n";
-  }
-  return html + table(all);
+  std::vector<DotRow> rows;
+  for (const AuditedOptimizer& audited : all) rows.push_back({audited.name, ""});
+  return section(all, rows);
+}
+
+std::string audit_html(const Comparison& comparison) {
+  std::vector<DotRow> rows;
+  for (const AuditedOptimizer& audited : comparison.study->audits)
+    rows.push_back({audited.name, attributes_of(audited, comparison)});
+  return section(comparison.study->audits, rows);
 }
 
 }  // namespace isoline

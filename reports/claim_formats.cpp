@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/json.h"
 #include "reports/claims.h"
+#include "reports/comparison.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -51,6 +53,43 @@ Json measurement_json(const Measurement& measured) {
           {"n", measured.n}};
 }
 
+// The places of the runs that decide it.
+std::string attributes_of(const Judgement& judgement, const Comparison& comparison) {
+  const std::set<std::string> cells(judgement.cells.begin(), judgement.cells.end());
+  std::set<std::size_t> problems, optimizers;
+  for (const Run& run : comparison.runs)
+    if (cells.contains(run.record->cell)) {
+      problems.insert(run.problem);
+      optimizers.insert(run.optimizer);
+    }
+  if (problems.empty()) return "";
+  return fmt::format(" data-p=\"{}\" data-s=\"{}\"", fmt::join(problems, " "),
+                     fmt::join(optimizers, " "));
+}
+
+std::string html_table(const std::vector<Judgement>& judgements,
+                       const std::vector<std::string>& attributes) {
+  if (judgements.empty())
+    return "<p class=lead>No published claim is decided by the runs of this report.</p>";
+  std::string html = fmt::format(
+      "<p class=reading>{}</p><div class=scroll tabindex=0 role=region "
+      "aria-label=Claims><table class=sortable><thead><tr><th>claim<th>verdict<th>published"
+      "<th>measured<th>95 %<th>seeds<th>remarks<tbody>\n",
+      html_text(claims_reading(judgements)));
+  for (std::size_t i = 0; i < judgements.size(); ++i) {
+    const Judgement& judgement = judgements[i];
+    html += fmt::format(
+        "<tr id=\"claim-{}\"{}><th title=\"{}\">{}<br><small>{}</small><td>{} {}<td>{}<td>{}<td>{}"
+        "<td>{}<td>{}</tr>\n",
+        html_text(judgement.id), attributes[i], html_text(judgement.quantity),
+        html_text(judgement.sentence), html_text(judgement.source), mark_of(judgement.verdict),
+        name_of(judgement.verdict), html_text(judgement.published),
+        html_text(value_text(judgement)), html_text(interval_text(judgement)),
+        seeds_text(judgement), html_text(remarks_of(judgement)));
+  }
+  return html + "</table></div>\n";
+}
+
 }  // namespace
 
 std::string measured_text(const Judgement& judgement) {
@@ -69,23 +108,14 @@ std::string claims_reading(const std::vector<Judgement>& judgements) {
 }
 
 std::string claims_html(const std::vector<Judgement>& judgements) {
-  if (judgements.empty())
-    return "<p class=lead>No published claim is decided by the runs of this report.</p>";
-  std::string html = fmt::format(
-      "<p class=reading>{}</p><div class=scroll tabindex=0 role=region "
-      "aria-label=Claims><table class=sortable><thead><tr><th>claim<th>verdict<th>published"
-      "<th>measured<th>95 %<th>seeds<th>remarks<tbody>\n",
-      html_text(claims_reading(judgements)));
-  for (const Judgement& judgement : judgements)
-    html += fmt::format(
-        "<tr id=\"claim-{}\"><th title=\"{}\">{}<br><small>{}</small><td>{} {}<td>{}<td>{}<td>{}"
-        "<td>{}<td>{}</tr>\n",
-        html_text(judgement.id), html_text(judgement.quantity), html_text(judgement.sentence),
-        html_text(judgement.source), mark_of(judgement.verdict), name_of(judgement.verdict),
-        html_text(judgement.published), html_text(value_text(judgement)),
-        html_text(interval_text(judgement)), seeds_text(judgement),
-        html_text(remarks_of(judgement)));
-  return html + "</table></div>\n";
+  return html_table(judgements, std::vector<std::string>(judgements.size()));
+}
+
+std::string claims_html(const Comparison& comparison) {
+  std::vector<std::string> attributes;
+  for (const Judgement& judgement : comparison.claims)
+    attributes.push_back(attributes_of(judgement, comparison));
+  return html_table(comparison.claims, attributes);
 }
 
 std::string claims_markdown(const std::vector<Judgement>& judgements) {

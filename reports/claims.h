@@ -13,6 +13,8 @@
 
 namespace isoline {
 
+struct Comparison;
+
 enum class Verdict { reproduced, partly, not_reproduced, not_comparable };
 inline constexpr std::array<std::string_view, 4> kVerdictNames = {
     "reproduced", "partly", "not reproduced", "not comparable"};
@@ -46,6 +48,9 @@ Verdict verdict_of(Real measured, const Json& claim);
 
 std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict
 std::string claims_html(const std::vector<Judgement>& judgements);
+// Its rows say by data-p and data-s which problems and optimizers of the comparison decide them,
+// for the page's filters.
+std::string claims_html(const Comparison& comparison);
 std::string claims_markdown(const std::vector<Judgement>& judgements);  // empty without any
 std::string claims_terminal(const std::vector<Judgement>& judgements);
 Json claims_json(const std::vector<Judgement>& judgements);

@@ -58,16 +58,51 @@ TEST(AuditTable, IsInEveryFormatAndForeignTextIsHarmless) {
     EXPECT_TRUE(has(text, "no power law"));
     EXPECT_TRUE(has(text, "there is no network"));
   }
-  EXPECT_TRUE(has(audit_latex(samples()), "no power law"));
+  const std::string latex = audit_latex(samples());
+  for (const char* part : {"no power law", "kept, 0.25", "2.0 in 4", "2.8", "pullback 10 in 10"})
+    EXPECT_TRUE(has(latex, part)) << part;
   EXPECT_FALSE(has(html, "<b>|x|"));
   EXPECT_FALSE(has(markdown, "<b>|x|"));
   EXPECT_TRUE(has(html, "<svg"));
+}
+
+TEST(AuditTable, SaysWhatDoesNotApplyToWhatTeachesANetwork) {
+  AuditedOptimizer teacher = sample();
+  teacher.network = "mlp";
+  teacher.scalings[2] = {};
+  teacher.deviations[0] = kUnknown;
+  for (const std::size_t column : {2, 3, 4, 6, 7, 8})
+    EXPECT_EQ(kAuditColumns[column].cell(teacher), "does not apply") << column;
+  EXPECT_EQ(kAuditColumns[0].cell(teacher), "1 / 2");
+  EXPECT_TRUE(has(audit_readings({teacher}).back().sentence, "Of gd, which teach a network"));
+}
+
+// The report's optimizers by score: gd, then sip twice with other options.
+TEST(AuditTable, TellsThePageWhichOptimizersARowIsAbout) {
+  const ResultFolder folder;
+  for (const char* optimizer : {"gd", "sip[step=0.5]", "sip[step=0.3]"})
+    folder.add(record_of({.optimizer = optimizer}));
+  AuditedOptimizer sip = sample(), newton = sample();
+  sip.name = "sip", newton.name = "newton";
+  folder.add_file("audit.json", audit_to_json({sample(), newton, sip}).dump());
+  const Study study = read_study({folder.path()});
+  const Comparison comparison = compare_optimizers(study);
+  const std::string html = audit_html(comparison);
+  std::size_t gd = 0;
+  while (comparison.optimizers.at(gd).label != "gd") ++gd;
+  EXPECT_TRUE(has(html, "<tr data-s=\"" + std::to_string(gd) + "\">")) << html;
+  EXPECT_TRUE(has(html, "<g data-s=\"" + std::to_string(gd) + "\">"));
+  EXPECT_TRUE(has(html, gd == 0   ? "data-s=\"1 2\""
+                        : gd == 1 ? "data-s=\"0 2\""
+                                  : "data-s=\"0 1\""));
+  EXPECT_TRUE(has(html, "<g><text")) << "newton is not in the report";
 }
 
 TEST(AuditTable, IsReadForANewcomer) {
   const std::vector<AuditReading> readings = audit_readings(samples());
   ASSERT_EQ(readings.size(), 6U);
   EXPECT_TRUE(has(readings[0].sentence, "grows by s instead for gd"));
+  EXPECT_TRUE(has(readings[0].sentence, "whose Hessian is zero"));
   EXPECT_TRUE(has(readings[2].sentence, "(order 2) for gd"));
   EXPECT_TRUE(has(readings.back().sentence, "gd declares"));
 }

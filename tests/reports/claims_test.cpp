@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "reports/comparison.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline {
@@ -220,6 +221,19 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
   }
   EXPECT_EQ(claims_json(judgements)[0].at("measured").at("value"), 10);
   EXPECT_EQ(claims_markdown({}), "");
+}
+
+TEST(Claims, TellThePageWhichProblemsAndOptimizersDecideThem) {
+  const ResultFolder folder;
+  for (const Record& record : adam_and_sip()) folder.add(record);
+  const Study study = read_study({folder.path()});
+  Comparison comparison = compare_optimizers(study);
+  comparison.claims = {judgement_of({}, study.runs)};
+  EXPECT_EQ(comparison.claims[0].cells.size(), 6U);
+  EXPECT_NE(claims_html(comparison).find("<tr id=\"claim-claim\" data-p=\"0\" data-s=\"0 1\">"),
+            std::string::npos);
+  comparison.claims[0].cells.clear();
+  EXPECT_NE(claims_html(comparison).find("<tr id=\"claim-claim\"><th"), std::string::npos);
 }
 
 }  // namespace
