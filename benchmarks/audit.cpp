@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "benchmarks/audit_problems.h"
-#include "benchmarks/execute.h"
+#include "benchmarks/audit_subject.h"
 #include "benchmarks/isolate.h"
 #include "core/json.h"
 
@@ -17,86 +17,9 @@ namespace isoline {
 namespace {
 
 constexpr double kAuditSeconds = 60;        // an optimizer; nearly all take a hundredth of a second
-constexpr std::int64_t kStepsToMove = 8;    // in which a first step may be rejected
 constexpr std::int64_t kStepsOfPath = 5;    // of invariance: few, so that rounding stays small
 constexpr std::int64_t kStepsOfCount = 10;  // of the oracles
 constexpr std::int64_t kStepsOfApproach = 1000;
-
-OracleSet every_oracle() {
-  OracleSet all;
-  for (std::size_t kind = 0; kind < kOracles; ++kind) all.add(static_cast<Oracle>(kind));
-  return all;
-}
-
-struct Path {
-  std::vector<Vector> x;  // (n) each, the start first
-  OracleCounts counts{};
-  std::int64_t iterations = 0;
-};
-
-// Keeps θ after every step; of a library's solver the trace keeps as many as there is room for.
-class Recorded final : public Optimizer {
- public:
-  Recorded(Optimizer& method, std::vector<Vector>& path) : method_(method), path_(path) {}
-  void start(Meter& f, const Vector& theta) override {
-    if (!reports_iterations()) path_.push_back(theta);
-    method_.start(f, theta);
-  }
-  Status step(Meter& f, Vector& theta) override {
-    const Status status = method_.step(f, theta);
-    if (!reports_iterations()) path_.push_back(theta);
-    return status;
-  }
-  bool reports_iterations() const override { return method_.reports_iterations(); }
-
- private:
-  Optimizer& method_;
-  std::vector<Vector>& path_;
-};
-
-class Subject {
- public:
-  Subject(const Catalog& catalog, const OptimizerEntry& entry, Json options)
-      : catalog_(catalog), entry_(entry), options_(std::move(options)) {}
-
-  std::string why_inapplicable(const Problem& problem) const {
-    return isoline::why_inapplicable(entry_, options_, problem);
-  }
-  OracleSet needs(const Problem& problem) const { return needs_of(entry_, options_, problem); }
-
-  // As far as it comes: a method that throws has gone as far as its trace.
-  Path run(const Problem& problem, std::int64_t iterations) const {
-    const auto trace = std::make_unique<Trace>();  // large
-    Path path;
-    try {
-      const auto method = entry_.make(options_, catalog_.optimizers);
-      Recorded recorded(*method, path.x);
-      Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle(), *trace);
-      Checkpoint checkpoint;
-      drive(recorded, meter, problem.start(), checkpoint);
-    } catch (const std::exception&) {
-    }
-    path.counts = trace->last.counts;
-    path.iterations = trace->last.iteration;
-    if (path.x.empty())
-      for (int i = 0; i < trace->points; ++i)
-        path.x.emplace_back(Eigen::Map<const Vector>(trace->path_x[i], trace->path_inputs));
-    return path;
-  }
-
-  // The first step that is one; nothing where there is none.
-  std::optional<Vector> first_step(const Problem& problem) const {
-    if (!why_inapplicable(problem).empty()) return std::nullopt;
-    for (const Vector& x : run(problem, kStepsToMove).x)
-      if (x != problem.start()) return x - problem.start();
-    return std::nullopt;
-  }
-
- private:
-  const Catalog& catalog_;
-  const OptimizerEntry& entry_;
-  const Json options_;
-};
 
 Vector gradient_at_start(const Problem& problem) {
   Point at;
@@ -143,7 +66,7 @@ Real deviation(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   return longest > 0 ? largest / longest : kUnknown;
 }
 
-void measure_invariance(const Subject& subject, AuditedOptimizer& audited) {
+void measure_input_changes(const Subject& subject, AuditedOptimizer& audited) {
   const std::vector<Vector> path = subject.run(bent_problem(), kStepsOfPath).x;
   for (std::size_t kind = 0; kind < kChanges; ++kind) {
     const Change change = change_of(kind);
@@ -151,9 +74,15 @@ void measure_invariance(const Subject& subject, AuditedOptimizer& audited) {
     for (const Vector& x : subject.run(changed_input(change), kStepsOfPath).x)
       back.push_back(change.forward(x));
     audited.deviations[kind] = deviation(path, back);
-    const std::vector<Vector> other = subject.run(changed_output(change), kStepsOfPath).x;
-    audited.deviations[kChanges + kind] = deviation(path, other);
   }
+}
+
+void measure_output_changes(const Subject& subject, const Problem& problem,
+                            Problem (*changed)(const Change&), AuditedOptimizer& audited) {
+  const std::vector<Vector> path = subject.run(problem, kStepsOfPath).x;
+  for (std::size_t kind = 0; kind < kChanges; ++kind)
+    audited.deviations[kChanges + kind] =
+        deviation(path, subject.run(changed(change_of(kind)), kStepsOfPath).x);
 }
 
 Approach approach(const Subject& subject, const Vicinity& vicinity) {
@@ -176,8 +105,7 @@ Real angle(const Subject& subject, const Composition& composition) {
   return std::atan2(std::abs(cross), made.dot(*promised)) * 180 / std::numbers::pi;
 }
 
-void count_oracles(const Subject& subject, AuditedOptimizer& audited) {
-  const Problem problem = bent_problem();
+void count_oracles(const Subject& subject, const Problem& problem, AuditedOptimizer& audited) {
   const Path path = subject.run(problem, kStepsOfCount);
   const OracleSet declared = subject.needs(problem);
   audited.iterations = path.iterations;
@@ -210,6 +138,29 @@ Json options_without_floors(const OptimizerEntry& entry) {
   return options;
 }
 
+void audit_direct(const Subject& subject, AuditedOptimizer& audited) {
+  audited.scalings = {scaling_law(subject, scaled_loss), scaling_law(subject, scaled_output),
+                      scaling_law(subject, scaled_input), scaling_law(subject, slope)};
+  measure_input_changes(subject, audited);
+  measure_output_changes(subject, bent_problem(), changed_output, audited);
+  audited.regular = approach(subject, regular_vicinity());
+  audited.singular = approach(subject, singular_vicinity());
+  audited.linear_angle = angle(subject, linear_composition());
+  audited.curved_angle = angle(subject, curved_composition());
+  count_oracles(subject, bent_problem(), audited);
+}
+
+// What makes sense where θ is the weights of a network: x is no unknown that could change units,
+// and no θ is the only solution.
+void audit_teacher(const Subject& subject, AuditedOptimizer& audited) {
+  audited.network = kTaughtNetwork;
+  audited.scalings[static_cast<std::size_t>(Scaled::loss)] = scaling_law(subject, taught_loss);
+  audited.scalings[static_cast<std::size_t>(Scaled::output)] = scaling_law(subject, taught_output);
+  audited.deviations.fill(kUnknown);
+  measure_output_changes(subject, taught_problem(), taught_change, audited);
+  count_oracles(subject, taught_problem(), audited);
+}
+
 }  // namespace
 
 AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name) {
@@ -218,15 +169,14 @@ AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name
   const Subject subject(catalog, entry, component.options);
   AuditedOptimizer audited{.name = name, .spec = component.spec};
   audited.reason = subject.why_inapplicable(bent_problem());
-  if (!audited.reason.empty()) return audited;
-  audited.scalings = {scaling_law(subject, scaled_loss), scaling_law(subject, scaled_output),
-                      scaling_law(subject, scaled_input), scaling_law(subject, slope)};
-  measure_invariance(subject, audited);
-  audited.regular = approach(subject, regular_vicinity());
-  audited.singular = approach(subject, singular_vicinity());
-  audited.linear_angle = angle(subject, linear_composition());
-  audited.curved_angle = angle(subject, curved_composition());
-  count_oracles(subject, audited);
+  if (audited.reason.empty()) {
+    audit_direct(subject, audited);
+  } else if (subject.why_inapplicable(taught_problem()).empty()) {
+    audited.reason.clear();
+    audit_teacher(subject, audited);
+  } else {
+    return audited;
+  }
   compare_invariance(entry.is_input_scale_invariant, audited);
   return audited;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "problems/dense_physics.h"
+#include "problems/learning.h"
 
 namespace isoline {
 namespace {
@@ -156,6 +157,24 @@ Composition composition(const Chain& stage) {
           make(whole, kBentStart, kBentSolution)};
 }
 
+Problem taught(Real weight, const Matrix& A, const Vector& b) {
+  constexpr Index kSamples = 8;
+  constexpr Real kReach = 0.3;  // around the solution of the bent problem
+  const Chain chain = joined(bent(), {affine(A, b)});
+  const auto sample = [chain](RandomStream& stream, Index i, Batch& batch) {
+    for (const Index k : {0, 1})
+      batch.truth(k, i) = kBentSolution[k] + stream.uniform(-kReach, kReach);
+    batch.input.col(i) = value_of(bent(), batch.truth.col(i));
+    batch.target.col(i) = value_of(chain, batch.truth.col(i));
+  };
+  return Problem(
+      learn({.mode = "learn", .network = kTaughtNetwork, .batch = kSamples, .data = kSamples},
+            {.inputs = 2, .outputs = 2}, Draw(0, "audit"),
+            {.physics = std::make_unique<ChainPhysics>(chain, 2),
+             .loss = std::make_unique<HalfSquared>(weight),
+             .samples = {.draw = sample}}));
+}
+
 }  // namespace
 
 Vector Change::backward(VectorRef x) const { return Affine::inverse_of(A) * (x - b); }
@@ -208,6 +227,10 @@ Problem changed_input(const Change& x) {
 Problem changed_output(const Change& y) {
   return make(joined(bent(), {affine(y.A, y.b)}), kBentStart, kBentSolution);
 }
+
+Problem taught_loss(Real c) { return taught(c, Matrix::Identity(2, 2), Vector::Zero(2)); }
+Problem taught_output(Real s) { return taught(1, s * Matrix::Identity(2, 2), Vector::Zero(2)); }
+Problem taught_change(const Change& y) { return taught(1, y.A, y.b); }
 
 Vicinity regular_vicinity() {
   return {make(bent(), kBentSolution + Eigen::Vector2d(0.1, -0.08), kBentSolution), kBentSolution};

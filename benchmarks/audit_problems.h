@@ -40,6 +40,14 @@ Problem slope(Real alpha);                // L = αx, of one unknown; y* is one 
 Problem changed_input(const Change& x);   // in x', where x = A x' + b
 Problem changed_output(const Change& y);  // of y' = A y + b, y*' = A y* + b
 
+// The bent problem behind a network, x = N(y*; θ), for methods that teach one: eight fixed samples,
+// which the network sees in the same numbers however y is written.
+inline constexpr const char* kTaughtNetwork = "mlp[layers=6,activation=tanh,precision=double]";
+Problem taught_loss(Real c);
+inline Problem taught_problem() { return taught_loss(1); }
+Problem taught_output(Real s);
+Problem taught_change(const Change& y);
+
 // A start near a solution x*, at which J is regular or singular.
 struct Vicinity {
   Problem problem;

@@ -2,14 +2,12 @@
 // for its grammar; only what differs is parsed and joined. Threads share the files.
 #include "benchmarks/merge.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -17,9 +15,12 @@
 #include <set>
 
 #include "benchmarks/join.h"
+#include "benchmarks/merge_audits.h"
+#include "benchmarks/merge_files.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/record.h"
+#include "core/share.h"
 #include "core/sheet.h"
 
 namespace isoline {
@@ -41,19 +42,6 @@ Groups files_of(const std::vector<fs::path>& folders, const fs::path& part) {
   return groups;
 }
 
-// Without a flush of each: the folder gets its name only after one of all.
-void save(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(fmt::format("cannot write {}", path.string()));
-}
-
-void flush(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  ::syncfs(descriptor), ::close(descriptor);
-}
-
 std::string title_of(const Json& record) {
   const Request request = request_from_json(record.at("request"));
   return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
@@ -72,6 +60,7 @@ class Merge {
     merge_part("components",
                [this](const std::string& name, const Group& files) { sheet(name, files); });
     merge_plans();
+    merge_audits();
     remark(other_provenance_,
            "records agree but for timings and provenance; the latest run's provenance is kept");
     remark(other_sheets_, "component sheets differ between the folders; one of each is kept");
@@ -164,6 +153,14 @@ class Merge {
     save(out_ / "plan.json", plan.dump() + "\n");
   }
 
+  void merge_audits() {
+    AuditUnion audits = unite_audits(folders_);
+    if (!audits.json.is_null()) save(out_ / "audit.json", audits.json.dump(1) + "\n");
+    disputed_audits_ = std::move(audits.disputed);
+    std::ranges::move(audits.conflicts, std::back_inserter(outcome_.conflicts));
+    std::ranges::move(audits.unreadable, std::back_inserter(outcome_.unreadable));
+  }
+
   void read_old_conflicts() {
     for (const fs::path& folder : folders_) {
       if (!fs::exists(folder / "conflicts.json")) continue;
@@ -177,8 +174,9 @@ class Merge {
   }
 
   void write_conflicts() {
-    if (disputed_.empty()) return;
-    const Json json{{"schema", kConflictsSchema}, {"records", disputed_}};
+    if (disputed_.empty() && disputed_audits_.empty()) return;
+    Json json{{"schema", kConflictsSchema}, {"records", disputed_}};
+    if (!disputed_audits_.empty()) json["audits"] = disputed_audits_;
     save(out_ / "conflicts.json", json.dump(1) + "\n");
   }
 
@@ -209,8 +207,9 @@ class Merge {
   fs::path out_;
   const Listener& listener_;
   std::mutex mutex_;
-  std::set<std::string> disputed_;        // by the folders; threads only read it
-  std::set<std::string> newly_disputed_;  // by this merge
+  std::set<std::string> disputed_;         // by the folders; threads only read it
+  std::set<std::string> newly_disputed_;   // by this merge
+  std::set<std::string> disputed_audits_;  // optimizers
   std::atomic<std::size_t> united_{0}, other_provenance_{0}, other_sheets_{0};
   MergeOutcome outcome_;
 };

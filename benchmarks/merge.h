@@ -24,7 +24,7 @@ struct MergeOutcome {
 // folder that has it most often. Of differing timings elsewhere and differing provenance the latest
 // run's stay; a record that a clock or a kill ended gives way to one that ended by itself. Any
 // other difference is a conflict: that record is left out, and `conflicts.json` remembers it, so
-// that a later merge does not choose by accident.
+// that a later merge does not choose by accident. So it is with what was audited of an optimizer.
 MergeOutcome merge_folders(const std::vector<std::filesystem::path>& folders,
                            const std::filesystem::path& out, const Listener& listener = {});
 

@@ -49,6 +49,7 @@ Approach approach_from(const Json& json) {
 }
 
 void read_measurements(const Json& json, AuditedOptimizer& audited) {
+  audited.network = json.value("network", "");
   for (std::size_t i = 0; i < kScalingNames.size(); ++i) {
     const Json& law = json.at("scalings").at(std::string(kScalingNames[i]));
     audited.scalings[i] = {reals(law.at("scales")), power_law_from(law.at("step")),
@@ -75,6 +76,7 @@ bool PowerLaw::has_values() const {
 Json to_json(const AuditedOptimizer& audited) {
   Json json{{"name", audited.name}, {"spec", audited.spec}, {"reason", audited.reason}};
   if (!audited.reason.empty()) return json;
+  if (!audited.network.empty()) json["network"] = audited.network;
   for (std::size_t i = 0; i < kScalingNames.size(); ++i) {
     const ScalingLaw& law = audited.scalings[i];
     json["scalings"][std::string(kScalingNames[i])] = {{"scales", numbers(law.scales)},

@@ -53,7 +53,8 @@ struct Approach {
 
 struct AuditedOptimizer {
   std::string name, spec;
-  std::string reason;  // why nothing was measured; empty if something was
+  std::string reason;   // why nothing was measured; empty if something was
+  std::string network;  // it was taught to, where θ = x makes no sense; else empty
   std::array<ScalingLaw, kScalingNames.size()> scalings;
   std::array<Real, kChangeNames.size()> deviations{};     // of the path, relative to its extent
   Approach regular, singular;                             // J regular, or singular, at x*

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "reports/text.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr const char* kNoLaw = "no power law";
 constexpr const char* kNoStep = "no step";
+constexpr const char* kNoSense = "does not apply";  // to what teaches a network
 
 // Two decimals, without the minus of a zero.
 std::string decimal(Real value) {
@@ -33,7 +35,9 @@ std::string law_cell(const ScalingLaw& law) {
 
 template <Scaled scaled>
 std::string law_of(const AuditedOptimizer& audited) {
-  return law_cell(audited.law(scaled));
+  const ScalingLaw& law = audited.law(scaled);
+  if (!audited.network.empty() && law.scales.empty()) return kNoSense;
+  return law_cell(law);
 }
 
 std::string deviation_text(Real deviation) {
@@ -44,11 +48,13 @@ std::string deviation_text(Real deviation) {
 template <std::size_t first>
 std::string invariance_cell(const AuditedOptimizer& audited) {
   const auto& d = audited.deviations;
+  if (!audited.network.empty() && std::isnan(d[first])) return kNoSense;
   return fmt::format("{}, {}, {}", deviation_text(d[first]), deviation_text(d[first + 1]),
                      deviation_text(d[first + 2]));
 }
 
-std::string approach_text(const Approach& approach) {
+std::string approach_text(const AuditedOptimizer& audited, const Approach& approach) {
+  if (!audited.network.empty()) return kNoSense;
   if (std::isnan(approach.remaining)) return kNoStep;
   if (approach.is_exact && approach.steps == 1) return "one step";
   std::string text = "no order";
@@ -72,6 +78,28 @@ std::string flags_cell(const AuditedOptimizer& audited) {
   return fmt::format("{}", fmt::join(audited.flags, "; "));
 }
 
+std::string latex_part(const char* caption, const std::vector<std::size_t>& columns,
+                       std::span<const AuditedOptimizer> rows) {
+  std::string text = fmt::format(
+      "\\begin{{table}}[p]\n  \\centering\n  \\footnotesize\n  \\caption{{{}}}\n"
+      "  \\begin{{tabular}}{{l{}}}\n    \\toprule\n    optimizer",
+      caption, std::string(columns.size(), 'l'));
+  for (const std::size_t column : columns)
+    text += " & " + latex_text(kAuditColumns[column].heading);
+  text += " \\\\\n    \\midrule\n";
+  for (const AuditedOptimizer& audited : rows) {
+    text += "    " + latex_text(audited.spec);
+    if (!audited.reason.empty())
+      text += fmt::format(" & \\multicolumn{{{}}}{{l}}{{{}}}", columns.size(),
+                          latex_text(audited.reason));
+    if (audited.reason.empty())
+      for (const std::size_t column : columns)
+        text += " & " + latex_text(kAuditColumns[column].cell(audited));
+    text += " \\\\\n";
+  }
+  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n\n";
+}
+
 // Characters, not bytes: what a column of a terminal holds.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(
@@ -93,12 +121,13 @@ const std::vector<AuditColumn> kAuditColumns = {
     {"path under changes of y", "the same for y", invariance_cell<3>},
     {"order at x*",
      "order of convergence where J is regular at the solution, and steps to rounding",
-     [](const AuditedOptimizer& audited) { return approach_text(audited.regular); }},
+     [](const AuditedOptimizer& audited) { return approach_text(audited, audited.regular); }},
     {"order, J singular", "the same where J is singular at the solution",
-     [](const AuditedOptimizer& audited) { return approach_text(audited.singular); }},
+     [](const AuditedOptimizer& audited) { return approach_text(audited, audited.singular); }},
     {"angle",
      "between the step a stage was promised and the step it made: a linear stage, a curved one",
      [](const AuditedOptimizer& audited) {
+       if (!audited.network.empty()) return std::string(kNoSense);
        return angle_text(audited.linear_angle) + ", " + angle_text(audited.curved_angle);
      }},
     {"asked", "calls of each oracle, counted, in so many iterations", asked_cell},
@@ -128,26 +157,25 @@ std::string audit_markdown(const std::vector<AuditedOptimizer>& all) {
   return text + "\n";
 }
 
+// In four tables, so that none is wider than a page.
 std::string audit_latex(const std::vector<AuditedOptimizer>& all) {
-  constexpr std::size_t kLaws = 4;  // the first columns: the others are in the page
+  struct Part {
+    const char* caption;
+    std::vector<std::size_t> columns;
+  };
+  const std::vector<Part> kParts = {
+      {"Exponents of the first step, and of the loss change to first order, as measured.",
+       {0, 1, 2, 3}},
+      {"Deviation of the path under changes of coordinates, diagonal, rotated and affine.", {4, 5}},
+      {"Order of convergence, and angle between the step promised to a stage and the step made.",
+       {6, 7, 8}},
+      {"Calls of each oracle, as counted, and what was declared otherwise.", {9, 10}}};
   constexpr std::size_t kMostRows = 45;
   std::string text;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (i % kMostRows == 0) {
-      text +=
-          "\\begin{table}[p]\n  \\centering\n  \\footnotesize\n  \\caption{Exponents of the first "
-          "step, and of the loss change to first order, as measured.}\n  "
-          "\\begin{tabular}{lllll}\n    \\toprule\n    optimizer & $L \\to cL$ & $y \\to sy$ & $x "
-          "= "
-          "s x'$ & $L = \\alpha x$ \\\\\n    \\midrule\n";
-    }
-    text += "    " + latex_text(all[i].spec);
-    for (std::size_t column = 0; column < kLaws; ++column)
-      text += " & " + (all[i].reason.empty() ? latex_text(kAuditColumns[column].cell(all[i])) : "");
-    text += " \\\\\n";
-    if ((i + 1) % kMostRows == 0 || i + 1 == all.size())
-      text += "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n\n";
-  }
+  for (const Part& part : kParts)
+    for (std::size_t first = 0; first < all.size(); first += kMostRows)
+      text += latex_part(part.caption, part.columns,
+                         std::span(all).subspan(first, std::min(kMostRows, all.size() - first)));
   return text;
 }
 

@@ -9,6 +9,8 @@
 
 namespace isoline {
 
+struct Comparison;
+
 struct AuditColumn {
   const char* heading;
   const char* meaning;  // for a reader who meets it first

@@ -31,6 +31,24 @@ bool has_exponent(const PowerLaw& law, Real exponent) {
   return law.holds() && std::abs(law.exponent - exponent) <= kSame;
 }
 
+// The chapter's L = αx, where the figures and the chapter need not say the same.
+std::string slope_sentence(const All& all) {
+  const auto with = [&](Real exponent) {
+    return listed(names_where(all, [=](const AuditedOptimizer& audited) {
+      return has_exponent(audited.law(Scaled::slope).step, exponent);
+    }));
+  };
+  return fmt::format(
+      "Of the slope L = αx the book’s chapter has the exponents 1 for gradient descent, 0 for "
+      "Adam, "
+      "−1 for the inverse gradient, −κ for half-inverse gradients, and no law for others. Measured "
+      "are 1 for {}; 0 for {}; −1 for {}. That more than the inverse gradient have −1 contradicts "
+      "it only in words: to L alone, whose Hessian is zero, Newton’s method has no step, while "
+      "methods over residuals and inverses are told here y = αx and a target one below, and 1/α is "
+      "the step that reaches it.",
+      with(1), with(0), with(-1));
+}
+
 std::string scaling_sentence(const All& all) {
   const auto sound = names_where(all, [](const AuditedOptimizer& audited) {
     return has_exponent(audited.law(Scaled::input).step, -1);
@@ -45,8 +63,8 @@ std::string scaling_sentence(const All& all) {
   return fmt::format(
       "Write x in a unit s times as large and its numbers shrink by 1/s: a step should do the "
       "same, exponent −1, and does for {}; it grows by s instead for {}, so that what needs a "
-      "large change gets a small one; no power law at all: {}.",
-      listed(sound), listed(wrong), listed(none));
+      "large change gets a small one; no power law at all: {}. {}",
+      listed(sound), listed(wrong), listed(none), slope_sentence(all));
 }
 
 std::string invariance_sentence(const All& all) {
@@ -119,6 +137,13 @@ std::string declaration_sentence(const All& all) {
   for (const AuditedOptimizer& audited : all)
     for (const std::string& flag : audited.flags)
       text += fmt::format("{}{} {}", text.empty() ? "" : "; ", audited.name, flag);
+  const std::vector<std::string> teachers =
+      names_where(all, [](const AuditedOptimizer& audited) { return !audited.network.empty(); });
+  if (!teachers.empty())
+    unmeasured += fmt::format(
+        " Of {}, which teach a network, what is scaled is the loss and y, the path is that of its "
+        "weights, and changes of x, order and angle do not apply: x is not what they step in.",
+        listed(teachers));
   if (text.empty()) text = "Every optimizer measured asks for what it declares, and keeps it";
   return text + "." + unmeasured;
 }

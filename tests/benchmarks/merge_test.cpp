@@ -6,6 +6,7 @@
 #include <map>
 
 #include "benchmarks/resources.h"
+#include "core/audit.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/random.h"
@@ -43,6 +44,20 @@ class Merger {
   int count_ = 0;
 };
 
+AuditedOptimizer audit_of(const std::string& name, Real angle) {
+  return {.name = name, .spec = name, .linear_angle = angle};
+}
+
+// Of six optimizers some, by name; of the sixth no two folders measure the same.
+void add_audit(const ResultFolder& folder, RandomStream& random) {
+  std::vector<AuditedOptimizer> all;
+  for (int i = 0; i < 6; ++i)
+    if (random.uniform() < 0.6)
+      all.push_back(
+          audit_of(std::string(1, static_cast<char>('a' + i)), i == 5 ? random.uniform() : i));
+  folder.add_file("audit.json", audit_to_json(all).dump(1) + "\n");
+}
+
 // A folder of random cells out of twelve: timings, start and provenance differ between folders, and
 // so does the result of cell 11, which is in conflict wherever two folders have it.
 void fill(const ResultFolder& folder, std::uint64_t number) {
@@ -64,6 +79,7 @@ void fill(const ResultFolder& folder, std::uint64_t number) {
     records.push_back(record);
   }
   if (number % 4 != 0) folder.add(plan_of(records));
+  if (number % 5 != 0) add_audit(folder, random);
   folder.add(Sheet{.kind = "problem",
                    .name = "square",
                    .spec = "square",
@@ -178,6 +194,28 @@ TEST(Merge, ADamagedFileIsNamedAndLeftOut) {
   ASSERT_EQ(merged.last.unreadable.size(), 1U);
   EXPECT_NE(merged.last.unreadable[0].find("torn.json"), std::string::npos);
   EXPECT_FALSE(fs::exists(out / "runs" / "torn.json"));
+}
+
+TEST(Merge, UnitesAuditsAndLeavesOutWhatWasMeasuredDifferently) {
+  const ResultFolder a, b;
+  const auto text = [](const std::vector<AuditedOptimizer>& all) {
+    return audit_to_json(all).dump(1) + "\n";
+  };
+  a.add_file("audit.json", text({audit_of("adam", 1), audit_of("gd", 2)}));
+  b.add_file("audit.json", text({audit_of("gd", 3), audit_of("sip", 0)}));
+  Merger merged;
+  const fs::path out = merged({a.path(), b.path()});
+  const std::vector<AuditedOptimizer> all = audit_from_json(read_json(out / "audit.json"));
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].name + all[1].name, "adamsip");
+  ASSERT_EQ(merged.last.conflicts.size(), 1U);
+  EXPECT_NE(merged.last.conflicts[0].find("the audit of gd"), std::string::npos);
+  const Json schema = parse_json(std::string(builtin_schemas().at("conflicts")), "conflicts");
+  EXPECT_EQ(schema_violations(read_json(out / "conflicts.json"), schema),
+            std::vector<std::string>());
+  const fs::path later = merged({out, a.path()});
+  EXPECT_EQ(audit_from_json(read_json(later / "audit.json")).size(), 2U)
+      << "a second merge must not choose either";
 }
 
 TEST(Merge, NeverWritesIntoAFolderThatHoldsSomething) {

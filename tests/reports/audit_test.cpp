@@ -58,16 +58,38 @@ TEST(AuditTable, IsInEveryFormatAndForeignTextIsHarmless) {
     EXPECT_TRUE(has(text, "no power law"));
     EXPECT_TRUE(has(text, "there is no network"));
   }
-  EXPECT_TRUE(has(audit_latex(samples()), "no power law"));
+  const std::string latex = audit_latex(samples());
+  for (const char* part : {"no power law", "kept, 0.25", "2.0 in 4", "2.8", "pullback 10 in 10"})
+    EXPECT_TRUE(has(latex, part)) << part;
   EXPECT_FALSE(has(html, "<b>|x|"));
   EXPECT_FALSE(has(markdown, "<b>|x|"));
   EXPECT_TRUE(has(html, "<svg"));
+}
+
+TEST(AuditTable, SaysWhatDoesNotApplyToWhatTeachesANetwork) {
+  AuditedOptimizer teacher = sample();
+  teacher.network = "mlp";
+  teacher.scalings[2] = {};
+  teacher.deviations[0] = kUnknown;
+  for (const std::size_t column : {2, 3, 4, 6, 7, 8})
+    EXPECT_EQ(kAuditColumns[column].cell(teacher), "does not apply") << column;
+  EXPECT_EQ(kAuditColumns[0].cell(teacher), "1 / 2");
+  EXPECT_TRUE(has(audit_readings({teacher}).back().sentence, "Of gd, which teach a network"));
+}
+
+TEST(AuditTable, TellsThePageWhichMethodARowIsAbout) {
+  AuditedOptimizer sip = sample();
+  sip.name = "sip";
+  const std::string html = audit_html({sample(), sip});
+  for (const char* row : {"<tr data-method=\"gd\">", "<g data-method=\"sip\">"})
+    EXPECT_TRUE(has(html, row)) << row;
 }
 
 TEST(AuditTable, IsReadForANewcomer) {
   const std::vector<AuditReading> readings = audit_readings(samples());
   ASSERT_EQ(readings.size(), 6U);
   EXPECT_TRUE(has(readings[0].sentence, "grows by s instead for gd"));
+  EXPECT_TRUE(has(readings[0].sentence, "whose Hessian is zero"));
   EXPECT_TRUE(has(readings[2].sentence, "(order 2) for gd"));
   EXPECT_TRUE(has(readings.back().sentence, "gd declares"));
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "reports/comparison.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline {
