@@ -13,7 +13,6 @@
 
 namespace isoline {
 
-
 enum class Verdict { reproduced, partly, not_reproduced, not_comparable };
 inline constexpr std::array<std::string_view, 4> kVerdictNames = {
     "reproduced", "partly", "not reproduced", "not comparable"};
