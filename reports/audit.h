@@ -31,6 +31,7 @@ std::string audit_html(const std::vector<AuditedOptimizer>& all);
 std::string audit_html(const Comparison& comparison);
 std::string audit_markdown(const std::vector<AuditedOptimizer>& all);
 std::string audit_latex(const std::vector<AuditedOptimizer>& all);
+Json audit_json(const std::vector<AuditedOptimizer>& all);  // the file's, and what reads it
 std::string audit_terminal(const std::vector<AuditedOptimizer>& all);
 
 // A dot a series in a row an optimizer, as SVG that needs no script.
