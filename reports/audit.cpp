@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/json.h"
 #include "reports/text.h"
 
 namespace isoline {
@@ -177,6 +179,15 @@ std::string audit_latex(const std::vector<AuditedOptimizer>& all) {
       text += latex_part(part.caption, part.columns,
                          std::span(all).subspan(first, std::min(kMostRows, all.size() - first)));
   return text;
+}
+
+Json audit_json(const std::vector<AuditedOptimizer>& all) {
+  Json json = audit_to_json(all);
+  json["readings"] = Json::array();
+  for (const AuditReading& reading :
+       all.empty() ? std::vector<AuditReading>{} : audit_readings(all))
+    json["readings"].push_back({{"property", reading.property}, {"sentence", reading.sentence}});
+  return json;
 }
 
 // In four blocks, so that none is wider than a terminal.

@@ -28,6 +28,7 @@ std::vector<AuditReading> audit_readings(const std::vector<AuditedOptimizer>& al
 std::string audit_html(const std::vector<AuditedOptimizer>& all);
 std::string audit_markdown(const std::vector<AuditedOptimizer>& all);
 std::string audit_latex(const std::vector<AuditedOptimizer>& all);
+Json audit_json(const std::vector<AuditedOptimizer>& all);  // the file's, and what reads it
 std::string audit_terminal(const std::vector<AuditedOptimizer>& all);
 
 // A dot a series in a row an optimizer, as SVG that needs no script.

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "reports/audit.h"
 #include "reports/readings.h"
 #include "reports/report.h"
 #include "reports/tables_formats.h"
@@ -172,6 +173,7 @@ std::string json_report(const Comparison& c) {
                   {"failures", failures_json(c)},
                   {"verdict", verdict(c)},
                   {"claims", claims_json(c.claims)},
+                  {"audit", audit_json(c.study->audits)},
                   {"leader", leader_json(c, c.leader)},
                   {"open_leader", leader_json(c, c.open_leader)},
                   {"optimizers", standings_json(c)},

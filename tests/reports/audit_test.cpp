@@ -99,6 +99,8 @@ TEST(AuditFile, IsReadWithTheStudyAndReportsDoWithoutIt) {
   for (const ResultFolder* folder : {&with, &without, &broken}) folder->add(record_of({}));
   with.add_file("audit.json", audit_to_json(samples()).dump());
   broken.add_file("audit.json", "{\"schema\": \"isoline.audit/1\"}");
+  EXPECT_EQ(audit_json(samples()).at("readings").size(), 6U);
+  EXPECT_EQ(audit_json(samples()).at("optimizers"), audit_to_json(samples()).at("optimizers"));
   const Study study = read_study({without.path(), with.path()}),
               bare = read_study({without.path()}), bad = read_study({broken.path()});
   EXPECT_EQ(study.audits.size(), 2U);
