@@ -10,7 +10,8 @@
 namespace isoline {
 
 // Every oracle that the problem offers, at its start. Some 5 ms an oracle; a dense matrix that
-// would take more than 10 ms, as its declared price has it, is left out.
+// would take more than 10 ms, as its declared price has it, is left out, and what is left when a
+// second has gone.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 
 // Whose prices these are: they hold for one build on one processor.

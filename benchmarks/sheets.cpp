@@ -102,7 +102,7 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
 
 namespace {
 
-constexpr double kSheetSeconds = 30, kPricesSeconds = 10;
+constexpr double kSheetSeconds = 30;
 
 std::optional<MeasuredPrices> stored_prices(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
@@ -128,7 +128,7 @@ std::optional<MeasuredPrices> prices_of(const Catalog& catalog, const Component&
         measured.prices = measure_prices(make_problem(catalog, component, 0), build);
         return to_json(measured).dump();
       },
-      kPricesSeconds);
+      kSheetSeconds);
   if (!text) return std::nullopt;
   return sheet_from_json(parse_json(*text, "prices of " + component.spec)).prices;
 }

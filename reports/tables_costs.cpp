@@ -126,7 +126,8 @@ StatisticTable prices_table(const Comparison& c) {
       .reading = "",
       .caption =
           "What the first call of an oracle at a fresh point takes, in forward solves: declared : "
-          "measured [middle 80 % of the rounds], measured alone on the machine before the runs.",
+          "measured [middle 80 % of the rounds], in processor time, before the runs. Empty: not "
+          "offered, or left out because it takes too long, and counted at its declared price.",
       .columns = {"problem", "forward, µs"},
       .rows = {}};
   std::vector<std::string_view> oracles;
