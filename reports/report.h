@@ -5,7 +5,9 @@
 //   statistics, standings           medians, profiles, who leads and how sure that is
 //   rank_tests, runtimes            tests by ranks; running times, areas, resamples
 //   tables (tables_*)               the tables of statistics, in every format
-//   curves, contour                 what the plots draw
+//   curves, contour, targets        what the plots draw, what the page computes anew
+//   lead                            by how much the first is ahead: the first screen
+//   mathml (mathml_*)               formulas of the sheets, typeset
 //   claims, quantities              what papers say, held against the runs
 //   text, wording, readings         how figures, phrases and whole sentences are written
 //   audit (audit_*)                 the table of measured properties, in each format
