@@ -65,7 +65,7 @@ std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
   return text + "]";
 }
 
-std::string in_base_36(std::uint64_t value) {
+std::string alphanumeric(std::uint64_t value) {
   constexpr std::string_view kDigits = "0123456789abcdefghijklmnopqrstuvwxyz";
   std::string text;
   for (; value > 0 || text.empty(); value /= kDigits.size())
@@ -75,7 +75,7 @@ std::string in_base_36(std::uint64_t value) {
 
 // Twice a median of whole numbers is whole.
 std::string work_code(Real work) {
-  return in_base_36(static_cast<std::uint64_t>(std::llround(2 * work)));
+  return alphanumeric(static_cast<std::uint64_t>(std::llround(2 * work)));
 }
 
 // The very digits that the tables print, as a whole number, and a capital for the power of ten: J
@@ -90,7 +90,7 @@ std::string time_code(Real seconds) {
     digits.erase(point, 1);
   }
   if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return "";
-  return in_base_36(std::stoull(digits)) + static_cast<char>('J' + std::clamp(power, -9, 9));
+  return alphanumeric(std::stoull(digits)) + static_cast<char>('J' + std::clamp(power, -9, 9));
 }
 
 // Medians to the 51 targets, comma-separated; nothing stands for the same as before.

@@ -46,7 +46,7 @@ std::string build_html(const Json& provenance) {
          line("compiler",
               compiler + (compiler.empty() ? "" : "  ") + text_at(provenance, "flags")) +
          line("build", text_at(provenance, "build_type")) +
-         line("instructions", text_at(provenance, "march")) +
+         line("instructions", text_at(provenance, "instruction_set")) +
          line("processor", processor + (cores.empty() ? "" : ", " + cores + " cores")) +
          line("system", text_at(provenance, "system")) +
          line("libraries", libraries_of(provenance));
@@ -69,8 +69,11 @@ std::string provenance_html(const Comparison& c) {
   for (const std::string& command : commands)
     html += fmt::format("<p>Asked for by <code>{}</code></p>\n", html_text(command));
   if (!c.runs.empty())
-    html += fmt::format("<p>One cell again: <code>{}</code></p>\n",
-                        html_text(rerun_command(c.runs[0].record->request)));
+    html += fmt::format(
+        "<p>One cell again: <code>{}</code></p>\n<p>The command of every other cell: <a "
+        "href=\"#details\">All cells</a>, button <i>copy</i>, or column "
+        "<code>command</code> of <code>report.csv</code>.</p>\n",
+        html_text(rerun_command(c.runs[0].record->request)));
   return html;
 }
 

@@ -104,14 +104,14 @@ class Parser {
   }
 
   // ² and ⁻¹, ^ before a group or an atom, * and ' at once behind; ₁ and _ likewise.
-  Piece scripted(Piece base) {
+  Piece scripted(Piece body) {
     const std::string below = script(lowered, U'_');
     const std::string above = script(raised, U'^');
-    if (below.empty() && above.empty()) return base;
+    if (below.empty() && above.empty()) return body;
     const char* tag = below.empty() ? "msup" : above.empty() ? "msub" : "msubsup";
-    base.ml = tagged(tag, base.ml + below + above);
-    base.inner.clear();
-    return base;
+    body.ml = tagged(tag, body.ml + below + above);
+    body.inner.clear();
+    return body;
   }
 
   std::string script(char32_t (*plain)(char32_t), char32_t mark) {

@@ -7,7 +7,9 @@
 //   costs, orders                   equivalent forward solves; ranks, ratios and digits by problem
 //   tables (tables_*)               the tables of statistics, in every format
 //   plots (plots_*, plot_*), frame  the plots of statistics, their numbers and their SVG
-//   curves, contour                 what the plots draw
+//   curves, contour, targets        what the plots draw, what the page computes anew
+//   lead                            by how much the first is ahead: the first screen
+//   mathml (mathml_*)               formulas of the sheets, typeset
 //   claims, quantities              what papers say, held against the runs
 //   text, wording, readings         how figures, phrases and whole sentences are written
 //   audit (audit_*)                 the table of measured properties, in each format

@@ -50,9 +50,9 @@ std::u32string plain(const std::string& text) {
       out += raised(letter);
     else if (lowered(letter) != 0)
       out += lowered(letter);
-    else if (accent(letter) != 0)
+    else if (accent(letter) != 0 && accent(letter) != U'^')  // a hat is a caret in either text
       out += accent(letter);
-    else
+    else if (accent(letter) == 0)
       out += letter;
   }
   return out;

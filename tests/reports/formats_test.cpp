@@ -213,7 +213,8 @@ TEST(Formats, TheSameStudyGivesTheSameBytes) {
 TEST(Rerun, TheCommandAsksForTheCell) {
   Request request = record_of({.problem = "sine[xi=32]", .seed = 7}).request;
   EXPECT_EQ(rerun_command(request),
-            "./isoline run --problem 'sine[xi=32]' --optimizer 'gd' --seeds =7 --iterations 1000 --rates none");
+            "./isoline run --problem 'sine[xi=32]' --optimizer 'gd' --seeds =7 --iterations 1000 "
+            "--rates none");
   request.budget.work = 500;
   EXPECT_TRUE(has(rerun_command(request), " --work 500"));
 }
