@@ -86,10 +86,10 @@ std::string oracles_plot(const All& all, const std::vector<std::string>& rows) {
 std::string table(const All& all) {
   std::string html =
       "<div class=\"scroll tall\" tabindex=0 role=region aria-label=\"Audit\"><table "
-      "class=sortable><thead><tr><th>optimizer";
+      "class=sortable><thead><tr><th scope=col>optimizer";
   for (const AuditColumn& column : kAuditColumns)
-    html +=
-        fmt::format("<th title=\"{}\">{}", html_text(column.meaning), html_text(column.heading));
+    html += fmt::format("<th scope=col title=\"{}\">{}", html_text(column.meaning),
+                        html_text(column.heading));
   html += "<tbody>\n";
   for (const AuditedOptimizer& audited : all) {
     html += fmt::format("<tr data-method=\"{}\"><th scope=row>{}", html_text(audited.name),

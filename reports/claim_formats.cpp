@@ -73,12 +73,14 @@ std::string claims_html(const std::vector<Judgement>& judgements) {
     return "<p class=lead>No published claim is decided by the runs of this report.</p>";
   std::string html = fmt::format(
       "<p class=reading>{}</p><div class=scroll tabindex=0 role=region "
-      "aria-label=Claims><table class=sortable><thead><tr><th>claim<th>verdict<th>published"
-      "<th>measured<th>95 %<th>seeds<th>remarks<tbody>\n",
+      "aria-label=Claims><table class=sortable><thead><tr><th scope=col>claim<th "
+      "scope=col>verdict<th scope=col>published"
+      "<th scope=col>measured<th scope=col>95 %<th scope=col>seeds<th scope=col>remarks<tbody>\n",
       html_text(claims_reading(judgements)));
   for (const Judgement& judgement : judgements)
     html += fmt::format(
-        "<tr id=\"claim-{}\"><th title=\"{}\">{}<br><small>{}</small><td>{} {}<td>{}<td>{}<td>{}"
+        "<tr id=\"claim-{}\"><th scope=row title=\"{}\">{}<br><small>{}</small><td>{} "
+        "{}<td>{}<td>{}<td>{}"
         "<td>{}<td>{}</tr>\n",
         html_text(judgement.id), html_text(judgement.quantity), html_text(judgement.sentence),
         html_text(judgement.source), mark_of(judgement.verdict), name_of(judgement.verdict),

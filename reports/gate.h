@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/share.h"
 #include "reports/differences.h"
 #include "reports/timing.h"
 
@@ -24,6 +25,7 @@ struct GateOptions {
   Real least_noise = kLeastNoise;
   std::vector<std::string> timed;  // beginnings of the keys of cells whose times are judged
   bool is_common_only = false;     // cells that only BASE has do not count
+  Listener listener;               // of the records read
 };
 
 struct Incomparable {

@@ -54,7 +54,7 @@ GateResult compare_reports(const Side& before, const Side& after, const GateOpti
 GateResult compare_with_baseline(const Side& before, const fs::path& after,
                                  const GateOptions& options) {
   const Baseline baseline = baseline_from_json(before.file);
-  const Study study = read_study({after});
+  const Study study = read_study({after}, options.listener);
   GateResult result =
       compare_subjects(baseline.subjects, subjects_of(study, baseline.minima), options);
   result.remarks.push_back("a baseline holds no times: none is judged");
@@ -67,7 +67,7 @@ GateResult compare_folders(const fs::path& before, const fs::path& after,
   std::vector<std::string> remarks;
   std::optional<BestKnown> reference;
   const auto subjects_in = [&](const fs::path& folder) {
-    const Study study = read_study({folder});  // one at a time is in memory
+    const Study study = read_study({folder}, options.listener);  // one at a time is in memory
     remark_on(study, folder, remarks);
     if (!reference) reference.emplace(study);
     return subjects_of(study, *reference);

@@ -20,7 +20,7 @@ namespace {
 
 // Points a line, so that all lines together stay within a few megabytes.
 std::size_t points_per_curve(const Comparison& c) {
-  constexpr std::size_t kAll = 40000, kLeast = 5, kMost = 64;
+  constexpr std::size_t kAll = 40000, kLeast = 4, kMost = 64;
   const std::size_t curves = std::max<std::size_t>(1, c.problems.size() * c.optimizers.size());
   return std::clamp(kAll / curves, kLeast, kMost);
 }

@@ -169,13 +169,16 @@ std::string details_html(const Comparison& c) {
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s, budgets);
   std::string html = fmt::format(
-      "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th>problem<th>"
-      "optimizer<th>runs<br>to 1e-6",
+      "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th "
+      "scope=col>problem<th scope=col>"
+      "optimizer<th scope=col>runs<br>to 1e-6",
       html_text(Json(budgets).dump()));
   for (const char* what : {"work", "time, ms,"})
     for (const Tolerance& tolerance : kTolerances)
-      html += fmt::format("<th>{}<br>to {}", what, tolerance.name);
-  html += "<th>final loss<th>error in x<th>how the runs ended<th>again<tbody>\n";
+      html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);
+  html +=
+      "<th scope=col>final loss<th scope=col>error in x<th scope=col>how the runs ended<th "
+      "scope=col>again<tbody>\n";
   return html + rows + "</table>";
 }
 
@@ -184,7 +187,8 @@ std::string failures_html(const Comparison& c) {
   for (const std::size_t run : c.failures) {
     const Record& record = *c.runs[run].record;
     html += fmt::format(
-        "<tr data-p={} data-s={}><th>{}</th><th>{}</th><td>{}</td><td class=text>{}</td>"
+        "<tr data-p={} data-s={}><th scope=row>{}</th><th scope=row>{}</th><td>{}</td><td "
+        "class=text>{}</td>"
         "<td class=text>{}</td>"
         "<td class=text><code>{}</code></td></tr>\n",
         c.runs[run].problem, c.runs[run].optimizer, html_text(record.request.problem.spec),
@@ -193,13 +197,14 @@ std::string failures_html(const Comparison& c) {
   }
   for (const Unreadable& file : c.study->unreadable)
     html += fmt::format(
-        "<tr><th colspan=3>{}</th><td class=text>unreadable</td><td class=text "
+        "<tr><th scope=row colspan=3>{}</th><td class=text>unreadable</td><td class=text "
         "colspan=2>{}</td></tr>\n",
         html_text(file.file.string()), html_text(file.reason));
   if (html.empty()) return "<p>None: every run ended by a verdict of its own.</p>";
   return "<div class=scroll tabindex=0 role=region aria-label=Failures><table "
-         "class=sortable><thead><tr><th>problem</th><th>optimizer</th>"
-         "<th>seed</th><th>status</th><th>message</th><th>rerun</th></tr></thead><tbody>\n" +
+         "class=sortable><thead><tr><th scope=col>problem</th><th scope=col>optimizer</th>"
+         "<th scope=col>seed</th><th scope=col>status</th><th scope=col>message</th><th "
+         "scope=col>rerun</th></tr></thead><tbody>\n" +
          html + "</tbody></table></div>";
 }
 

@@ -89,9 +89,11 @@ std::string learned_html(const Comparison& c) {
     html += fmt::format(
         "<div data-p={}><h3>{}</h3><p class=reading>{}</p><p class=legend>{}</p><div class=scroll "
         "tabindex=0 role=region "
-        "aria-label=\"Learned\"><table class=sortable><thead><tr><th>optimizer<th>error in "
-        "x<th>loss "
-        "in y<th>iterations<th>ms each<th>runs<th>failed<tbody>\n",
+        "aria-label=\"Learned\"><table class=sortable><thead><tr><th scope=col>optimizer<th "
+        "scope=col>error in "
+        "x<th scope=col>loss "
+        "in y<th scope=col>iterations<th scope=col>ms each<th scope=col>runs<th "
+        "scope=col>failed<tbody>\n",
         learned.problem, html_text(shown_spec(c.problems[learned.problem].spec)),
         html_text(learned.reading), sheet == nullptr ? "" : html_text(sheet->note));
     for (const LearnedRow& row : learned.rows)

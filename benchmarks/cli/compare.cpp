@@ -20,6 +20,7 @@ struct CompareArguments {
 void compare(const CompareArguments& given, Session& session) {
   GateOptions options = given.options;
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
+  options.listener = on_terminal("reading records");
   require(
       options.timed.size() <= kMostTimed,
       fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed, options.timed.size()));
