@@ -9,10 +9,10 @@
 #include <unordered_set>
 
 #include "reports/axes.h"
-#include "reports/plots.h"
+#include "reports/plots/plots.h"
 #include "reports/reached.h"
-#include "reports/standings.h"
-#include "reports/tables.h"
+#include "reports/statistics/standings.h"
+#include "reports/tables/tables.h"
 #include "reports/text.h"
 
 namespace isoline {

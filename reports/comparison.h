@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/claims.h"
-#include "reports/costs.h"
-#include "reports/plot.h"
-#include "reports/statistics.h"
+#include "reports/claims/claims.h"
+#include "reports/plots/plot.h"
+#include "reports/statistics/costs.h"
+#include "reports/statistics/statistics.h"
 #include "reports/study.h"
-#include "reports/table.h"
+#include "reports/tables/table.h"
 
 namespace isoline {
 

@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "reports/audit.h"
+#include "reports/audit/audit.h"
 #include "reports/readings.h"
 #include "reports/report.h"
-#include "reports/tables_formats.h"
+#include "reports/tables/formats.h"
 #include "reports/wording.h"
 
 namespace isoline {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "reports/audit.h"
+#include "reports/audit/audit.h"
 #include "reports/report.h"
-#include "reports/tables_formats.h"
+#include "reports/tables/formats.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "reports/audit.h"
+#include "reports/audit/audit.h"
 #include "reports/learned.h"
 #include "reports/readings.h"
 #include "reports/report.h"
-#include "reports/tables_formats.h"
+#include "reports/tables/formats.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 

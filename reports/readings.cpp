@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "reports/curves.h"
+#include "reports/html/curves.h"
 #include "reports/text.h"
 
 namespace isoline {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/curves.h"
+#include "reports/html/curves.h"
 
 namespace isoline {
 

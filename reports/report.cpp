@@ -3,7 +3,7 @@
 
 #include "core/json.h"
 #include "core/share.h"
-#include "reports/tables_formats.h"
+#include "reports/tables/formats.h"
 
 namespace isoline {
 

@@ -2,19 +2,14 @@
 //
 //   study                           reads the folders
 //   axes, reached, comparison       puts runs into cells and aggregates them: every figure
-//   statistics, standings           medians, profiles, who leads and how sure that is
-//   rank_tests, runtimes            tests by ranks; running times, areas, resamples
-//   costs, orders                   equivalent forward solves; ranks, ratios and digits by problem
-//   tables (tables_*)               the tables of statistics, in every format
-//   plots (plots_*, plot_*), frame  the plots of statistics, their numbers and their SVG
-//   curves, contour, targets        what the plots draw, what the page computes anew
-//   lead                            by how much the first is ahead: the first screen
-//   mathml (mathml_*)               formulas of the sheets, typeset
-//   claims, quantities              what papers say, held against the runs
-//   text, wording, readings         how figures, phrases and whole sentences are written
-//   audit (audit_*)                 the table of measured properties, in each format
-//   csv, json, latex, markdown,     one output format each
-//   terminal, html (html_*, page/)
+//   statistics/                     medians, profiles, ranks, tests, running times, costs, who
+//   leads tables/                         the tables of statistics, in every format plots/ their
+//   plots: numbers and SVG figures/                        the figures of the papers, panel by
+//   panel audit/                          the measured properties, in each format claims/ what
+//   papers say, held against the runs gate/                           what got worse from one
+//   result to another; baselines learned                         what networks have learned text,
+//   wording, readings         how figures, phrases and whole sentences are written csv, json,
+//   latex, markdown,     one output format each terminal, html/ and page/
 #pragma once
 
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "reports/statistics.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline {
 

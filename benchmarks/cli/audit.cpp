@@ -8,7 +8,7 @@
 
 #include "benchmarks/cli/verbs.h"
 #include "core/json.h"
-#include "reports/audit.h"
+#include "reports/audit/audit.h"
 
 namespace isoline {
 namespace {

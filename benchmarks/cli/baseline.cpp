@@ -1,5 +1,5 @@
 // isoline baseline RESULTS: what later results are compared with, as one small file.
-#include "reports/baseline.h"
+#include "reports/gate/baseline.h"
 
 #include <fmt/format.h>
 

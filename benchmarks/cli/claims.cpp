@@ -12,7 +12,7 @@
 #include "benchmarks/runner.h"
 #include "benchmarks/sheets.h"
 #include "core/errors.h"
-#include "reports/claims.h"
+#include "reports/claims/claims.h"
 #include "reports/study.h"
 
 namespace isoline {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "benchmarks/catalog.h"
-#include "reports/mathml.h"
-#include "reports/mathml_letters.h"
+#include "reports/html/mathml.h"
+#include "reports/html/mathml_letters.h"
 
 namespace isoline {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "benchmarks/claims.h"
 #include "core/random.h"
-#include "reports/claims.h"
+#include "reports/claims/claims.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline {

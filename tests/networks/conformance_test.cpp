@@ -51,8 +51,7 @@ TEST_P(EveryNetwork, PullbackIsTheAdjointOfPushforward) {
 // Thousands of kinks, each felt by every sample, lie within any step that single precision
 // resolves: such a network is held to a reference of its own.
 bool are_differences_blurred(const Network& network) {
-  return network.has_kinks() && network.is_single_precision() &&
-         !network.has_independent_samples();
+  return network.has_kinks() && network.is_single_precision() && !network.has_independent_samples();
 }
 
 TEST_P(EveryNetwork, PushforwardIsTheChangeOfForward) {

@@ -1,5 +1,5 @@
 // The audit in reports: the same table in every format, and reports do without it.
-#include "reports/audit.h"
+#include "reports/audit/audit.h"
 
 #include <gtest/gtest.h>
 

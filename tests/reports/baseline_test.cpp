@@ -1,5 +1,5 @@
 // What a repository keeps of results holds later results to the same standard as the records do.
-#include "reports/baseline.h"
+#include "reports/gate/baseline.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/schema.h"
-#include "reports/gate.h"
+#include "reports/gate/gate.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline {

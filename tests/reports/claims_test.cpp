@@ -1,5 +1,5 @@
 // Verdicts on claims against figures worked out by hand, and what false claims come to.
-#include "reports/claims.h"
+#include "reports/claims/claims.h"
 
 #include <gtest/gtest.h>
 

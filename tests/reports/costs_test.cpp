@@ -1,14 +1,14 @@
 // Equivalent forward solves: raw counts at measured prices, and what does not depend on them.
-#include "reports/costs.h"
+#include "reports/statistics/costs.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
+#include "reports/gate/subject.h"
 #include "reports/report.h"
-#include "reports/subject.h"
-#include "reports/tables.h"
+#include "reports/tables/tables.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline {

@@ -1,5 +1,5 @@
 // The papers' figures and the tables of learned problems, from records made by hand.
-#include "reports/figures.h"
+#include "reports/figures/figures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The gate: what is worse is caught, what is the same passes, what cannot be compared says so.
-#include "reports/gate.h"
+#include "reports/gate/gate.h"
 
 #include <gtest/gtest.h>
 

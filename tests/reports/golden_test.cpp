@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/orders.h"
-#include "reports/rank_tests.h"
-#include "reports/runtimes.h"
+#include "reports/statistics/orders.h"
+#include "reports/statistics/rank_tests.h"
+#include "reports/statistics/runtimes.h"
 
 namespace isoline {
 namespace {

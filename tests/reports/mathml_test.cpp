@@ -1,5 +1,5 @@
 // Formulas as MathML: each construction of the sheets, and what is not one.
-#include "reports/mathml.h"
+#include "reports/html/mathml.h"
 
 #include <gtest/gtest.h>
 

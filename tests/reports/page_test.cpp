@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "reports/html/targets.h"
 #include "reports/report.h"
-#include "reports/targets.h"
 #include "reports/text.h"
 #include "tests/reports/fixture.h"
 

@@ -1,5 +1,5 @@
 // The plots of the statistics: hand-computed numbers, and figures that every reader can use.
-#include "reports/plots.h"
+#include "reports/plots/plots.h"
 
 #include <gtest/gtest.h>
 

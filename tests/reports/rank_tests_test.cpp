@@ -1,6 +1,6 @@
 // Tests by ranks against SciPy 1.10.1 and enumeration. Samples: numpy.random.default_rng(7),
 // normal, rounded to three digits.
-#include "reports/rank_tests.h"
+#include "reports/statistics/rank_tests.h"
 
 #include <gtest/gtest.h>
 

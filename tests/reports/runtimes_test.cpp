@@ -1,5 +1,5 @@
 // Running times, areas, ranks and accuracies against hand-computed cases.
-#include "reports/runtimes.h"
+#include "reports/statistics/runtimes.h"
 
 #include <gtest/gtest.h>
 

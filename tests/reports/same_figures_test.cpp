@@ -8,7 +8,7 @@
 
 #include "core/json.h"
 #include "reports/report.h"
-#include "reports/tables_formats.h"
+#include "reports/tables/formats.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline {

@@ -1,5 +1,5 @@
 // Medians with infinities and performance profiles, against hand-computed and independent values.
-#include "reports/statistics.h"
+#include "reports/statistics/statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // The tables of statistics: hand-computed cases, and the same figure in every format.
-#include "reports/tables.h"
+#include "reports/tables/tables.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "reports/report.h"
-#include "reports/tables_formats.h"
+#include "reports/tables/formats.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline {

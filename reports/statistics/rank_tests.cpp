@@ -1,0 +1,165 @@
+// Exact distributions of rank sums, counted out by dynamic programming over doubled midranks, which
+// are whole numbers; probabilities instead of counts, so that nothing overflows.
+#include "reports/statistics/rank_tests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace isoline {
+namespace {
+
+// Twice the midranks: a group of ties shares the mean of its ranks.
+std::vector<std::size_t> doubled_ranks(const std::vector<Real>& values) {
+  std::vector<std::size_t> order(values.size()), ranks(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
+  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+    while (last < order.size() && values[order[last]] == values[order[first]]) ++last;
+    for (std::size_t i = first; i < last; ++i) ranks[order[i]] = first + last + 1;
+  }
+  return ranks;
+}
+
+std::size_t sum_of(const std::vector<std::size_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::size_t{0});
+}
+
+// P(sum of the ranks of n drawn without replacement = s), s = 0 … the greatest sum.
+std::vector<Real> rank_sum_distribution(const std::vector<std::size_t>& ranks, std::size_t n) {
+  const std::size_t most = sum_of(ranks) + 1;
+  std::vector<std::vector<Real>> chance(n + 1, std::vector<Real>(most, 0));
+  chance[0][0] = 1;
+  for (std::size_t seen = 0; seen < ranks.size(); ++seen)
+    for (std::size_t k = std::min(n, seen + 1); k > 0; --k) {
+      // C(seen + 1, k) subsets: those with this rank are a share of k / (seen + 1) of them.
+      const Real with = Real(k) / Real(seen + 1);
+      for (std::size_t s = most; s-- > 0;) {
+        const Real taken = s >= ranks[seen] ? chance[k - 1][s - ranks[seen]] : 0;
+        chance[k][s] = with * taken + (1 - with) * chance[k][s];
+      }
+    }
+  return chance[n];
+}
+
+// P(sum of the ranks with a fair coin's sign + = s).
+std::vector<Real> signed_sum_distribution(const std::vector<std::size_t>& ranks) {
+  std::vector<Real> chance(sum_of(ranks) + 1, 0);
+  chance[0] = 1;
+  for (const std::size_t rank : ranks)
+    for (std::size_t s = chance.size(); s-- > 0;)
+      chance[s] = (chance[s] + (s >= rank ? chance[s - rank] : 0)) / 2;
+  return chance;
+}
+
+Real two_sided(const std::vector<Real>& chance, std::size_t sum) {
+  const auto at = chance.begin() + static_cast<std::ptrdiff_t>(sum);
+  const Real below = std::accumulate(chance.begin(), at + 1, 0.0);
+  const Real above = std::accumulate(at, chance.end(), 0.0);
+  return std::min(1.0, 2 * std::min(below, above));
+}
+
+// Of a sum with this mean and variance, in the unit of doubled ranks: continuity is one unit, ½·2.
+Real two_sided_normal(Real sum, Real mean, Real variance) {
+  if (variance <= 0) return 1;
+  const Real z = std::max(0.0, std::abs(sum - mean) - 1) / std::sqrt(variance);
+  return std::min(1.0, std::erfc(z / std::sqrt(2.0)));
+}
+
+Real sum_of_squares(const std::vector<std::size_t>& values) {
+  Real sum = 0;
+  for (const std::size_t value : values) sum += Real(value) * Real(value);
+  return sum;
+}
+
+// How many of the ordered ratios lie outside the interval at each end, plus one; 0: all do.
+// P(U ≤ k − 1) ≤ (1 − confidence) / 2.
+std::size_t interval_order(std::size_t n, std::size_t m) {
+  constexpr Real kTail = (1 - kConfidence) / 2, kQuantile = 1.959963984540054;  // of 0.975
+  const Real product = Real(n) * Real(m), total = Real(n + m + 1);
+  if (n + m > kExact)
+    return static_cast<std::size_t>(
+        std::max(0.0, product / 2 - kQuantile * std::sqrt(product * total / 12)));
+  std::vector<std::size_t> ranks(n + m);
+  std::iota(ranks.begin(), ranks.end(), 1);
+  const std::vector<Real> chance = rank_sum_distribution(ranks, n);
+  std::size_t k = 0;
+  constexpr Real kRounding = 1e-12;  // of sums of probabilities
+  for (Real below = chance[n * (n + 1) / 2]; below <= kTail + kRounding;
+       below += chance[n * (n + 1) / 2 + k])
+    ++k;
+  return k;
+}
+
+// min over the j ≥ i of factor(j) p_(j), in the order of p.
+template <class Factor>
+std::vector<Real> adjusted(const std::vector<Real>& p, bool from_above, Factor factor) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return p[i]; });
+  std::vector<Real> out(p.size());
+  Real extreme = from_above ? 1 : 0;
+  for (std::size_t step = 0; step < order.size(); ++step) {
+    const std::size_t i = from_above ? order.size() - 1 - step : step;
+    const Real value = std::min(1.0, factor(i) * p[order[i]]);
+    extreme = from_above ? std::min(extreme, value) : std::max(extreme, value);
+    out[order[i]] = extreme;
+  }
+  return out;
+}
+
+}  // namespace
+
+Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b) {
+  if (a.empty() || b.empty()) return 1;
+  std::vector<Real> all = a;
+  all.insert(all.end(), b.begin(), b.end());
+  const std::vector<std::size_t> ranks = doubled_ranks(all);
+  const std::size_t sum =
+      sum_of({ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(a.size())});
+  if (all.size() <= kExact) return two_sided(rank_sum_distribution(ranks, a.size()), sum);
+  const Real n = Real(a.size()), m = Real(b.size()), total = n + m;
+  const Real mean = Real(sum_of(ranks)) / total;
+  const Real spread = sum_of_squares(ranks) / total - mean * mean;
+  return two_sided_normal(Real(sum), n * mean, spread * n * m / (total - 1));
+}
+
+Real signed_rank_p(const std::vector<Real>& differences) {
+  std::vector<Real> sizes;
+  std::vector<bool> is_positive;
+  for (const Real difference : differences) {
+    if (difference == 0 || std::isnan(difference)) continue;
+    sizes.push_back(std::abs(difference));
+    is_positive.push_back(difference > 0);
+  }
+  const std::vector<std::size_t> ranks = doubled_ranks(sizes);
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < ranks.size(); ++i) sum += is_positive[i] ? ranks[i] : 0;
+  if (ranks.size() <= kExact) return two_sided(signed_sum_distribution(ranks), sum);
+  return two_sided_normal(Real(sum), Real(sum_of(ranks)) / 2, sum_of_squares(ranks) / 4);
+}
+
+RatioEstimate ratio_estimate(const std::vector<Real>& a, const std::vector<Real>& b) {
+  std::vector<Real> logs;
+  for (const Real left : a)
+    for (const Real right : b) logs.push_back(std::log(right) - std::log(left));
+  if (logs.empty()) return {};
+  std::ranges::sort(logs);
+  const std::size_t k = interval_order(a.size(), b.size());
+  RatioEstimate estimate{.ratio = std::exp(median_of(logs))};
+  if (k > 0) {
+    estimate.low = std::exp(logs[k - 1]);
+    estimate.high = std::exp(logs[logs.size() - k]);
+  }
+  return estimate;
+}
+
+std::vector<Real> benjamini_hochberg(const std::vector<Real>& p) {
+  return adjusted(p, true, [&](std::size_t i) { return Real(p.size()) / Real(i + 1); });
+}
+
+std::vector<Real> holm(const std::vector<Real>& p) {
+  return adjusted(p, false, [&](std::size_t i) { return Real(p.size() - i); });
+}
+
+}  // namespace isoline
