@@ -25,6 +25,8 @@ void keep_baseline(const BaselineArguments& given) {
     fmt::print("{}", text);
     return;
   }
+  const std::filesystem::path folder = std::filesystem::path(given.out).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder);
   write_text(given.out, text);
   fmt::print("{}: {} cells\n", given.out, study.runs.size());
 }
