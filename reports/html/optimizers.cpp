@@ -48,9 +48,10 @@ Deeds deeds_of(const Comparison& c, std::size_t s) {
       deeds.failed += problem_link(
           c, p, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), failed->message));
     } else if (!work.is_solved()) {
-      deeds.unsolved += problem_link(
-          c, p,
-          fmt::format("{}; least loss {}", status_text(cell.statuses), figure(cell.loss.low)));
+      deeds.unsolved +=
+          problem_link(c, p,
+                       fmt::format("{}; final loss {} at best", status_text(cell.statuses),
+                                   figure(cell.loss.low)));
     }
   }
   return deeds;
