@@ -57,9 +57,12 @@ std::string build_html(const Json& provenance) {
 std::string provenance_html(const Comparison& c) {
   constexpr std::size_t kMostBuilds = 8;
   std::set<std::string> builds, commands;
+  std::set<const Json*> seen;
   for (const Run& run : c.runs) {
-    const Json& provenance = run.record->provenance;
-    if (builds.size() <= kMostBuilds) builds.insert(build_html(provenance));
+    const Provenance& provenance = run.record->provenance;
+    const Json* version = provenance.find("version");  // one in memory for records of one build
+    const bool is_new = version == nullptr || seen.insert(version).second;
+    if (is_new && builds.size() <= kMostBuilds) builds.insert(build_html(provenance));
     if (provenance.is_object() && provenance.contains("run") && commands.size() <= kMostBuilds)
       commands.insert(text_at(provenance["run"], "command"));
   }

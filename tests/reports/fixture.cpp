@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -100,6 +101,16 @@ Plan plan_of(const std::vector<Record>& records) {
     plan.cells.push_back({record.cell, record.request.problem.spec, record.request.optimizer.spec,
                           record.request.seed});
   return plan;
+}
+
+Study study_of(const std::vector<Result>& results) {
+  Study study;
+  for (const auto& [problem, optimizer, per_hit] : results)
+    study.runs.push_back(record_of({.problem = problem,
+                                    .optimizer = optimizer,
+                                    .hits = per_hit == 0 ? 10U : 51U,
+                                    .work_per_hit = std::max(per_hit, 1)}));
+  return study;
 }
 
 }  // namespace isoline

@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/record.h"
 #include "core/sheet.h"
+#include "reports/study.h"
 
 namespace isoline {
 
@@ -38,6 +40,15 @@ struct PlainRun {
 };
 Record record_of(const PlainRun& run);
 Plan plan_of(const std::vector<Record>& records);
+
+// A study of single runs. Work to 1e-6 is 30 times `per_hit`; 0 stands for a run that never gets
+// there.
+struct Result {
+  const char* problem;
+  const char* optimizer;
+  int per_hit;
+};
+Study study_of(const std::vector<Result>& results);
 
 // A study with something of everything: landscapes and paths on `square` and `sine`, learning
 // problems without a declared minimum, privileges, failures, inapplicable and missing cells.

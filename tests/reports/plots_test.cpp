@@ -14,22 +14,6 @@
 namespace isoline {
 namespace {
 
-// Work to 1e-6 is 30 times `per_hit`; 0: never.
-struct Result {
-  const char* problem;
-  const char* optimizer;
-  int per_hit;
-};
-Study study_of(const std::vector<Result>& results) {
-  Study study;
-  for (const auto& [problem, optimizer, per_hit] : results)
-    study.runs.push_back(record_of({.problem = problem,
-                                    .optimizer = optimizer,
-                                    .hits = per_hit == 0 ? 10U : 51U,
-                                    .work_per_hit = std::max(per_hit, 1)}));
-  return study;
-}
-
 // a is best on p, q and r; b is two, four and sixteen times as dear there, and alone on s.
 const Study& four_problems() {
   static const Study study = study_of({{"p", "a", 1},

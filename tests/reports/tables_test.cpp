@@ -16,22 +16,6 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// Work to 1e-6 is 30 times `per_hit`; 0 stands for a run that never gets there.
-struct Result {
-  const char* problem;
-  const char* optimizer;
-  int per_hit;
-};
-Study study_of(const std::vector<Result>& results) {
-  Study study;
-  for (const auto& [problem, optimizer, per_hit] : results)
-    study.runs.push_back(record_of({.problem = problem,
-                                    .optimizer = optimizer,
-                                    .hits = per_hit == 0 ? 10U : 51U,
-                                    .work_per_hit = std::max(per_hit, 1)}));
-  return study;
-}
-
 std::string at(const StatisticTable& table, const std::string& row, const std::string& column) {
   const auto i = std::ranges::find(table.columns, column) - table.columns.begin();
   for (const auto& cells : table.rows)
