@@ -1,7 +1,8 @@
 # isoline_components(folder ENTRY Entry HEADER header CORE files...)
 #
 # Builds library isoline_<folder> from every <folder>/*.cpp and writes the registry that names them:
-# <folder>/heat.cpp must define register_heat(Registry<Entry>&). Files after CORE are compiled only.
+# <folder>/heat.cpp must define register_heat(Registry<Entry>&). Files after CORE, and those of folders
+# below, are compiled only.
 function(isoline_components folder)
   cmake_parse_arguments(PARSE_ARGV 1 "" "" "ENTRY;HEADER" "CORE")
   file(GLOB files CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
@@ -14,6 +15,7 @@ function(isoline_components folder)
     endif()
   endforeach()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/registry.cpp.in registry.cpp @ONLY)
-  add_library(isoline_${folder} STATIC ${files} ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp)
+  file(GLOB parts CONFIGURE_DEPENDS */*.cpp)
+  add_library(isoline_${folder} STATIC ${files} ${parts} ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp)
   add_library(Isoline::${folder} ALIAS isoline_${folder})
 endfunction()

@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 
+#include "core/real.h"
+
 namespace isoline {
 
-using Real = double;
-using Index = Eigen::Index;
+static_assert(std::is_same_v<Index, Eigen::Index>);
+
 using Vector = Eigen::VectorXd;  // (n)
 using Matrix = Eigen::MatrixXd;  // (m, n), column major; a batch holds one sample a column
 

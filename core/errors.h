@@ -1,6 +1,7 @@
 // How a broken contract is reported. Numerical failure is a status, never one of these.
 #pragma once
 
+#include <concepts>
 #include <stdexcept>
 #include <string>
 
@@ -16,8 +17,14 @@ struct NotApplicable : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-inline void require(bool holds, const std::string& law) {
+inline void require(bool holds, const char* law) {
   if (!holds) throw UsageError(law);
+}
+
+// For laws that name what was given: their text is made only where they are broken.
+template <std::invocable Law>
+void require(bool holds, const Law& law) {
+  if (!holds) throw UsageError(law());
 }
 
 }  // namespace isoline

@@ -19,11 +19,11 @@ class Registry {
   void add(Entry entry) {
     const std::string name = entry.name;
     const bool is_new = entries_.emplace(name, std::move(entry)).second;
-    require(is_new, "the " + kind_ + " '" + name + "' is registered twice");
+    require(is_new, [&] { return "the " + kind_ + " '" + name + "' is registered twice"; });
   }
   const Entry& at(const std::string& name) const {
     const auto found = entries_.find(name);
-    require(found != entries_.end(), unknown_name(kind_, name, names()));
+    require(found != entries_.end(), [&] { return unknown_name(kind_, name, names()); });
     return found->second;
   }
   bool contains(const std::string& name) const { return entries_.contains(name); }

@@ -18,13 +18,14 @@ std::vector<std::string> split(std::string_view text, char separator) {
   int depth = 0;
   for (const char letter : text) {
     depth += (letter == '[') - (letter == ']');
-    require(depth >= 0, fmt::format("'{}' closes a bracket that it did not open", text));
+    require(depth >= 0,
+            [&] { return fmt::format("'{}' closes a bracket that it did not open", text); });
     if (letter == separator && depth == 0)
       parts.emplace_back();
     else
       parts.back() += letter;
   }
-  require(depth == 0, fmt::format("'{}' leaves a bracket open", text));
+  require(depth == 0, [&] { return fmt::format("'{}' leaves a bracket open", text); });
   return parts;
 }
 
@@ -49,14 +50,15 @@ std::vector<Spec> crossed(const std::vector<Spec>& specs, const std::string& key
 std::vector<Spec> expand(const std::string& text) {
   const auto open = text.find('[');
   std::vector<Spec> specs{{.name = trim(text.substr(0, open)), .options = {}}};
-  require(!specs[0].name.empty(), fmt::format("'{}' names nothing", text));
+  require(!specs[0].name.empty(), [&] { return fmt::format("'{}' names nothing", text); });
   if (open == std::string::npos) return specs;
-  require(text.ends_with(']'), fmt::format("'{}' does not end with ]", text));
+  require(text.ends_with(']'), [&] { return fmt::format("'{}' does not end with ]", text); });
   const std::string inner = text.substr(open + 1, text.size() - open - 2);
   if (trim(inner).empty()) return specs;
   for (const std::string& option : split(inner, ',')) {
     const auto equals = option.find('=');
-    require(equals != std::string::npos, fmt::format("'{}' in '{}' is no key=value", option, text));
+    require(equals != std::string::npos,
+            [&] { return fmt::format("'{}' in '{}' is no key=value", option, text); });
     specs = crossed(specs, trim(option.substr(0, equals)), split(option.substr(equals + 1), '|'));
   }
   return specs;
@@ -67,7 +69,7 @@ T parse_number(std::string_view text, std::string_view whole, const char* expect
   T value{};
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   require(error == std::errc() && stop == text.data() + text.size(),
-          fmt::format("expected {}, got '{}'", expected, whole));
+          [&] { return fmt::format("expected {}, got '{}'", expected, whole); });
   return value;
 }
 
@@ -82,14 +84,15 @@ std::vector<Spec> parse_specs(std::string_view text) {
 
 Spec parse_spec(std::string_view text) {
   const std::vector<Spec> specs = parse_specs(text);
-  require(specs.size() == 1, fmt::format("expected one component, got '{}'", text));
+  require(specs.size() == 1, [&] { return fmt::format("expected one component, got '{}'", text); });
   return specs[0];
 }
 
 Json options_of(const Spec& spec) {
   Json options = Json::object();
   for (const auto& [key, value] : spec.options) {
-    require(!options.contains(key), fmt::format("{}: {} is given twice", spec.name, key));
+    require(!options.contains(key),
+            [&] { return fmt::format("{}: {} is given twice", spec.name, key); });
     options[key] = value;
   }
   return options;
@@ -115,8 +118,9 @@ std::vector<std::uint64_t> parse_seeds(std::string_view text) {
       require(count > 0, "the number of seeds must be positive, got 0");
       last = count - 1;
     }
-    require(first <= last && last - first < kMost,
-            fmt::format("seeds must rise and be at most a million, got '{}'", text));
+    require(first <= last && last - first < kMost, [&] {
+      return fmt::format("seeds must rise and be at most a million, got '{}'", text);
+    });
     for (std::uint64_t seed = first; seed <= last; ++seed) seeds.push_back(seed);
   }
   return seeds;
@@ -135,7 +139,7 @@ double parse_duration(std::string_view text) {
     }
   const double seconds = unit * parse_number<double>(amount, text, "a time such as 10s, 2m or 1h");
   require(seconds > 0 && std::isfinite(seconds),
-          fmt::format("a time must be positive, got '{}'", text));
+          [&] { return fmt::format("a time must be positive, got '{}'", text); });
   return seconds;
 }
 

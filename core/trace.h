@@ -9,6 +9,7 @@
 #include <limits>
 #include <string_view>
 
+#include "core/ladder.h"
 #include "core/oracle.h"
 #include "core/status.h"
 
@@ -32,7 +33,7 @@ struct TracePoint {
   static constexpr std::int64_t kWindows[2] = {64, 256};
 };
 
-// When the j-th target was first reached: f ≤ f_L + 10^(−j/5) (f₀ − f_L).
+// When the j-th target was first reached: f ≤ f_L + τ_j (f₀ − f_L).
 struct TraceHit {
   std::int64_t iteration = -1, work = 0;  // iteration −1: never
   OracleCounts counts{};
@@ -41,7 +42,6 @@ struct TraceHit {
 
 struct Trace {
   static constexpr int kPoints = 512;  // iterations 0-100, then 32 a decade: enough for 1e14
-  static constexpr int kHits = 51;
   static constexpr int kInputs = 3, kOutputs = 16;  // largest x and y whose path is kept
   static constexpr int kSeries = 4;
   static constexpr int kExhibit = 4096;  // numbers of each array of the exhibit
@@ -51,7 +51,7 @@ struct Trace {
   std::atomic<bool> is_finished{false};
   std::atomic<int> points{0};
   TracePoint point[kPoints];
-  TraceHit hit[kHits];
+  TraceHit hit[kRungs];
   double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
   int path_inputs = 0, path_outputs = 0;  // sizes of x and y in the path; 0: not kept
 

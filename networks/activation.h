@@ -11,7 +11,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 enum class Activation { relu, tanh, sigmoid, gelu };
 
@@ -113,4 +113,4 @@ void multiply_by_bend(Activation kind, FlatRef<Scalar> z, FlatRef<Scalar> a, Fla
   }
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -3,7 +3,7 @@
 
 #include "networks/fourier_operator.h"
 
-namespace isoline {
+namespace isoline::networks {
 namespace {
 
 constexpr auto kGelu = Activation::gelu;
@@ -153,10 +153,12 @@ std::unique_ptr<Network> make_fno(const Json& options, const NetworkShape& shape
   const Index N = shape.grid, padded = N + FourierOperator::kPadding;
   require(N >= 2 && shape.input_channels == 1 && shape.output_channels == 1,
           "fno: it maps one field to another, both on a grid of at least 2×2 cells");
-  require(2 * o.modes <= padded,
-          fmt::format("fno: 2 modes must be at most {}, the cells along an edge with padding, "
-                      "got modes={}",
-                      padded, o.modes));
+  require(2 * o.modes <= padded, [&] {
+    return fmt::format(
+        "fno: 2 modes must be at most {}, the cells along an edge with padding, "
+        "got modes={}",
+        padded, o.modes);
+  });
   return std::make_unique<FourierOperator>(N, o.modes, o.width);
 }
 
@@ -174,4 +176,4 @@ void register_fno(NetworkRegistry& registry) {
                 .make = make_fno});
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

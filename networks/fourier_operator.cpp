@@ -1,7 +1,7 @@
 // What the layers of a Fourier neural operator do: K and its adjoint, mode by mode.
 #include "networks/fourier_operator.h"
 
-namespace isoline {
+namespace isoline::networks {
 namespace {
 
 constexpr Index kChannels = 3;  // the field and both coordinates
@@ -153,4 +153,4 @@ void FourierOperator::descend(Parameters& theta, Index l, const Descent& path, f
   if (!is_level) copy_corners(a, layer(l).edge, to, layer(l - 1).edge, own);
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -11,7 +11,7 @@
 #include "networks/network.h"
 #include "networks/truncated_fourier.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 // Columns with one of ones behind them, in whole vector registers.
 class Field {
@@ -125,4 +125,4 @@ class FourierOperator final : public Network {
   std::vector<Layer> layers_;
 };
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -3,7 +3,7 @@
 
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 class Identity final : public Network {
  public:
@@ -29,4 +29,4 @@ class Identity final : public Network {
   Vector start_;
 };
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -6,7 +6,7 @@
 
 #include "core/convolution.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 using Lane = float __attribute__((vector_size(4 * kChannels)));
 using Wide = double __attribute__((vector_size(8 * kChannels)));  // long sums of lanes
@@ -92,4 +92,4 @@ void store(const Place& place, Index pixel, const T& x) {
   if constexpr (kIsDual<T>) lane(place.tangent, pixel) = x.tangent;
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

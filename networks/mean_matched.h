@@ -9,7 +9,7 @@
 
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 class MeanMatched final : public Network {
  public:
@@ -85,4 +85,4 @@ class MeanMatched final : public Network {
   std::unique_ptr<Network> network_;
 };
 
-}  // namespace isoline
+}  // namespace isoline::networks

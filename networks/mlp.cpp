@@ -7,7 +7,7 @@
 
 #include "networks/perceptron.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 // Forward over reverse (Pearlmutter, 1994): with h = W_lᵀ g_l,
 //   ġ_{l−1} = s'(z) (Ẇ_lᵀ g_l + W_lᵀ ġ_l) + s''(z) ż h,  (∂W_l)˙ = Σ_b ġ_l aᵀ + g_l ȧᵀ
@@ -118,9 +118,12 @@ std::vector<Index> widths_of(const Options& o, const NetworkShape& shape) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), width);
     require(
         error == std::errc{} && end == text.data() + text.size() && 1 <= width && width <= kWidest,
-        fmt::format("mlp: layers must be widths from 1 to {} joined by '-', as in 32-64-32, "
-                    "got '{}'",
-                    kWidest, o.layers));
+        [&] {
+          return fmt::format(
+              "mlp: layers must be widths from 1 to {} joined by '-', as in 32-64-32, "
+              "got '{}'",
+              kWidest, o.layers);
+        });
     widths.push_back(width);
     begin += text.size() + 1;
   }
@@ -155,4 +158,4 @@ void register_mlp(NetworkRegistry& registry) {
                 .make = make_mlp});
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -7,7 +7,7 @@
 
 #include "core/spec.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 void Network::curvature(VectorRef, BatchRef, BatchRef, VectorOut, Workspace&) const {
   throw std::logic_error("this network has no second derivatives");
@@ -52,4 +52,4 @@ std::unique_ptr<Network> make_network(const std::string& text, const NetworkShap
   return entry.make(complete_options(entry.options, spec.name, options_of(spec)), shape);
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

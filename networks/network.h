@@ -14,7 +14,7 @@
 #include "core/registry.h"
 #include "core/workspace.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 // One array of parameters within θ: `rows` by `columns`, column major, from `offset`.
 struct Block {
@@ -97,4 +97,4 @@ std::unique_ptr<Network> make_network(const std::string& spec, const NetworkShap
 
 void register_networks(NetworkRegistry& registry);  // generated: one call a file
 
-}  // namespace isoline
+}  // namespace isoline::networks

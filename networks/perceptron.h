@@ -11,7 +11,7 @@
 #include "networks/activation.h"
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 template <class Scalar>
 class Perceptron final : public Network {
@@ -192,4 +192,4 @@ void Perceptron<Scalar>::pullback(BatchRef u, VectorOut JTu, Workspace& w) const
   JTu = own.gradient.template cast<Real>();
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace isoline {
+namespace isoline::networks {
 namespace {
 
 using ComplexMap = Eigen::Map<Gemm<Complex>::Array>;
@@ -65,4 +65,4 @@ void TruncatedFourier::synthesize(Weights weights, const Spectra& S, Gemm<float>
   product(Form::AH_B, weights == Weights::none ? plain_ : weighted_, room.half, grids, 1);
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -6,7 +6,7 @@
 
 #include "core/product.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 class TruncatedFourier {
  public:
@@ -36,4 +36,4 @@ class TruncatedFourier {
   Gemm<Complex>::Array along_columns_;   // (P, 2M)
 };
 
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -5,9 +5,9 @@
 // exact arithmetic; a convolution's bias, which batch norm removes, has the gradient 0, not noise.
 #include <nlohmann/json.hpp>
 
-#include "networks/unet_passes.h"
+#include "networks/unet/passes.h"
 
-namespace isoline {
+namespace isoline::networks {
 namespace {
 
 class Unet final : public Network {
@@ -77,4 +77,4 @@ void register_unet(NetworkRegistry& registry) {
                 }});
 }
 
-}  // namespace isoline
+}  // namespace isoline::networks

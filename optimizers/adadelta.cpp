@@ -2,7 +2,7 @@
 // (1 − ρ) Δ², θ ← θ − η Δ. The rate η, 1 in the paper, is PyTorch's addition.
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Adadelta {
@@ -38,4 +38,4 @@ void register_adadelta(OptimizerRegistry& registry) {
        .source = "Zeiler (2012), algorithm 1"}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

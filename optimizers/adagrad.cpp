@@ -2,7 +2,7 @@
 // stands outside the root, as in PyTorch.
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Adagrad {
@@ -33,4 +33,4 @@ void register_adagrad(OptimizerRegistry& registry) {
                                     .source = "Duchi, Hazan, Singer (2011), fig. 1"}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -6,7 +6,7 @@
 
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct AdaHessian {
@@ -87,4 +87,4 @@ void register_adahessian(OptimizerRegistry& registry) {
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian_product}}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

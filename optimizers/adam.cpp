@@ -2,7 +2,7 @@
 // θ ← θ − η m̂/(√v̂ + ε), where m̂ = m/(1 − β₁ᵗ) and v̂ = v/(1 − β₂ᵗ).
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Adam {
@@ -41,4 +41,4 @@ void register_adam(OptimizerRegistry& registry) {
        .source = "Kingma, Ba (2015), algorithm 1"}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

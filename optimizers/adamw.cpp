@@ -2,7 +2,7 @@
 // Adam's step. As in PyTorch the decay is multiplied by the rate η.
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Adamw {
@@ -44,4 +44,4 @@ void register_adamw(OptimizerRegistry& registry) {
                                           "toward θ = 0."}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -10,7 +10,7 @@
 
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 using Eigen::Map;
@@ -247,4 +247,4 @@ void register_ceres(OptimizerRegistry& registry) {
   for (const LineSearch& method : kLineSearches) registry.add(entry_of(method));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -7,7 +7,7 @@
 #include "core/decompose.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
@@ -58,4 +58,4 @@ void register_gauss_newton(OptimizerRegistry& registry) {
        .most_rank = 2048}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -1,7 +1,7 @@
 // Steepest descent, Cauchy (1847): θ ← θ − η ∇L.
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct GradientDescent {
@@ -23,4 +23,4 @@ void register_gd(OptimizerRegistry& registry) {
                                             .source = "Cauchy (1847)"}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -9,7 +9,7 @@
 
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 constexpr Real kGrowth = 1.3;  // between the numbers of the iterates kept
@@ -165,4 +165,4 @@ void register_hessian_free(OptimizerRegistry& registry) {
        .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward}}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -9,7 +9,7 @@
 #include "core/product.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 // Squared, σ is known to about 1e-8 of the largest.
@@ -100,4 +100,4 @@ void register_hig(OptimizerRegistry& registry) {
        .revision = 2}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

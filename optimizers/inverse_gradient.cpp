@@ -5,7 +5,7 @@
 #include "core/decompose.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct InverseGradient {
@@ -54,4 +54,4 @@ void register_inverse_gradient(OptimizerRegistry& registry) {
                                       .objection = objection}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

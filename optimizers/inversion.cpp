@@ -7,7 +7,7 @@
 #include "optimizers/lbfgs.h"
 #include "optimizers/saddle_free.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 class ByProblem final : public Inversion {
@@ -151,4 +151,4 @@ std::unique_ptr<Inversion> inversion_by_lbfgs(Real step, Index most_evaluations)
   return std::make_unique<ByLbfgs>(step, most_evaluations);
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

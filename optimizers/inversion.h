@@ -6,7 +6,7 @@
 
 #include "optimizers/meter.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 class Inversion {
  public:
@@ -24,4 +24,4 @@ std::unique_ptr<Inversion> inversion_by_newton(Real step, Real max_loss_change);
 // x̃ = argmin ½‖P(x) − y − η (y* − y)‖² from the current x, by L-BFGS over all samples at once.
 std::unique_ptr<Inversion> inversion_by_lbfgs(Real step, Index most_evaluations);
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

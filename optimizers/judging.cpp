@@ -4,7 +4,9 @@
 
 #include "optimizers/meter.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::Series;
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
@@ -207,4 +209,4 @@ Status Meter::judge(VectorRef theta) {
   return Status::running;
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -13,7 +13,7 @@
 #include "core/decompose.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Kfac {
@@ -143,4 +143,4 @@ void register_kfac(OptimizerRegistry& registry) {
        .objection = objection}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -6,7 +6,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 // f and its gradient at x, both (n).
 using ValueAndGradient = std::function<Real(VectorRef x, VectorOut gradient)>;
@@ -25,4 +25,4 @@ struct LbfgsResult {
 // Moves x to the best point found.
 LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x);
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -11,7 +11,7 @@
 #include "core/decompose.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
@@ -130,4 +130,4 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
                                          .revision = 2}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -1,7 +1,7 @@
 // One forward pass and what is asked of it, each question charged to the meter.
 #include "optimizers/meter.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 void Linearization::cotangent(Matrix& g) const {
   g.resize(point_.y.rows(), point_.y.cols());
@@ -85,4 +85,4 @@ void Linearization::network_pullback(BatchRef w, VectorOut out) {
   meter_->problem_.network_pullback(w, out, point_);
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

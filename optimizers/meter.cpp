@@ -6,7 +6,9 @@
 
 #include <cmath>
 
-namespace isoline {
+#include "core/ladder.h"
+
+namespace isoline::optimizers {
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
@@ -72,9 +74,9 @@ void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
 
 void Meter::reach(Real loss) {
   const Real minimum = problem_.minimum().value_or(kNone);
-  while (targets_met_ < Trace::kHits) {
-    const Real tau = std::pow(10.0, -targets_met_ / 5.0);
-    next_target_ = minimum + tau * (trace_.start_loss - minimum);
+  while (targets_met_ < kRungs) {
+    const auto j = static_cast<std::size_t>(targets_met_);
+    next_target_ = minimum + rung(j) * (trace_.start_loss - minimum);
     if (!(loss <= next_target_)) return;
     TraceHit& hit = trace_.hit[targets_met_++];
     hit.work = work_;
@@ -85,4 +87,4 @@ void Meter::reach(Real loss) {
   next_target_ = kNone;
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -11,7 +11,14 @@
 #include "optimizers/running_mean.h"
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using networks::Block;
+using networks::LayerFactor;
+using problems::Batch;
+using problems::Inverse;
+using problems::Point;
+using problems::Problem;
 
 class Meter;
 
@@ -139,4 +146,4 @@ class Meter {
   Vector judged_gradient_, judged_theta_, previous_;
 };
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -2,7 +2,7 @@
 // of the gradient, as in PyTorch's SGD; for a constant η the iterates are Polyak's.
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Momentum {
@@ -33,4 +33,4 @@ void register_momentum(OptimizerRegistry& registry) {
                                      .source = "Polyak (1964)"}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -3,7 +3,7 @@
 // taken, as in PyTorch's SGD, so that one gradient a step is enough.
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Nesterov {
@@ -35,4 +35,4 @@ void register_nesterov(OptimizerRegistry& registry) {
                                      .note = "θ is the point at which the gradient is taken."}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -1,7 +1,7 @@
 // The network's own step, shared by the methods that work by a proxy loss in x.
 #include "optimizers/network_descent.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 NetworkDescent::NetworkDescent(const OptimizerRegistry& registry, const std::string& spec)
     : registry_(registry), is_automatic_(spec == "auto") {
@@ -23,4 +23,4 @@ void NetworkDescent::approach(const Matrix& found, Proxy proxy, Linearization& a
   rule_->update(gradient_, theta);
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

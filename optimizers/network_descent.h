@@ -8,7 +8,7 @@
 
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 enum class Proxy { l2, l1 };
 
@@ -32,4 +32,4 @@ class NetworkDescent {
   Vector gradient_;  // (n)
 };
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

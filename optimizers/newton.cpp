@@ -4,7 +4,7 @@
 #include "core/decompose.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Newton {
@@ -45,4 +45,4 @@ void register_newton(OptimizerRegistry& registry) {
        .most_unknowns = 2048}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

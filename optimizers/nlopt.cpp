@@ -13,7 +13,7 @@
 #include "optimizers/lbfgs.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 using Eigen::Map;
@@ -247,4 +247,4 @@ void register_nlopt(OptimizerRegistry& registry) {
     registry.add(entry_of(method, Family::nlopt_derivative_free, {Oracle::forward}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -8,7 +8,7 @@
 
 #include "core/spec.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 std::string_view reason_of(Oracle missing) {
@@ -72,9 +72,10 @@ std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
 std::unique_ptr<Descent> make_descent(const OptimizerRegistry& registry, const std::string& text) {
   const Spec spec = parse_spec(text);
   const OptimizerEntry& entry = registry.at(spec.name);
-  require(static_cast<bool>(entry.make_descent),
-          fmt::format("{} steps by more than a gradient and cannot be used inside", spec.name));
+  require(static_cast<bool>(entry.make_descent), [&] {
+    return fmt::format("{} steps by more than a gradient and cannot be used inside", spec.name);
+  });
   return entry.make_descent(complete_options(entry.options, spec.name, options_of(spec)));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -10,7 +10,7 @@
 #include "core/registry.h"
 #include "optimizers/meter.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 // The methods written here: fields are options, State is all that changes.
 template <class M>
@@ -180,4 +180,4 @@ OptimizerEntry rule_entry(OptimizerEntry entry) {
 
 void register_optimizers(OptimizerRegistry& registry);  // generated: one call a file
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -5,7 +5,7 @@
 
 #include "optimizers/network_descent.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Options {
@@ -69,4 +69,4 @@ void register_rescaled(OptimizerRegistry& registry) {
                 }});
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -2,7 +2,7 @@
 // constants are PyTorch's: α = 0.99 where the lecture has 0.9.
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Rmsprop {
@@ -34,4 +34,4 @@ void register_rmsprop(OptimizerRegistry& registry) {
                                     .source = "Tieleman, Hinton (2012), lecture 6e"}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

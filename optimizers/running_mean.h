@@ -8,7 +8,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 class RunningMean {
  public:
@@ -31,4 +31,4 @@ class RunningMean {
   std::int64_t count_ = 0;
 };
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -9,7 +9,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 
 // Between the extremes of |S| also after rounding, so that equal curvatures are never above it.
 template <class Curvatures>
@@ -28,4 +28,4 @@ inline Real saddle_free_length(Real slope, Real curvature, Real mean, Real max_l
   return curvature > mean || is_within ? slope / size : max_loss_change / slope;
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

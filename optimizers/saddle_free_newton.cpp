@@ -5,7 +5,7 @@
 #include "optimizers/optimizer.h"
 #include "optimizers/saddle_free.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct SaddleFreeNewton {
@@ -56,4 +56,4 @@ void register_saddle_free_newton(OptimizerRegistry& registry) {
        .revision = 2}));
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

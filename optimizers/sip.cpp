@@ -11,7 +11,7 @@
 #include "optimizers/inversion.h"
 #include "optimizers/network_descent.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Options {
@@ -133,4 +133,4 @@ void register_sip(OptimizerRegistry& registry) {
                 }});
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

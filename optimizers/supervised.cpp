@@ -5,7 +5,7 @@
 
 #include "optimizers/network_descent.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 struct Options {
@@ -57,4 +57,4 @@ void register_supervised(OptimizerRegistry& registry) {
                 }});
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

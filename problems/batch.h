@@ -6,7 +6,7 @@
 #include "core/array.h"
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 // One sample a column.
 struct Batch {
@@ -36,4 +36,4 @@ struct Samples {
   std::function<void(RandomStream& stream, Index b, Batch& batch)> draw = {};
 };
 
-}  // namespace isoline
+}  // namespace isoline::problems

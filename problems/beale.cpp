@@ -3,7 +3,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 class Beale final : public DensePhysics {
@@ -45,4 +45,4 @@ void register_beale(ProblemRegistry& registry) {
                              make_beale));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -7,7 +7,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -68,4 +68,4 @@ void register_box3d(ProblemRegistry& registry) {
       make_box3d));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

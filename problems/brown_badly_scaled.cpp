@@ -3,7 +3,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 class BrownBadlyScaled final : public DensePhysics {
@@ -32,4 +32,4 @@ void register_brown_badly_scaled(ProblemRegistry& registry) {
                              make_brown_badly_scaled));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

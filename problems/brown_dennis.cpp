@@ -6,7 +6,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -78,4 +78,4 @@ void register_brown_dennis(ProblemRegistry& registry) {
       make_brown_dennis));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -3,7 +3,7 @@
 
 #include "problems/classical.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -87,4 +87,4 @@ void register_broyden_tridiagonal(ProblemRegistry& registry) {
       make_broyden_tridiagonal));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace isoline {
+namespace isoline::problems {
 
 Real distance_to_nearest(BatchRef x, const Matrix& minimizers) {
   return std::sqrt((minimizers.colwise() - x.col(0)).colwise().squaredNorm().minCoeff());
@@ -22,4 +22,4 @@ ProblemParts classical(std::unique_ptr<Physics> f, const Vector& start, const Dr
           }};
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -4,7 +4,7 @@
 
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 // `minimizers` (k, count), one a column; the first counts as the truth.
 ProblemParts classical(std::unique_ptr<Physics> f, const Vector& start, const Draw& draw,
@@ -12,4 +12,4 @@ ProblemParts classical(std::unique_ptr<Physics> f, const Vector& start, const Dr
 
 Real distance_to_nearest(BatchRef x, const Matrix& minimizers);
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
@@ -245,4 +245,4 @@ std::vector<Finding> examine(const Problem& problem, RandomStream& stream) {
   return examination.findings;
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 struct Finding {
   std::string property;                           // a sentence that should be true
@@ -21,4 +21,4 @@ struct Finding {
 // problem does not offer is not examined; dense matrices only up to some millions of entries.
 std::vector<Finding> examine(const Problem& problem, RandomStream& stream);
 
-}  // namespace isoline
+}  // namespace isoline::problems

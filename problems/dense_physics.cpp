@@ -1,7 +1,7 @@
 // Small physics, one sample at a time, from value and derivative.
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 void DensePhysics::second(VectorRef, VectorRef, BatchOut) const {
   throw NotApplicable("the physics offers no second derivatives");
@@ -59,4 +59,4 @@ Success DensePhysics::local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut 
   return success;
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -4,7 +4,7 @@
 
 #include "problems/physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 class DensePhysics : public Physics {
  public:
@@ -31,4 +31,4 @@ class DensePhysics : public Physics {
   Index inputs_, outputs_;
 };
 
-}  // namespace isoline
+}  // namespace isoline::problems

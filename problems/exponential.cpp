@@ -6,7 +6,7 @@
 #include "problems/learning.h"
 #include "problems/physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -102,4 +102,4 @@ void register_exponential(ProblemRegistry& registry) {
       make_exponential));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -15,7 +15,10 @@
 #include "problems/learning.h"
 #include "problems/random_fields.h"
 
-namespace isoline {
+namespace isoline::problems {
+
+using networks::make_network;
+using networks::MeanMatched;
 namespace {
 
 struct Options {
@@ -157,4 +160,4 @@ void register_heat(ProblemRegistry& registry) {
       make_heat));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -7,7 +7,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 constexpr Real kTurn = 2 * std::numbers::pi;
@@ -62,4 +62,4 @@ void register_helical_valley(ProblemRegistry& registry) {
       make_helical_valley));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -11,7 +11,7 @@
 #include "problems/dense_physics.h"
 #include "problems/learning.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -102,4 +102,4 @@ void register_hig_toy(ProblemRegistry& registry) {
       make_hig_toy));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -1,7 +1,9 @@
 // Learning problems from their options.
 #include "problems/learning.h"
 
-namespace isoline {
+namespace isoline::problems {
+
+using networks::make_network;
 
 Real summed_error(BatchRef x, const Batch& batch) {
   return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
@@ -19,4 +21,4 @@ ProblemParts learn(const Learning& options, const NetworkShape& shape, const Dra
   return parts;
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -8,7 +8,7 @@
 #include "core/options.h"
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 struct Learning {
   std::string mode = "direct", network = "mlp";
@@ -33,4 +33,4 @@ Real summed_error(BatchRef x, const Batch& batch);
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,
                    ProblemParts parts);
 
-}  // namespace isoline
+}  // namespace isoline::problems

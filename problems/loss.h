@@ -3,7 +3,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 class Loss {
  public:
@@ -33,4 +33,4 @@ class HalfSquared final : public Loss {
   Real weight_;
 };
 
-}  // namespace isoline
+}  // namespace isoline::problems

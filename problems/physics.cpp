@@ -1,7 +1,7 @@
 // What a physics offers unless it says otherwise.
 #include "problems/physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 void Physics::jacobian(BatchOut J, Workspace& w) const {
   const Index k = inputs(), m = outputs(), samples = J.cols() / k;
@@ -34,4 +34,4 @@ Success Physics::local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut) const {
   return Success::Constant(y.cols(), false);
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

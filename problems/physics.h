@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/workspace.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 // How far a local inverse can be trusted.
 enum class Inverse {
@@ -43,4 +43,4 @@ class Physics {
   virtual Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const;
 };
 
-}  // namespace isoline
+}  // namespace isoline::problems

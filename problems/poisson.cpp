@@ -9,7 +9,7 @@
 #include "problems/learning.h"
 #include "problems/random_fields.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -118,4 +118,4 @@ void register_poisson(ProblemRegistry& registry) {
       make_poisson));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

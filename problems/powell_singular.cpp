@@ -7,7 +7,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 const Real kRoot5 = std::sqrt(5.0), kRoot10 = std::sqrt(10.0);
@@ -77,4 +77,4 @@ void register_powell_singular(ProblemRegistry& registry) {
       make_powell_singular));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -6,7 +6,9 @@
 
 #include "networks/identity.h"
 
-namespace isoline {
+namespace isoline::problems {
+
+using networks::Identity;
 
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   if (!parts_.network) parts_.network = std::make_unique<Identity>(parts_.start);
@@ -216,4 +218,4 @@ Vector Draw::start(const Vector& standard) const {
          0.1 * standard.array().abs().max(1) * noise.normal_vector(standard.size()).array();
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

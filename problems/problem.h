@@ -8,15 +8,20 @@
 
 #include "core/options.h"
 #include "core/oracle.h"
-#include "core/panel.h"
 #include "core/random.h"
+#include "core/records/panel.h"
 #include "core/registry.h"
 #include "networks/network.h"
 #include "problems/batch.h"
 #include "problems/loss.h"
 #include "problems/physics.h"
 
-namespace isoline {
+namespace isoline::problems {
+
+using networks::Block;
+using networks::LayerFactor;
+using networks::Network;
+using networks::NetworkShape;
 
 // The forward pass at θ and what its products need. Owned by the caller and reused.
 struct Point {
@@ -163,4 +168,4 @@ ProblemEntry problem_entry(ProblemEntry entry, ProblemParts (*make)(const Option
 
 void register_problems(ProblemRegistry& registry);  // generated: one call a file
 
-}  // namespace isoline
+}  // namespace isoline::problems

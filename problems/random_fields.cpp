@@ -9,7 +9,7 @@
 
 #include "core/fourier.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 // PhiFlow filters complex white noise and keeps the real part. The filter is even in n, so that is
 // real white noise, filtered.
@@ -53,4 +53,4 @@ Vector soft_rectangles(Index N, RandomStream& stream) {
   return field.reshaped();
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

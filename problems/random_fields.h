@@ -3,7 +3,7 @@
 
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 // White noise on the periodic grid, its mode n multiplied by |κ|^(−2·smoothness), κ = n·scale/N,
 // and by 0 where |κ|² ≤ 0.1; then of mean 0 and standard deviation 1. (N²)
@@ -13,4 +13,4 @@ Vector smooth_noise(Index N, Real scale, Real smoothness, RandomStream& stream);
 // N/64. (N²)
 Vector soft_rectangles(Index N, RandomStream& stream);
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -2,7 +2,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 class Rosenbrock final : public DensePhysics {
@@ -38,4 +38,4 @@ void register_rosenbrock(ProblemRegistry& registry) {
                              make_rosenbrock));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

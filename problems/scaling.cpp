@@ -4,7 +4,7 @@
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -58,4 +58,4 @@ void register_scaling(ProblemRegistry& registry) {
                              make_scaling));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -12,7 +12,7 @@
 #include "problems/dense_physics.h"
 #include "problems/learning.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -163,4 +163,4 @@ void register_sine(ProblemRegistry& registry) {
       make_sine));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -5,7 +5,7 @@
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 class Square final : public DensePhysics {
@@ -50,4 +50,4 @@ void register_square(ProblemRegistry& registry) {
                              make_square));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

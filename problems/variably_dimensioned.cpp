@@ -2,7 +2,7 @@
 // t = Σ j (xⱼ − 1). Moré, Garbow, Hillstrom (1981), problem 25. Products are O(n).
 #include "problems/classical.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 struct Options {
@@ -64,4 +64,4 @@ void register_variably_dimensioned(ProblemRegistry& registry) {
                     make_variably_dimensioned));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

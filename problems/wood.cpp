@@ -5,7 +5,7 @@
 #include "problems/classical.h"
 #include "problems/dense_physics.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 const Real kRoot10 = std::sqrt(10.0), kRoot90 = std::sqrt(90.0);
@@ -49,4 +49,4 @@ void register_wood(ProblemRegistry& registry) {
       make_wood));
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

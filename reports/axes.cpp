@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 std::string name_in(const std::string& spec) { return spec.substr(0, spec.find('[')); }
@@ -76,4 +76,4 @@ std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLab
   return axis;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Names of optimizers. A file of rates gives one method other options on every problem; the method
 // then keeps one row under its name, unless some problem has two of that name. A method with tuned
@@ -25,4 +25,4 @@ class OptimizerLabels {
 std::vector<ProblemAxis> problem_axis(const Study& study);
 std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& label);
 
-}  // namespace isoline
+}  // namespace isoline::reports

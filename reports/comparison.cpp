@@ -15,7 +15,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 bool is_timed_alone(const Record& record) {
@@ -159,4 +159,4 @@ Comparison compare_optimizers(const Study& study) {
   return c;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -15,7 +15,7 @@
 #include "reports/study.h"
 #include "reports/tables/table.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // The tolerances of the tables: f ≤ f_L + τ (f₀ − f_L). Hits list τ = 10^(−j/5) at index j.
 struct Tolerance {
@@ -123,4 +123,4 @@ Comparison compare_optimizers(const Study& study);
 // the loosest, then by final loss.
 std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 void add(std::string& row, std::string_view field) {
@@ -70,4 +70,4 @@ std::string csv_report(const Comparison& comparison) {
   return text;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

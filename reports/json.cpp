@@ -15,7 +15,7 @@
 #include "reports/tables/formats.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Json to_json(const Spread& spread) {
@@ -183,4 +183,4 @@ std::string json_report(const Comparison& c) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

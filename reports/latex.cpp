@@ -10,7 +10,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kMostColumns = 8;  // problems a table
@@ -104,4 +104,4 @@ std::string latex_report(const Comparison& c) {
   return text + audit_latex(c.study->audits) + statistics_latex(c);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 bool is_learned(const Comparison& c, std::size_t p) {
@@ -129,4 +129,4 @@ std::string learned_markdown(const Comparison& c) {
                             text;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

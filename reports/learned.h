@@ -7,7 +7,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 struct LearnedRow {
   std::size_t optimizer = 0;
@@ -30,4 +30,4 @@ std::vector<LearnedProblem> learned_problems(const Comparison& comparison);
 std::string learned_html(const Comparison& comparison);
 std::string learned_markdown(const Comparison& comparison);  // empty without learning problems
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -11,7 +11,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kMostRows = 60;  // of a matrix, so that a summary stays a summary
@@ -121,4 +121,4 @@ std::string markdown_report(const Comparison& c) {
          statistics_markdown(c) + failures(c);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace isoline {
+#include "core/ladder.h"
+
+namespace isoline::reports {
 namespace {
 
 void fill_from_hits(Run& run, const Hits& hits) {
@@ -60,9 +62,7 @@ std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t
   const Real descent = record.summary.start_loss - run.minimum;
   std::size_t j = 0;
   for (std::size_t i = 0; i < costs.size(); ++i)
-    for (; j < count && record.curve.loss[i] <=
-                            run.minimum + std::pow(10.0, -0.2 * static_cast<Real>(j)) * descent;
-         ++j)
+    for (; j < count && record.curve.loss[i] <= run.minimum + rung(j) * descent; ++j)
       all[j] = costs[i];
   return all;
 }
@@ -84,4 +84,4 @@ void fill_reached(Run& run, const BestKnown& best) {
     fill_from_curve(run);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // The least loss any run of a problem and seed has reached: f_L where none is declared.
 class BestKnown {
@@ -34,4 +34,4 @@ void fill_costs(Run& run, const Prices& prices);
 // did not.
 std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t count);
 
-}  // namespace isoline
+}  // namespace isoline::reports

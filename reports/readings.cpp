@@ -8,7 +8,7 @@
 #include "reports/html/curves.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // The solvers with the greatest share within a factor, joined; many are counted, not named.
@@ -139,4 +139,4 @@ std::string path_reading(const Comparison& c, std::size_t problem,
       shown_spec(winding.optimizer), multiple(length(winding)));
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

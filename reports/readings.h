@@ -6,7 +6,7 @@
 
 #include "reports/html/curves.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Below that many problems nothing is said of an order, and no profile is drawn.
 inline constexpr std::size_t kFewProblems = 4;
@@ -19,4 +19,4 @@ std::string curve_reading(const Comparison& comparison, std::size_t problem);
 std::string path_reading(const Comparison& comparison, std::size_t problem,
                          std::vector<std::vector<Real>> Path::*rows);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -2,10 +2,10 @@
 #include "reports/report.h"
 
 #include "core/json.h"
-#include "core/share.h"
+#include "core/threads.h"
 #include "reports/tables/formats.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 void write_report(const Comparison& comparison, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
@@ -17,4 +17,4 @@ void write_report(const Comparison& comparison, const std::filesystem::path& out
         [&](std::size_t i) { write_text(out / formats[i].first, formats[i].second(comparison)); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -18,7 +18,7 @@
 #include "reports/comparison.h"
 #include "reports/study.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Writes index.html, report.md, report.tex, report.csv, statistics.csv and report.json; makes the
 // folder.
@@ -33,4 +33,4 @@ std::string terminal_table(const Comparison& comparison);
 
 inline constexpr const char* kReportSchema = "isoline.report/1";
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -12,7 +12,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,7 +151,8 @@ std::optional<Exhibit> Study::pictures_of(const Record& record) const {
 
 Study read_study(const std::vector<fs::path>& folders, const Listener& listener) {
   for (const fs::path& folder : folders)
-    require(fs::is_directory(folder), fmt::format("no result folder {}", folder.string()));
+    require(fs::is_directory(folder),
+            [&] { return fmt::format("no result folder {}", folder.string()); });
   Study study;
   study.folders = folders;
   std::set<std::string> cells, sheets;
@@ -165,4 +166,4 @@ Study read_study(const std::vector<fs::path>& folders, const Listener& listener)
   return study;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

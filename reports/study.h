@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "core/audit.h"
-#include "core/record.h"
-#include "core/share.h"
-#include "core/sheet.h"
+#include "core/records/audited.h"
+#include "core/records/record.h"
+#include "core/records/sheet.h"
+#include "core/threads.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // A file that is no record, sheet or plan. It is listed, so that nothing vanishes in silence.
 struct Unreadable {
@@ -35,4 +35,4 @@ struct Study {
 // the records.
 Study read_study(const std::vector<std::filesystem::path>& folders, const Listener& listener = {});
 
-}  // namespace isoline
+}  // namespace isoline::reports

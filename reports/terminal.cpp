@@ -9,7 +9,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kWidest = 100;    // columns
@@ -190,4 +190,4 @@ std::string terminal_table(const Comparison& c) {
   return text + failure_lines(c);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <span>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 struct Escape {
@@ -178,4 +178,4 @@ std::string shell_word(std::string_view text) {
   return word + "'";
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/statistics/statistics.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // The one way a table writes a number, times apart: whole numbers below ten million in full, all
 // others with four significant digits; "inf", "nan".
@@ -30,4 +30,4 @@ std::string csv_field(std::string_view text);
 std::string terminal_text(std::string_view text);  // no escape sequence passes
 std::string shell_word(std::string_view text);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 std::string status_meaning(Status status) {
   switch (status) {
@@ -152,4 +152,4 @@ std::string rerun_command(const Request& request) {
                      request.seed, budget_options(request));
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 std::string headline(const Comparison& comparison);  // "33 optimizers on 16 problems, …"
 std::string status_meaning(Status status);           // "used up their work or iterations"
@@ -31,4 +31,4 @@ std::string matrix_text(const Cell& cell, std::size_t tolerance);
 std::string rerun_command(const Request& request);
 std::string budget_options(const Request& request);  // "--iterations 1000 --rates none"
 
-}  // namespace isoline
+}  // namespace isoline::reports

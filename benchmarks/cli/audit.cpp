@@ -1,5 +1,5 @@
 // isoline audit [OPTIMIZER...]: what its properties are, measured instead of asserted.
-#include "benchmarks/audit.h"
+#include "benchmarks/audit/audit.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,10 @@
 #include "core/json.h"
 #include "reports/audit/audit.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::audit_terminal;
+using reports::AuditColumn;
 namespace {
 
 struct AuditOptions {
@@ -59,4 +62,4 @@ void add_audit(CLI::App& app, Session& session) {
   verb->callback([options, &session] { audit(*options, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -9,7 +9,11 @@
 #include "core/errors.h"
 #include "core/json.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::baseline_json;
+using reports::read_study;
+using reports::Study;
 namespace {
 
 struct BaselineArguments {
@@ -48,4 +52,4 @@ void add_baseline(CLI::App& app, Session&) {
   verb->callback([given] { keep_baseline(*given); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

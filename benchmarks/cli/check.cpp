@@ -4,12 +4,15 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/isolate.h"
+#include "benchmarks/run/isolate.h"
 #include "core/json.h"
 #include "core/spec.h"
 #include "problems/conformance.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using problems::examine;
+using problems::Finding;
 namespace {
 
 constexpr double kCheckSeconds = 120;
@@ -97,4 +100,4 @@ void add_check(CLI::App& app, Session& session) {
   verb->callback([options, &session] { check(*options, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

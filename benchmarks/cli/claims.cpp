@@ -1,5 +1,5 @@
 // isoline claims [ID...]: runs what published claims need, and judges them.
-#include "benchmarks/claims.h"
+#include "reports/claims/claims.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,13 +9,21 @@
 #include <thread>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/runner.h"
-#include "benchmarks/sheets.h"
+#include "benchmarks/plan/claim_cells.h"
+#include "benchmarks/run/runner.h"
+#include "benchmarks/run/sheets.h"
 #include "core/errors.h"
-#include "reports/claims/claims.h"
 #include "reports/study.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::claims_json;
+using reports::claims_terminal;
+using reports::judge;
+using reports::Judgement;
+using reports::read_study;
+using reports::Study;
+using reports::Verdict;
 namespace {
 
 struct ClaimArguments {
@@ -99,4 +107,4 @@ void add_claims(CLI::App& app, Session& session) {
   verb->callback([given, &session] { judge_claims(*given, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -7,7 +7,15 @@
 #include "core/errors.h"
 #include "reports/gate/gate.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::compare_results;
+using reports::gate_json;
+using reports::gate_markdown;
+using reports::gate_terminal;
+using reports::GateOptions;
+using reports::GateResult;
+using reports::kMostTimed;
 namespace {
 
 struct CompareArguments {
@@ -21,9 +29,10 @@ void compare(const CompareArguments& given, Session& session) {
   GateOptions options = given.options;
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   options.listener = on_terminal("reading records");
-  require(
-      options.timed.size() <= kMostTimed,
-      fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed, options.timed.size()));
+  require(options.timed.size() <= kMostTimed, [&] {
+    return fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed,
+                       options.timed.size());
+  });
   const GateResult result = compare_results(given.before, given.after, options);
   const auto text = given.as_json ? gate_json : given.as_markdown ? gate_markdown : gate_terminal;
   fmt::print("{}", text(result));
@@ -60,4 +69,4 @@ void add_compare(CLI::App& app, Session& session) {
   verb->callback([given, &session] { compare(*given, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -5,7 +5,7 @@
 
 #include "benchmarks/cli/verbs.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 // Names come from the program at each completion, so that new components are known at once.
@@ -59,4 +59,4 @@ void add_completion(CLI::App& app, Session&) {
   });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

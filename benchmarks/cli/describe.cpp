@@ -5,12 +5,15 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/sheets.h"
+#include "benchmarks/run/sheets.h"
 #include "core/json.h"
 #include "core/spec.h"
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using networks::network_registry;
+using networks::NetworkEntry;
 namespace {
 
 Sheet sheet_of(Session& session, const Spec& spec) {
@@ -96,4 +99,4 @@ void add_describe(CLI::App& app, Session& session) {
   });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/trained.h"
-#include "core/number_file.h"
+#include "benchmarks/run/trained.h"
+#include "core/records/number_file.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 struct InferArguments {
@@ -20,9 +20,10 @@ void infer_file(const InferArguments& given, Session& session) {
   const Component component =
       complete_problem(session.catalog(), network.problem.name, network.problem.options);
   const Problem problem = make_problem(session.catalog(), component, network.seed);
-  require(problem.unknowns() == network.theta.size(),
-          fmt::format("{} holds {} parameters and its network has {}", given.network,
-                      network.theta.size(), problem.unknowns()));
+  require(problem.unknowns() == network.theta.size(), [&] {
+    return fmt::format("{} holds {} parameters and its network has {}", given.network,
+                       network.theta.size(), problem.unknowns());
+  });
   const NumberArray output = infer(problem, network, input, given.input);
   write_numbers(given.output, output);
   fmt::print("{}: {} samples inferred by {} trained on {} for {} iterations\n", given.output,
@@ -45,4 +46,4 @@ void add_infer(CLI::App& app, Session& session) {
   verb->callback([given, &session] { infer_file(*given, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

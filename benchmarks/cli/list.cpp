@@ -4,12 +4,14 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/resources.h"
-#include "benchmarks/suite.h"
+#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/suite.h"
 #include "core/json.h"
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using networks::network_registry;
 namespace {
 
 struct ListOptions {
@@ -71,4 +73,4 @@ void add_list(CLI::App& app, Session& session) {
   });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

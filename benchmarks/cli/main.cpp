@@ -7,11 +7,11 @@
 
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
-#include "core/provenance.h"
+#include "core/records/provenance.h"
 #include "core/suggest.h"
 #include "core/threads.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 constexpr const char* kAbout =
@@ -60,7 +60,7 @@ int run(int count, char** arguments) {
     add(app, session);
   try {
     const std::string wrong = unknown_verb(app, count, arguments);
-    require(wrong.empty(), wrong);
+    require(wrong.empty(), [&] { return wrong; });
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
@@ -77,9 +77,9 @@ int run(int count, char** arguments) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks
 
 int main(int count, char** arguments) {
   isoline::start_single_threaded(arguments);
-  return isoline::run(count, arguments);
+  return isoline::benchmarks::run(count, arguments);
 }

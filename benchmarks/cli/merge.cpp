@@ -1,5 +1,5 @@
 // isoline merge DIR... --out OUT: the union of result folders.
-#include "benchmarks/merge.h"
+#include "benchmarks/merge/merge.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "benchmarks/cli/verbs.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 struct MergeArguments {
@@ -44,4 +44,4 @@ void add_merge(CLI::App& app, Session& session) {
   verb->callback([given, &session] { merge(*given, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

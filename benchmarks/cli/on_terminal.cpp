@@ -2,9 +2,9 @@
 #include <unistd.h>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/progress.h"
+#include "benchmarks/run/progress.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 
 Listener on_terminal(const char* what) {
   if (Progress::style_of(STDERR_FILENO) != Progress::Style::live) return {};
@@ -16,4 +16,4 @@ Listener on_terminal(const char* what) {
   };
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -7,7 +7,14 @@
 
 #include "benchmarks/cli/verbs.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::compare_optimizers;
+using reports::Comparison;
+using reports::read_study;
+using reports::Study;
+using reports::terminal_table;
+using reports::write_report;
 
 void add_report(CLI::App& app, Session& session) {
   struct Options {
@@ -32,4 +39,4 @@ void add_report(CLI::App& app, Session& session) {
   });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

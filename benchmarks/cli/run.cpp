@@ -5,18 +5,25 @@
 #include <CLI/CLI.hpp>
 #include <thread>
 
-#include "benchmarks/audit.h"
+#include "benchmarks/audit/audit.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/preview.h"
-#include "benchmarks/runner.h"
-#include "benchmarks/sheets.h"
-#include "benchmarks/soundness.h"
-#include "benchmarks/suite.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/preview.h"
+#include "benchmarks/run/runner.h"
+#include "benchmarks/run/sheets.h"
+#include "benchmarks/run/soundness.h"
 #include "core/json.h"
 #include "core/spec.h"
 #include "reports/report.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::compare_optimizers;
+using reports::Comparison;
+using reports::read_study;
+using reports::Study;
+using reports::terminal_table;
+using reports::write_report;
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +40,8 @@ std::int64_t parse_memory(const std::string& text) {
   const CLI::AsSizeValue to_bytes(false);
   std::string value = text;
   const std::string error = to_bytes(value);
-  require(error.empty(), fmt::format("expected an amount such as 2GB, got '{}'", text));
+  require(error.empty(),
+          [&] { return fmt::format("expected an amount such as 2GB, got '{}'", text); });
   return std::stoll(value);
 }
 
@@ -198,4 +206,4 @@ void add_run(CLI::App& app, Session& session) {
   verb->callback([given, &session] { run(*given, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

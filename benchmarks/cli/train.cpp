@@ -6,13 +6,13 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/execute.h"
-#include "benchmarks/isolate.h"
-#include "benchmarks/soundness.h"
-#include "benchmarks/suite.h"
-#include "benchmarks/trained.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/execute.h"
+#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/soundness.h"
+#include "benchmarks/run/trained.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 struct TrainArguments {
@@ -78,9 +78,10 @@ void train(const TrainArguments& given, Session& session) {
   const Trace& trace = worker.trace();
   if (is_shown) show(trace, given.iterations, "\n");
   const bool is_trained = trace.status == Status::budget || trace.status == Status::converged;
-  require(trace.status != Status::inapplicable || is_trained,
-          fmt::format("{} cannot train {}: {}", request.optimizer.spec, request.problem.spec,
-                      trace.message));
+  require(trace.status != Status::inapplicable || is_trained, [&] {
+    return fmt::format("{} cannot train {}: {}", request.optimizer.spec, request.problem.spec,
+                       trace.message);
+  });
   if (!is_trained) {
     fmt::print(stderr, "isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message);
     session.exit_code = kWorse;
@@ -115,4 +116,4 @@ void add_train(CLI::App& app, Session& session) {
   verb->callback([given, &session] { train(*given, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -1,5 +1,5 @@
 // isoline tune: a table of rates from a recorded grid.
-#include "benchmarks/tune.h"
+#include "benchmarks/run/tune.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,9 @@
 #include "core/json.h"
 #include "core/spec.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using optimizers::Family;
 namespace {
 
 struct TuneArguments {
@@ -34,7 +36,7 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
   }
   for (const Spec& spec : parse_specs(given.optimizer)) {
     require(spec.options.empty(),
-            fmt::format("name {} without options: the grid sets them", spec.name));
+            [&] { return fmt::format("name {} without options: the grid sets them", spec.name); });
     plan.optimizers.push_back(catalog.optimizers.at(spec.name).name);
   }
   return plan;
@@ -116,4 +118,4 @@ void add_tune(CLI::App& app, Session& session) {
   verb->callback([given, &session] { tune_and_write(*given, session); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -6,12 +6,12 @@
 #include <map>
 
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/resources.h"
+#include "benchmarks/plan/resources.h"
 #include "core/json.h"
-#include "core/schema.h"
-#include "core/share.h"
+#include "core/records/schema.h"
+#include "core/threads.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,7 +45,8 @@ std::vector<std::string> violations_in(const fs::path& path) {
 std::vector<fs::path> files_under(const std::vector<std::string>& paths) {
   std::vector<fs::path> files;
   for (const fs::path path : paths) {
-    require(fs::exists(path), fmt::format("no such file or folder: {}", path.string()));
+    require(fs::exists(path),
+            [&] { return fmt::format("no such file or folder: {}", path.string()); });
     if (!fs::is_directory(path))
       files.push_back(path);
     else
@@ -81,4 +82,4 @@ void add_validate(CLI::App& app, Session& session) {
   });
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

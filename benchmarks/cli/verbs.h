@@ -5,17 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/catalog.h"
-#include "core/share.h"
+#include "benchmarks/plan/catalog.h"
+#include "core/threads.h"
 
 namespace CLI {
 class App;
 }
 
-namespace isoline {
-
+namespace isoline::reports {
 struct Judgement;
 struct Study;
+}  // namespace isoline::reports
+
+namespace isoline::benchmarks {
 
 // Exit codes of every verb.
 enum Exit { kGood = 0, kUsage = 1, kWorse = 2, kBetterOnly = 3, kNotComparable = 4 };
@@ -41,7 +43,7 @@ class Session {
 Listener on_terminal(const char* what);
 
 // The claims of the tree whose cells are among the runs, judged.
-std::vector<Judgement> covered_claims(Session& session, const Study& study);
+std::vector<reports::Judgement> covered_claims(Session& session, const reports::Study& study);
 
 void add_run(CLI::App& app, Session& session);
 void add_report(CLI::App& app, Session& session);
@@ -59,4 +61,4 @@ void add_infer(CLI::App& app, Session& session);
 void add_tune(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

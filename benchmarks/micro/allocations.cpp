@@ -19,8 +19,8 @@ __attribute__((visibility("default"))) void* malloc(std::size_t size) noexcept {
 }
 #endif
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 
 std::int64_t allocations() { return calls; }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 using Pivots = Eigen::Matrix<lapack_int, Eigen::Dynamic, 1>;
@@ -172,4 +172,4 @@ BareStep bare_step(const std::string& method, const Problem& problem) {
   return shared(Descent{{problem}});
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -7,11 +7,11 @@
 
 #include "problems/problem.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 
 using BareStep = std::function<void(Vector& theta)>;
 
 // For a method not known here, one step of gradient descent. The problem outlives the step.
 BareStep bare_step(const std::string& method, const Problem& problem);
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -3,10 +3,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "benchmarks/isolate.h"
 #include "benchmarks/micro/pairs.h"
+#include "benchmarks/run/isolate.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 Cost empty_run(Worker& worker) {
@@ -36,4 +36,4 @@ void register_isolation() {
   });
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -7,11 +7,11 @@
 
 #include <cmath>
 
-#include "benchmarks/execute.h"
 #include "benchmarks/micro/pairs.h"
 #include "benchmarks/micro/trial.h"
+#include "benchmarks/run/execute.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 using Eigen::Map;
@@ -166,4 +166,4 @@ void register_libraries() {
   }
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

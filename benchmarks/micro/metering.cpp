@@ -2,7 +2,7 @@
 #include "benchmarks/micro/pairs.h"
 #include "benchmarks/micro/trial.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 constexpr int kCalls = 1000, kPairs = 401;
@@ -71,4 +71,4 @@ void register_metering() {
   });
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -8,7 +8,7 @@
 #include "benchmarks/micro/pairs.h"
 #include "problems/problem.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 constexpr Index kSamples = 100, kRows = 2;  // B, rows of the Jacobian a sample
@@ -119,4 +119,4 @@ void register_networks() {
   register_precision<double>("double");
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

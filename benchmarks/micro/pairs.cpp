@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 double median(std::vector<double> values) {
@@ -65,4 +65,4 @@ void register_pair(const std::string& name, int pairs, const Goal& goal,
       ->UseManualTime();
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -9,7 +9,7 @@
 
 #include "core/clock.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 
 std::int64_t allocations();  // calls of malloc so far, by this program and its libraries
 
@@ -52,4 +52,4 @@ void register_networks();
 void register_isolation();
 void register_unet();
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -3,7 +3,7 @@
 #include "benchmarks/micro/pairs.h"
 #include "benchmarks/micro/trial.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 // Tiny, where overhead shows; middling; and two grids whose transforms allocate inside FFTW.
@@ -59,4 +59,4 @@ void register_steps() {
   }
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -7,7 +7,7 @@
 #include "benchmarks/micro/trial.h"
 #include "problems/dense_physics.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 // A few steps at a time, or the scheduler of a busy machine would interrupt each reading.
@@ -102,4 +102,4 @@ void register_training() {
   });
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

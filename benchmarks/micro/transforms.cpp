@@ -8,7 +8,7 @@
 #include "benchmarks/micro/pairs.h"
 #include "benchmarks/micro/trial.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 // There and back again, twice.
@@ -84,4 +84,4 @@ void register_transforms() {
   }
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

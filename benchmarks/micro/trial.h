@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "benchmarks/catalog.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/spec.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 
 inline const Catalog& catalog() {
   static const Catalog all = builtin_catalog();
@@ -52,4 +52,4 @@ struct Trial {
   Meter meter;
 };
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

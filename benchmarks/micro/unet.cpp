@@ -8,7 +8,7 @@
 #include "core/threads.h"
 #include "networks/network.h"
 
-namespace isoline::micro {
+namespace isoline::benchmarks::micro {
 namespace {
 
 constexpr Index kN = 64, kBatch = 128, kThreads = 2;
@@ -139,4 +139,4 @@ void register_unet() {
   });
 }
 
-}  // namespace isoline::micro
+}  // namespace isoline::benchmarks::micro

@@ -12,7 +12,7 @@
 #include "core/json.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr const char* kNoLaw = "no power law";
@@ -225,4 +225,4 @@ std::string audit_terminal(const std::vector<AuditedOptimizer>& all) {
   return text;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

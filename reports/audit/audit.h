@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/audit.h"
+#include "core/records/audited.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 struct Comparison;
 
@@ -39,4 +39,4 @@ struct DotSeries {
 std::string dot_plot(const std::string& title, const std::vector<std::string>& rows,
                      const std::vector<DotSeries>& series, const std::vector<Real>& ticks);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 #include "reports/audit/audit.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using All = std::vector<AuditedOptimizer>;
@@ -156,4 +156,4 @@ std::string audit_html(const All& all) {
   return html + table(all);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

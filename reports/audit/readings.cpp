@@ -8,7 +8,7 @@
 
 #include "reports/audit/audit.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using All = std::vector<AuditedOptimizer>;
@@ -156,4 +156,4 @@ std::vector<AuditReading> audit_readings(const All& all) {
           {"Oracles", oracle_sentence(all)},          {"Declarations", declaration_sentence(all)}};
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -12,7 +12,7 @@
 #include "reports/claims/words.h"
 #include "reports/statistics/statistics.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using ByCell = std::unordered_map<std::string, const Record*>;
@@ -193,4 +193,4 @@ std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs
   return judgements;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

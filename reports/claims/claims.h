@@ -11,7 +11,7 @@
 
 #include "reports/claims/quantities.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 enum class Verdict { reproduced, partly, not_reproduced, not_comparable };
 inline constexpr std::array<std::string_view, 4> kVerdictNames = {
@@ -52,4 +52,4 @@ Json claims_json(const std::vector<Judgement>& judgements);
 
 std::string measured_text(const Judgement& judgement);  // "23.4 (18.2–31), n = 3"
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -9,7 +9,7 @@
 #include "reports/claims/claims.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // What a reader must know beside the figures: what it was held against, why not, and what differs
@@ -142,4 +142,4 @@ Json claims_json(const std::vector<Judgement>& judgements) {
   return list;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "reports/statistics/statistics.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
@@ -213,4 +213,4 @@ Measurement measure(const std::string& kind, const std::vector<Term>& terms,
   return out;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/record.h"
+#include "core/records/record.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Where a figure of a run is read: a column of its curve or a quantity of its path, at an
 // iteration, or at the end where none is named.
@@ -51,4 +51,4 @@ struct Measurement {
 Measurement measure(const std::string& kind, const std::vector<Term>& terms,
                     const std::string& stream);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 #include "reports/claims/quantities.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 std::string tolerance_text(const Json& tolerance) {
@@ -76,4 +76,4 @@ std::string quantity_text(const Json& claim) {
                      fmt::join(terms, kind == "ratio" ? " / " : ", "));
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "core/record.h"
+#include "core/records/record.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Of a claim, or of its contrast.
 std::string quantity_text(const Json& claim);   // "ratio of the loss, at the end: adam / sip"
@@ -14,4 +14,4 @@ Real published_value(const Json& published);
 
 std::string source_text(const Json& source);  // of a claim alone
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -12,7 +12,7 @@
 #include "reports/html/curves.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 const Json& options_of(const Comparison& c, std::size_t problem) {
@@ -91,4 +91,4 @@ std::vector<Figure> figures(const Comparison& c) {
   return all;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

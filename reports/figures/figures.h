@@ -6,7 +6,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // One method: y over x, the median over seeds, with its least and greatest.
 struct FigureLine {
@@ -33,4 +33,4 @@ struct Figure {
 
 std::vector<Figure> figures(const Comparison& comparison);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -12,7 +12,7 @@
 #include "reports/html/curves.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kPoints = 96;  // a line
@@ -222,4 +222,4 @@ Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
   return picture_figure(c, p);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/figures/figures.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 using Sweep = std::vector<std::pair<Real, std::size_t>>;  // value of the option, problem
 
@@ -17,4 +17,4 @@ Figure picture_figure(const Comparison& comparison, std::size_t problem);
 // Of one problem: curve, scatter, decades, pictures, series or path. Empty where no run has it.
 Figure problem_figure(const Comparison& comparison, std::size_t problem, const Panel& panel);
 
-}  // namespace isoline
+}  // namespace isoline::reports

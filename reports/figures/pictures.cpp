@@ -4,7 +4,7 @@
 #include "reports/figures/kinds.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Picture picture_of(std::string title, const Matrix& field, Index N) {
@@ -41,4 +41,4 @@ Figure picture_figure(const Comparison& c, std::size_t p) {
   return out;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Json work_json(const Record& record, const BestKnown& best) {
@@ -52,7 +52,7 @@ void add_figures(Subject& subject, const Json& cell) {
 Subject subject_from_json(const Json& cell) {
   const auto name = cell.at("status").get<std::string>();
   const std::optional<Status> status = status_of(name);
-  require(status.has_value(), fmt::format("unknown status '{}'", name));
+  require(status.has_value(), [&] { return fmt::format("unknown status '{}'", name); });
   Subject subject = subject_that_ended(*status);
   subject.key = cell.at("cell").get<std::string>();
   subject.title = cell.at("title").get<std::string>();
@@ -99,7 +99,7 @@ std::string baseline_json(const Study& study) {
 Baseline baseline_from_json(const Json& json) {
   try {
     require(json.at("schema") == kBaselineSchema,
-            fmt::format("the schema is not {}", kBaselineSchema));
+            [&] { return fmt::format("the schema is not {}", kBaselineSchema); });
     Baseline baseline{.subjects = {}, .minima = minima_from_json(json.at("minima"))};
     for (const Json& cell : json.at("cells")) baseline.subjects.push_back(subject_from_json(cell));
     return baseline;
@@ -108,4 +108,4 @@ Baseline baseline_from_json(const Json& json) {
   }
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/gate/subject.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
 
@@ -21,4 +21,4 @@ std::string baseline_json(const Study& study);
 
 Baseline baseline_from_json(const Json& json);  // UsageError where it is no such file
 
-}  // namespace isoline
+}  // namespace isoline::reports

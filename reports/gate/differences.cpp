@@ -8,7 +8,7 @@
 
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr Real kRounding = 1e-16;  // of double precision, as a share of the value at the start
@@ -93,4 +93,4 @@ Difference state_difference(const Subject& a, const Subject& b) {
           .note = ""};
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/gate/subject.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 enum class Change { worse, better, changed };
 
@@ -27,4 +27,4 @@ Difference state_difference(const Subject& before, const Subject& after);
 std::vector<Difference> quantity_differences(const Subject& before, const Subject& after,
                                              const std::optional<Real>& tolerance);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -9,7 +9,7 @@
 #include "reports/gate/gate.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 const char* name_of(Change change) {
@@ -169,4 +169,4 @@ std::string gate_json(const GateResult& result) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -9,7 +9,7 @@
 #include "core/errors.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Why figures of the two cannot be held to each other; empty where they can.
@@ -93,8 +93,10 @@ class Gate {
   // The slowest of BASE, which say most and whose choice knows nothing of what changed.
   void choose_timed() {
     if (timed_.size() <= kMostTimed) return;
-    require(options_.timed.empty(), fmt::format("time is judged on at most {} cells, {} are listed",
-                                                kMostTimed, timed_.size()));
+    require(options_.timed.empty(), [&] {
+      return fmt::format("time is judged on at most {} cells, {} are listed", kMostTimed,
+                         timed_.size());
+    });
     skipped_ = timed_.size() - kMostTimed;
     std::ranges::stable_sort(timed_, std::greater(),
                              [](const TimedCell& cell) { return median_of(cell.before); });
@@ -162,4 +164,4 @@ GateResult compare_subjects(const std::vector<Subject>& before, const std::vecto
   return Gate(options).run(before, after);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

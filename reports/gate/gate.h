@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "core/share.h"
+#include "core/threads.h"
 #include "reports/gate/differences.h"
 #include "reports/gate/timing.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 struct GateOptions {
   std::optional<Real> tolerance;  // relative; without it figures must agree bit for bit
@@ -56,4 +56,4 @@ std::string gate_json(const GateResult& result);  // schema isoline.comparison/1
 
 inline constexpr const char* kComparisonSchema = "isoline.comparison/1";
 
-}  // namespace isoline
+}  // namespace isoline::reports

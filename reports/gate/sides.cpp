@@ -7,7 +7,7 @@
 #include "reports/gate/gate.h"
 #include "reports/report.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,7 +23,8 @@ struct Side {
 };
 
 Side side_of(const fs::path& path) {
-  require(fs::exists(path), fmt::format("no result folder, baseline or report: {}", path.string()));
+  require(fs::exists(path),
+          [&] { return fmt::format("no result folder, baseline or report: {}", path.string()); });
   return {path, fs::is_directory(path) ? Json() : read_json(path)};
 }
 
@@ -92,4 +93,4 @@ GateResult compare_results(const fs::path& before, const fs::path& after,
   return compare_reports(old, now, options);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

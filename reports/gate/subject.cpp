@@ -7,11 +7,11 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/share.h"
+#include "core/threads.h"
 #include "reports/report.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Two that are equally bad may still differ: that is a change, and no verdict.
@@ -132,7 +132,7 @@ std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference)
 std::vector<Subject> subjects_of_report(const Json& report) {
   try {
     require(report.at("schema") == kReportSchema,
-            fmt::format("the schema is not {}", kReportSchema));
+            [&] { return fmt::format("the schema is not {}", kReportSchema); });
     std::vector<Subject> all;
     for (const Json& cell : report.at("cells")) all.push_back(subject_of_pair(cell));
     return all;
@@ -141,4 +141,4 @@ std::vector<Subject> subjects_of_report(const Json& report) {
   }
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

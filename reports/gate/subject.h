@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/record.h"
+#include "core/records/record.h"
 #include "reports/reached.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Less is better.
 struct Quantity {
@@ -44,4 +44,4 @@ Quantity work_quantity(Real tau, Real work);
 std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference);
 std::vector<Subject> subjects_of_report(const Json& report);  // schema isoline.report/1
 
-}  // namespace isoline
+}  // namespace isoline::reports

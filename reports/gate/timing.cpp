@@ -7,7 +7,7 @@
 #include "core/digest.h"
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Fisher and Yates.
@@ -95,4 +95,4 @@ std::vector<TimeVerdict> judge_times(const std::vector<TimedCell>& cells, Real l
   return verdicts;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/statistics/rank_tests.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 inline constexpr std::size_t kLeastRepetitions = 9;  // of each side
 inline constexpr std::size_t kMostTimed = 20;        // cells, of which each costs the others power
@@ -40,4 +40,4 @@ std::vector<TimeVerdict> judge_times(const std::vector<TimedCell>& cells, Real l
 // noise, and the interval of a cell's ratio already widens with it.
 Real split_noise(const std::vector<TimedCell>& cells);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <unordered_map>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Edges of the grid by number: 2 (i + j n1) leads from (i, j) to (i+1, j), the next to (i, j+1).
@@ -184,4 +184,4 @@ std::vector<Contour> contours(const Landscape& landscape) {
   return all;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/sheet.h"
+#include "core/records/sheet.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 struct Point {
   Real x1 = 0, x2 = 0;
@@ -29,4 +29,4 @@ std::string contour_wording(const Landscape& landscape);  // "at 2^i, i = âˆ’5 â
 
 std::vector<Contour> contours(const Landscape& landscape);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Where the curve of a run stands at an iteration: the last kept point not after it.
@@ -130,4 +130,4 @@ Real detour(const std::vector<std::vector<Real>>& path) {
   return std::isfinite(length) && direct > 0 ? length / direct : kNever;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Columns of equal length. At each iteration the median over seeds of every column; a run that has
 // ended keeps its last values, a run without a curve counts as infinite. The gap is what is left of
@@ -32,4 +32,4 @@ std::vector<Path> paths(const Comparison& comparison, std::size_t problem);
 // nothing.
 Real detour(const std::vector<std::vector<Real>>& path);
 
-}  // namespace isoline
+}  // namespace isoline::reports

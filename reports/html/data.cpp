@@ -15,7 +15,7 @@
 #include "reports/html/targets.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Points a line, so that all lines together stay within a few megabytes.
@@ -231,4 +231,4 @@ std::string page_data(const Comparison& c, const std::vector<Figure>& figures) {
   return safe;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -10,7 +10,7 @@
 #include "reports/html/html.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Json numbers(const std::vector<Real>& values) {
@@ -94,4 +94,4 @@ std::string figures_json(const std::vector<Figure>& all) {
   return list.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

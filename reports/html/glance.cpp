@@ -11,7 +11,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kPodium = 6;
@@ -119,4 +119,4 @@ std::string glance_html(const Comparison& c) {
              counts_html(c), open_html(c, open));
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

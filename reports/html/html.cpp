@@ -15,7 +15,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 std::string_view embedded_page_html();
 std::string_view embedded_page_css();
@@ -137,4 +137,4 @@ std::string html_report(const Comparison& c) {
        {"page-js", std::string(embedded_page_js())}});
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

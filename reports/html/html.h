@@ -7,7 +7,7 @@
 #include "reports/comparison.h"
 #include "reports/figures/figures.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Tables as HTML, complete without scripts.
 std::string standings_html(const Comparison& comparison);
@@ -30,4 +30,4 @@ std::string figures_json(const std::vector<Figure>& figures);
 // What the charts draw, as JSON that is safe inside a script element.
 std::string page_data(const Comparison& comparison, const std::vector<Figure>& figures);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 
 #include "reports/html/mathml_pieces.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using Kind = Piece::Kind;
@@ -98,4 +98,4 @@ std::string mathml(std::string_view formula) {
   return html;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using Pair = std::pair<char32_t, char32_t>;
@@ -101,4 +101,4 @@ bool is_identifier(char32_t letter) {
 
 bool is_function(std::u32string_view word) { return std::ranges::count(kFunctions, word) > 0; }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace isoline {
+namespace isoline::reports {
 
 std::u32string letters_of(std::string_view utf8);  // ŷ is y and its accent, two letters
 std::string utf8_of(std::u32string_view letters);
@@ -21,4 +21,4 @@ bool is_word_letter(char32_t letter);
 bool is_identifier(char32_t letter);  // a letter of any alphabet, ∇ and ∂ among them
 bool is_function(std::u32string_view word);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 #include "reports/html/mathml_pieces.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using Kind = Piece::Kind;
@@ -159,4 +159,4 @@ class Parser {
 
 Pieces pieces_of(std::string_view formula) { return Parser(formula).sequence(0); }
 
-}  // namespace isoline
+}  // namespace isoline::reports

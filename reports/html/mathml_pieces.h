@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace isoline {
+namespace isoline::reports {
 
 struct Piece {
   enum class Kind { operand, sign, comma, slash, word };
@@ -27,4 +27,4 @@ std::string set_row(const Pieces& pieces);
 
 std::string tagged(std::string_view tag, std::string_view content);  // "<tag>content</tag>"
 
-}  // namespace isoline
+}  // namespace isoline::reports

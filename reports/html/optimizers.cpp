@@ -11,7 +11,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 std::string joined(const std::vector<std::string>& words) {
@@ -186,4 +186,4 @@ std::string optimizers_html(const Comparison& c) {
   return index + html;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

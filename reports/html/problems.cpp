@@ -8,7 +8,7 @@
 #include "reports/readings.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 std::string plane_html(const char* space, const std::string& title, const std::string& reading) {
@@ -74,4 +74,4 @@ std::string problems_html(const Comparison& c) {
   return "<p class=index>" + index + "</p>" + html;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Text of any JSON value, "" where there is none.
@@ -80,4 +80,4 @@ std::string provenance_html(const Comparison& c) {
   return html;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -9,7 +9,7 @@
 #include "reports/text.h"
 #include "reports/wording.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // How far from the best, as a class of the style sheet: h0 the least, then by factors of two.
@@ -208,4 +208,4 @@ std::string failures_html(const Comparison& c) {
          html + "</tbody></table></div>";
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -3,7 +3,9 @@
 
 #include <cmath>
 
-namespace isoline {
+#include "core/ladder.h"
+
+namespace isoline::reports {
 namespace {
 
 // Of one run, until it reaches no more.
@@ -26,8 +28,7 @@ Reached from_curve(const Run& run) {
   Reached reached;
   std::size_t i = 0;
   for (std::size_t j = 0; j < kTargets; ++j) {
-    const Real tau = std::pow(10.0, -0.2 * static_cast<Real>(j));
-    const Real goal = run.minimum + tau * (start - run.minimum);
+    const Real goal = run.minimum + rung(j) * (start - run.minimum);
     while (i < curve.loss.size() && !(curve.loss[i] <= goal)) ++i;
     if (i == curve.loss.size()) break;
     reached.work.push_back(static_cast<Real>(curve.work[i]));
@@ -65,4 +66,4 @@ TargetMedians target_medians(const Comparison& comparison, const Cell& cell) {
   return medians;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

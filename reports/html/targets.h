@@ -6,7 +6,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 inline constexpr std::size_t kTargets = 51;
 
@@ -18,4 +18,4 @@ struct TargetMedians {
 // Exact from the hits of the records, otherwise read off their kept curves, as the tables are.
 TargetMedians target_medians(const Comparison& comparison, const Cell& cell);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Real share_of(Real value, Real low, Real high) {
@@ -78,4 +78,4 @@ std::string y_axis(const Frame& frame, const std::string& label, bool is_share) 
                            frame.top - 8, html_text(label));
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 struct Frame {
   Real left = 0, top = 0, width = 0, height = 0;  // on the paper
@@ -25,4 +25,4 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic);
 std::string x_axis(const Frame& frame, const std::string& label);  // with a grid line a tick
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share);
 
-}  // namespace isoline
+}  // namespace isoline::reports

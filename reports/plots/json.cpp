@@ -5,7 +5,7 @@
 
 #include "reports/plots/plots.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 Json plot_json(const Plot& plot, const Comparison& c) {
   constexpr const char* kKinds[] = {"steps", "dots", "bars", "matrix"};
@@ -33,4 +33,4 @@ Json plot_json(const Plot& plot, const Comparison& c) {
           {"series", series}};
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

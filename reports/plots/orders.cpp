@@ -12,7 +12,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kMostRanks = 20;
@@ -168,4 +168,4 @@ std::optional<Plot> signed_rank_plot(const Comparison& c) {
   return plot;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // The part of one optimizer. Steps: y(x) from each x on, with a band. Dots: x with its interval in
 // the row y. Bars: y in the row x. Matrix: y of the row in the column x.
@@ -35,4 +35,4 @@ struct Plot {
   std::vector<PlotSeries> series = {};
 };
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 std::vector<Real> cost_grid(Real most) {
   constexpr Real kPerDecade = 8;
@@ -65,4 +65,4 @@ std::vector<Plot> statistic_plots(const Comparison& c) {
   return plots;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // In the order of a report; empty where nothing has run.
 std::vector<Plot> statistic_plots(const Comparison& comparison);
@@ -47,4 +47,4 @@ std::string counted(const Comparison& comparison, std::size_t shown);
 // Who of the lines is highest at x: "sip † and 2 more (80 %)".
 std::string highest_at(const Plot& plot, Real x);
 
-}  // namespace isoline
+}  // namespace isoline::reports

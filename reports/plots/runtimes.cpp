@@ -13,7 +13,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kTargets = 51;
@@ -168,4 +168,4 @@ std::optional<Plot> target_plot(const Comparison& c) {
   return plot;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

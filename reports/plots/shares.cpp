@@ -12,7 +12,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using Measure = std::vector<std::optional<Real>>;
@@ -129,4 +129,4 @@ std::optional<Plot> accuracy_plot(const Comparison& c) {
   return plot;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

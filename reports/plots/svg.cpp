@@ -9,7 +9,7 @@
 #include "reports/plots/plots.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr Real kWidth = 720, kNames = 190, kRow = 18, kTop = 26, kBelow = 40;
@@ -220,4 +220,4 @@ std::string plot_html(const Plot& plot) {
       html_text(plot.caption));
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 
 #include "reports/statistics/statistics.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using Columns = std::map<std::string, std::vector<std::int64_t>>;
@@ -98,4 +98,4 @@ OracleCounts counts_at(const Record& record, Real work) {
   return counts;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/record.h"
-#include "core/sheet.h"
+#include "core/records/record.h"
+#include "core/records/sheet.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 class Prices {
  public:
@@ -35,4 +35,4 @@ class Prices {
 // the first kept point from there on.
 OracleCounts counts_at(const Record& record, Real work);
 
-}  // namespace isoline
+}  // namespace isoline::reports

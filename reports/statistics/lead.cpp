@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Median work to the tightest tolerance, of those compared where it was asked of them.
@@ -96,4 +96,4 @@ std::optional<Lead> lead_of(const Comparison& c, bool is_open) {
   return lead;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

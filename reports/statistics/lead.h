@@ -7,7 +7,7 @@
 #include "reports/comparison.h"
 #include "reports/statistics/runtimes.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 struct Scored {
   std::size_t optimizer = 0;
@@ -28,4 +28,4 @@ struct Lead {
 // Among all, or among those without privileges alone; nothing where none of them solves anything.
 std::optional<Lead> lead_of(const Comparison& comparison, bool is_open);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 #include "reports/statistics/rank_tests.h"
 #include "reports/statistics/runtimes.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // q at 0.05 over √2 for k optimizers: scipy.stats.studentized_range.ppf(0.95, k, inf) / 2**0.5.
@@ -122,4 +122,4 @@ SignedRanks signed_ranks(const Comparison& c, std::size_t k) {
   return all;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

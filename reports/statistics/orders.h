@@ -8,7 +8,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Medians to the tightest tolerance where planned, costs[p][s]: of &Cell::work or &Cell::cost.
 Costs costs_of(const Comparison& comparison, std::array<Spread, kTolerances.size()> Cell::*what);
@@ -45,4 +45,4 @@ struct SignedRanks {
 };
 SignedRanks signed_ranks(const Comparison& comparison, std::size_t k);
 
-}  // namespace isoline
+}  // namespace isoline::reports

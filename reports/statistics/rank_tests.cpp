@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Twice the midranks: a group of ties shares the mean of its ranks.
@@ -162,4 +162,4 @@ std::vector<Real> holm(const std::vector<Real>& p) {
   return adjusted(p, false, [&](std::size_t i) { return Real(p.size() - i); });
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 
 #include "reports/statistics/statistics.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // The two-sided p of Mann and Whitney (1947), 2 min(P(U ≤ u), P(U ≥ u)), given the ties there are:
 // exact up to kExact values in all, by the normal approximation with continuity and ties beyond.
@@ -30,4 +30,4 @@ std::vector<Real> holm(const std::vector<Real>& p);
 
 inline constexpr std::size_t kExact = 100;  // values up to which distributions are counted out
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 #include "core/digest.h"
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr Real kTail = 0.025;  // on either side of 95 %
@@ -136,4 +136,4 @@ Real accuracy(Real loss, Real start, Real minimum) {
   return share > 0 ? std::min(kMost, -std::log10(share)) : kMost;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/statistics/statistics.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 inline constexpr std::size_t kDraws = 1000;
 
@@ -58,4 +58,4 @@ std::vector<Real> mid_ranks(const std::vector<Real>& costs);
 // Beiranvand, Hare, Lucet (2017).
 Real accuracy(Real loss, Real start, Real minimum);
 
-}  // namespace isoline
+}  // namespace isoline::reports

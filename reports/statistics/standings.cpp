@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Median work; nothing where the pair was never planned.
@@ -162,4 +162,4 @@ void fill_standings(Comparison& c) {
   c.names = names.size();
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Counts for each optimizer, sorts all that is stored by optimizer, best first, and draws the
 // profiles. Needs the cells aggregated.
@@ -15,4 +15,4 @@ void fill_standings(Comparison& comparison);
 // Adds those that are not there yet.
 void add_missing(std::vector<std::string>& all, const std::vector<std::string>& some);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace isoline {
+namespace isoline::reports {
 
 Spread spread_of(std::vector<Real> values) {
   Spread spread;
@@ -69,4 +69,4 @@ Profile performance_profile(const Costs& costs) {
   return profile;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -8,7 +8,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 inline constexpr Real kNever = std::numeric_limits<Real>::infinity();
 
@@ -50,4 +50,4 @@ std::vector<std::optional<Real>> cost_ratios(const std::vector<std::optional<Rea
 // A ratio's part in the area of a profile: 1 at the least cost, 0 from `most` times it on.
 Real score_of(Real ratio, Real most);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // What all runs of an optimizer that reached the tightest tolerance had asked by then.
@@ -158,4 +158,4 @@ StatisticTable prices_table(const Comparison& c) {
   return table;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -12,7 +12,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // What the i-th row or column is about, as attributes by which the page filters.
@@ -189,4 +189,4 @@ nlohmann::json statistics_json(const Comparison& c) {
   return {{"limits", c.limits}, {"cost_unit", cost_unit(c)}, {"tables", tables}, {"plots", plots}};
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -6,7 +6,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 std::string statistics_html(const Comparison& comparison);
 std::string statistics_markdown(const Comparison& comparison);
@@ -14,4 +14,4 @@ std::string statistics_latex(const Comparison& comparison);
 std::string statistics_csv(const Comparison& comparison);  // table,row,column,value
 nlohmann::json statistics_json(const Comparison& comparison);
 
-}  // namespace isoline
+}  // namespace isoline::reports

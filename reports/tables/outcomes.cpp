@@ -10,7 +10,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // The area of an optimizer's profile with its interval over problems, names drawn together.
@@ -140,4 +140,4 @@ StatisticTable returned_table(const Comparison& c) {
   return table;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -9,7 +9,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // The order of the optimizers by score, without one of them; nothing left out where `without` is k.
@@ -205,4 +205,4 @@ StatisticTable accuracy_table(const Comparison& c) {
   return table;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

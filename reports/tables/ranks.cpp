@@ -11,7 +11,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 std::string rank_reading(const Comparison& c, const std::vector<Real>& means, std::size_t names) {
@@ -144,4 +144,4 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
   return all;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -9,7 +9,7 @@
 #include "reports/tables/tables.h"
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr Real kDigits = 10;  // of the targets: τ = 10^(−j/5), j = 0 … 50
@@ -226,4 +226,4 @@ StatisticTable restart_table(const Comparison& c) {
   return table;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -9,7 +9,7 @@
 
 #include "core/array.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // The text is the same in every format; the numbers, by what they are, go into report.json.
 struct TableCell {
@@ -39,4 +39,4 @@ struct StatisticTable {
   std::vector<TableSubject> row_subjects = {}, column_subjects = {};  // may be fewer, or none
 };
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "reports/text.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
   return std::min(c.optimizers.size(), most);
@@ -72,4 +72,4 @@ std::vector<StatisticTable> statistic_tables(const Comparison& c) {
           prices_table(c)};
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

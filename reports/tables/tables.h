@@ -8,7 +8,7 @@
 
 #include "reports/comparison.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // In the order of a report; empty where nothing has run.
 std::vector<StatisticTable> statistic_tables(const Comparison& comparison);
@@ -49,4 +49,4 @@ TableCell share_cell(std::size_t part, std::size_t whole);  // "33 %"
 // "forward solves at measured prices", or what else the costs of this comparison are.
 std::string cost_unit(const Comparison& comparison);
 
-}  // namespace isoline
+}  // namespace isoline::reports

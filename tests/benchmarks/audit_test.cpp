@@ -1,19 +1,26 @@
 // The audit: its problems are what they claim, the laws that theory knows are recovered, a false
 // declaration is seen, a crash costs one audit alone.
-#include "benchmarks/audit.h"
+#include "benchmarks/audit/audit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <csignal>
 
-#include "benchmarks/audit_problems.h"
-#include "benchmarks/resources.h"
+#include "benchmarks/audit/audit_problems.h"
+#include "benchmarks/plan/resources.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "problems/conformance.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using optimizers::Linearization;
+using optimizers::Meter;
+using optimizers::stepper_entry;
+using problems::examine;
+using problems::Finding;
+using problems::Problem;
 namespace {
 
 AuditedOptimizer audited(const std::string& name) {
@@ -224,4 +231,4 @@ TEST(Audit, ACrashCostsItsOwnAuditAlone) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

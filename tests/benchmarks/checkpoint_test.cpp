@@ -3,12 +3,12 @@
 
 #include <csignal>
 
-#include "benchmarks/execute.h"
-#include "benchmarks/suite.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/execute.h"
 #include "core/json.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -77,4 +77,4 @@ TEST(Checkpoint, OfAnotherCellOrDamagedIsLeftAlone) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

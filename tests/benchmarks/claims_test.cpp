@@ -1,16 +1,15 @@
 // The claims of the tree: their form, their cells, and how they are chosen.
-#include "benchmarks/claims.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "benchmarks/resources.h"
+#include "benchmarks/plan/claim_cells.h"
+#include "benchmarks/plan/resources.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 const Catalog& catalog() {
@@ -87,4 +86,4 @@ TEST(ClaimsOfTheTree, RunWhatIsLongOnlyWhenAsked) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

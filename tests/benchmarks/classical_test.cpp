@@ -5,10 +5,13 @@
 
 #include <cmath>
 
-#include "benchmarks/catalog.h"
-#include "benchmarks/execute.h"
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/execute.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using problems::Point;
+using problems::Problem;
 namespace {
 
 const std::vector<std::string> kZeroResidual = {
@@ -66,4 +69,4 @@ TEST(ClassicalProblems, OursNeedsAsFewCandidatesAsCeres) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

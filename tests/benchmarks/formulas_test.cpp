@@ -1,11 +1,18 @@
 // Every formula of the registries is typeset whole: well-formed, and no letter lost.
 #include <gtest/gtest.h>
 
-#include "benchmarks/catalog.h"
+#include "benchmarks/plan/catalog.h"
 #include "reports/html/mathml.h"
 #include "reports/html/mathml_letters.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::accent;
+using reports::letters_of;
+using reports::lowered;
+using reports::mathml;
+using reports::raised;
+using reports::utf8_of;
 namespace {
 
 std::vector<std::string> formulas() {
@@ -95,4 +102,4 @@ TEST(Formulas, LeaveNoMarkOfPlainText) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

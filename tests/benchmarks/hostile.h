@@ -4,9 +4,16 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "benchmarks/catalog.h"
+#include "benchmarks/plan/catalog.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using optimizers::Linearization;
+using optimizers::Meter;
+using optimizers::stepper_entry;
+using problems::Draw;
+using problems::problem_entry;
+using problems::ProblemParts;
 
 // Descends twice, then does `misdeed`.
 struct Hostile {
@@ -91,4 +98,4 @@ inline Request request_for(const Catalog& catalog, const std::string& problem,
           .budget = {.iterations = 50}};
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

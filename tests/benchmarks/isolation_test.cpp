@@ -1,12 +1,12 @@
 // A cell that misbehaves costs that cell alone, and its record says what happened.
 #include <gtest/gtest.h>
 
-#include "benchmarks/runner.h"
+#include "benchmarks/run/runner.h"
 #include "core/clock.h"
 #include "tests/benchmarks/hostile.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 class Isolation : public testing::Test {
@@ -130,4 +130,4 @@ TEST_F(Isolation, TextOfAProcessThatCrashesIsNothing) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "benchmarks/runner.h"
-#include "benchmarks/suite.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/runner.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 
 struct FinishedMatrix {
   FinishedMatrix(const Catalog& catalog, const Suite& suite, const Rates& rates)
@@ -33,4 +33,4 @@ inline std::string title_of(const Record& record) {
   return record.request.problem.spec + " × " + record.request.optimizer.spec;
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

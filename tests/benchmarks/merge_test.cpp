@@ -1,20 +1,23 @@
 // The union of result folders obeys the laws of a union, and never chooses between results.
-#include "benchmarks/merge.h"
+#include "benchmarks/merge/merge.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "benchmarks/resources.h"
-#include "core/audit.h"
+#include "benchmarks/plan/resources.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/random.h"
-#include "core/schema.h"
+#include "core/records/audited.h"
+#include "core/records/schema.h"
 #include "tests/reports/fixture.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::plan_of;
+using reports::ResultFolder;
 namespace {
 
 namespace fs = std::filesystem;
@@ -227,4 +230,4 @@ TEST(Merge, NeverWritesIntoAFolderThatHoldsSomething) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -6,7 +6,7 @@
 
 #include "tests/benchmarks/matrix.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 using Path = std::vector<std::vector<Real>>;
@@ -145,4 +145,4 @@ TEST(Figure5aSuite, KeepsThePathsOfTheSine) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -1,16 +1,19 @@
 // Measured prices: every oracle offered, in the right order of magnitude, kept by later runs.
-#include "benchmarks/prices.h"
+#include "benchmarks/run/prices.h"
 
 #include <gtest/gtest.h>
 
-#include "benchmarks/resources.h"
-#include "benchmarks/sheets.h"
+#include "benchmarks/plan/resources.h"
+#include "benchmarks/run/sheets.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "problems/dense_physics.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using problems::DensePhysics;
+using problems::Problem;
 namespace {
 
 const Catalog& catalog() {
@@ -113,4 +116,4 @@ TEST(Prices, StandInTheSheetAndAreKeptByLaterRuns) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

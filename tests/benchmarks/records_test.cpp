@@ -2,12 +2,15 @@
 #include <cmath>
 #include <numeric>
 
-#include "benchmarks/resources.h"
+#include "benchmarks/plan/resources.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "tests/benchmarks/matrix.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using optimizers::why_inapplicable;
+using problems::Problem;
 namespace {
 
 constexpr std::int64_t kIterations = 300, kWork = 1500;
@@ -138,4 +141,4 @@ TEST(Records, BudgetsAreObeyed) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -8,12 +8,13 @@
 #include <csignal>
 #include <fstream>
 
-#include "benchmarks/runner.h"
-#include "benchmarks/suite.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/runner.h"
 #include "core/json.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +130,4 @@ TEST_F(Resume, AnInterruptedRunKeepsWhatIsDoneAndGoesOn) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -1,17 +1,20 @@
 // The suites and rates of the tree: what they promise of themselves.
-#include "benchmarks/suite.h"
+#include "benchmarks/plan/suite.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "benchmarks/resources.h"
+#include "benchmarks/plan/resources.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "core/spec.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using optimizers::Family;
+using optimizers::OptimizerEntry;
 namespace {
 
 const Catalog& catalog() {
@@ -157,4 +160,4 @@ TEST(Rates, GiveWayToExplicitOptions) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

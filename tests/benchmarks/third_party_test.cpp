@@ -2,16 +2,25 @@
 // are covered everywhere by being there.
 #include <cmath>
 
-#include "benchmarks/preview.h"
-#include "benchmarks/resources.h"
-#include "benchmarks/sheets.h"
+#include "benchmarks/plan/resources.h"
+#include "benchmarks/run/preview.h"
+#include "benchmarks/run/sheets.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "problems/dense_physics.h"
 #include "reports/report.h"
 #include "tests/benchmarks/matrix.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using optimizers::rule_entry;
+using problems::DensePhysics;
+using problems::Draw;
+using problems::problem_entry;
+using problems::ProblemParts;
+using reports::compare_optimizers;
+using reports::markdown_report;
+using reports::read_study;
 namespace {
 
 // y = (sinh x1, x1 x2), y* = (1, 1).
@@ -118,4 +127,4 @@ TEST(ThirdParty, APlanConformsToTheSchemaAndKeepsEarlierCells) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -5,12 +5,16 @@
 #include <map>
 #include <ranges>
 
-#include "benchmarks/claims.h"
+#include "benchmarks/plan/claim_cells.h"
 #include "core/random.h"
 #include "reports/claims/claims.h"
 #include "tests/benchmarks/matrix.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using reports::Judgement;
+using reports::measured_text;
+using reports::Verdict;
 namespace {
 
 const Catalog& catalog() {
@@ -177,4 +181,4 @@ TEST(VerdictsOnClaims, OfLearnedProblemsAreMoreThanTwelveAndAtMostOneInTenOutliv
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -4,7 +4,9 @@
 
 #include "tests/benchmarks/matrix.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using optimizers::Family;
 namespace {
 
 const Catalog& catalog() {
@@ -135,4 +137,4 @@ TEST(Hits, AreNoLaterThanTheCurveShowsThem) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -27,8 +27,8 @@ function(readme_examples out)
     set(name ${CMAKE_MATCH_3})
     file(CONFIGURE OUTPUT ${file} CONTENT "${block}" @ONLY)
     list(APPEND sources ${file})
-    string(APPEND ${room}_declarations "void register_${name}(decltype(Catalog::${room})&);\n")
-    string(APPEND ${room}_calls "  register_${name}(catalog.${room});\n")
+    string(APPEND ${room}_declarations "void register_${name}(decltype(benchmarks::Catalog::${room})&);\n")
+    string(APPEND ${room}_calls "  ${room}::register_${name}(catalog.${room});\n")
     string(REPLACE "_" "-" entry ${name})
     string(APPEND ${room}_names "\"${entry}\", ")
   endwhile()
@@ -36,9 +36,14 @@ function(readme_examples out)
 "// Generated from the cpp blocks of README.md.
 #include \"tests/cli/readme_examples.h\"
 
-namespace isoline {
+namespace isoline::problems {
+@problems_declarations@}  // namespace isoline::problems
 
-@problems_declarations@@optimizers_declarations@
+namespace isoline::optimizers {
+@optimizers_declarations@}  // namespace isoline::optimizers
+
+namespace isoline::benchmarks {
+
 Catalog catalog_with_readme_examples() {
   Catalog catalog = builtin_catalog();
 @problems_calls@@optimizers_calls@  return catalog;
@@ -47,7 +52,7 @@ Catalog catalog_with_readme_examples() {
 std::vector<std::string> readme_problems() { return {@problems_names@}; }
 std::vector<std::string> readme_optimizers() { return {@optimizers_names@}; }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks
 " @ONLY)
   set(${out} ${sources} PARENT_SCOPE)
 endfunction()

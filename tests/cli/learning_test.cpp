@@ -3,10 +3,12 @@
 
 #include <cmath>
 
-#include "core/number_file.h"
+#include "core/records/number_file.h"
 #include "tests/cli/shell.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using networks::Network;
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +97,4 @@ TEST(Network, ThatDoesNotFitLeavesNoFolder) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

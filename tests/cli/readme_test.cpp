@@ -9,7 +9,11 @@
 #include "tests/cli/readme_examples.h"
 #include "tests/cli/shell.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using problems::examine;
+using problems::Finding;
+using problems::Problem;
 namespace {
 
 std::string readme() { return read_text(std::filesystem::path(ISOLINE_SOURCE_DIR) / "README.md"); }
@@ -110,4 +114,4 @@ TEST(Readme, LinksToFilesOfTheTreeThatExist) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

@@ -8,7 +8,7 @@
 
 #include "tests/cli/shell.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -203,4 +203,4 @@ TEST_F(LongRun, AnInterruptedRunExitsWith130AndGoesOn) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

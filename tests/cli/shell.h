@@ -9,10 +9,10 @@
 #include <string>
 
 #include "core/json.h"
-#include "core/record.h"
+#include "core/records/record.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 
 struct Finished {
   int exit_code = -1;
@@ -53,4 +53,4 @@ inline std::size_t count_records(const std::filesystem::path& out) {
   return count;
 }
 
-}  // namespace isoline
+}  // namespace isoline::benchmarks

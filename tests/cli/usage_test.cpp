@@ -3,7 +3,7 @@
 
 #include "tests/cli/shell.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
 namespace {
 
 TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
@@ -140,4 +140,4 @@ TEST(Completion, IsValidBashAndCompletesNames) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

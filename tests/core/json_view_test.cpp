@@ -1,5 +1,5 @@
 // What is read without a tree is what the tree holds; what is missing or of another type is said.
-#include "core/json_view.h"
+#include "core/records/json_view.h"
 
 #include <gtest/gtest.h>
 

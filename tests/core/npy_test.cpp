@@ -1,5 +1,5 @@
 // Arrays in files: NumPy's format and text.
-#include "core/npy.h"
+#include "core/records/npy.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/number_file.h"
+#include "core/records/number_file.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {

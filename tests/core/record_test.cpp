@@ -1,5 +1,5 @@
 // A record survives the round trip, and its digest names the request.
-#include "core/record.h"
+#include "core/records/record.h"
 
 #include <gtest/gtest.h>
 

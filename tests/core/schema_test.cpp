@@ -1,5 +1,5 @@
 // Violations of a schema are found and said in words.
-#include "core/schema.h"
+#include "core/records/schema.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,8 @@
 #include "core/spec.h"
 #include "tests/networks/examination.h"
 
-namespace isoline {
+namespace isoline::networks {
+
 namespace {
 
 constexpr Index kSamples = 5;
@@ -171,4 +172,4 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
 INSTANTIATE_TEST_SUITE_P(Registry, EveryNetwork, ::testing::ValuesIn(specs()), test_name);
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::networks

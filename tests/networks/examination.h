@@ -7,7 +7,7 @@
 
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::networks {
 
 class NetworkExamination {
  public:
@@ -121,4 +121,4 @@ class NetworkExamination {
   Workspace w_;  // of the forward pass at theta_
 };
 
-}  // namespace isoline
+}  // namespace isoline::networks

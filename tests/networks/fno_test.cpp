@@ -5,7 +5,8 @@
 #include "networks/network.h"
 #include "networks/truncated_fourier.h"
 
-namespace isoline {
+namespace isoline::networks {
+
 namespace {
 
 std::unique_ptr<Network> make(const std::string& spec, Index N) {
@@ -76,4 +77,4 @@ TEST(TruncatedFourier, SynthesisIsTheInverseOfTheHalfSpectrum) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -5,7 +5,7 @@
 
 #include "tests/networks/examination.h"
 
-namespace isoline {
+namespace isoline::networks {
 namespace {
 
 constexpr Index kSize = 6, kSamples = 4;
@@ -69,4 +69,4 @@ TEST(MeanMatched, WantsAsManyOutputsAsInputs) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -3,7 +3,8 @@
 
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::networks {
+
 namespace {
 
 std::unique_ptr<Network> make(const std::string& options, Index inputs, Index outputs) {
@@ -132,4 +133,4 @@ TEST(Perceptron, StartsAsPyTorchOrKerasDo) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::networks

@@ -4,7 +4,8 @@
 #include "core/threads.h"
 #include "networks/network.h"
 
-namespace isoline {
+namespace isoline::networks {
+
 namespace {
 
 NetworkShape grids(Index N, Index in = 1, Index out = 1) {
@@ -239,4 +240,4 @@ TEST(Unet, AShapeThatDoesNotFitIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::networks

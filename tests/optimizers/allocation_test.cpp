@@ -22,7 +22,13 @@ __attribute__((visibility("default"))) void* malloc(std::size_t size) noexcept {
 }
 #endif
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::Draw;
+using problems::Problem;
+using problems::problem_entry;
+using problems::ProblemRegistry;
+using problems::register_problems;
 namespace {
 
 // FFTW allocates inside of a transform what we cannot give it.
@@ -67,4 +73,4 @@ TEST(Allocation, TrainingStepsAllocateNothingOnceWarm) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -4,7 +4,10 @@
 #include "run.h"
 #include "trial_problems.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::DensePhysics;
+using problems::Problem;
 namespace {
 
 // Rates at which the easy quadratic, largest curvature 5.2, is solved well within the budget.
@@ -171,4 +174,4 @@ TEST(Libraries, WriteNothingToStandardError) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

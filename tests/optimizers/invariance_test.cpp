@@ -7,7 +7,9 @@
 
 #include "run.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::Problem;
 namespace {
 
 constexpr int kSteps = 10;
@@ -65,4 +67,4 @@ TEST(Invariance, GradientStepsDifferVisibly) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -5,7 +5,10 @@
 #include "run.h"
 #include "trial_problems.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::Point;
+using problems::Problem;
 namespace {
 
 // To 1e-10, and to rounding times cond(J)² where that is more.
@@ -166,4 +169,4 @@ TEST(InverseGradient, NeedsAsManyResidualsAsUnknowns) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -5,7 +5,9 @@
 #include "run.h"
 #include "trial_problems.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::Problem;
 namespace {
 
 void expect_near(const Vector& one, const Vector& other, Real tolerance, const std::string& what) {
@@ -82,4 +84,4 @@ TEST(TrainingMethods, LowerTheLossOfAPerceptron) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

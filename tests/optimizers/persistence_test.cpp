@@ -5,7 +5,9 @@
 #include "run.h"
 #include "trial_problems.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::Problem;
 namespace {
 
 struct Ongoing {
@@ -80,4 +82,4 @@ TEST(Persistence, OfEveryMethodOnADirectProblem) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -3,7 +3,7 @@
 
 #include "run.h"
 
-namespace isoline {
+namespace isoline::optimizers {
 namespace {
 
 constexpr Real kRounding = 1e-14;
@@ -83,4 +83,4 @@ TEST(Rules, OnlyGradientRulesCanBeUsedInside) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

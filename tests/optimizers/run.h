@@ -9,7 +9,13 @@
 #include "core/spec.h"
 #include "optimizers/optimizer.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using problems::Draw;
+using problems::Problem;
+using problems::ProblemEntry;
+using problems::ProblemRegistry;
+using problems::register_problems;
 
 inline const OptimizerRegistry& optimizers() {
   static const OptimizerRegistry all = [] {
@@ -68,4 +74,4 @@ inline Outcome run(const Problem& problem, const std::string& spec, const Budget
 // `count` iterations, come what may: no target, no stall in so few.
 inline Budget iterations(std::int64_t count) { return {.iterations = count, .target = 0}; }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -5,7 +5,12 @@
 #include "run.h"
 #include "trial_problems.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using networks::Block;
+using networks::Network;
+using problems::Point;
+using problems::Problem;
 namespace {
 
 Vector first_step(const Problem& problem, const std::string& spec) {
@@ -229,4 +234,4 @@ TEST(Libraries, LearnFromFiniteData) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::optimizers

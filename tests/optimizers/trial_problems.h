@@ -6,7 +6,16 @@
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::optimizers {
+
+using networks::Block;
+using networks::LayerFactor;
+using networks::Network;
+using problems::Batch;
+using problems::DensePhysics;
+using problems::HalfSquared;
+using problems::Inverse;
+using problems::Problem;
 
 // y = M x, M (m, k); x by least squares, unique where M has full column rank.
 class Linear final : public DensePhysics {
@@ -160,4 +169,4 @@ inline Problem learned_affine(Index batch, Index data = 0) {
                   .samples = {.batch = batch, .data = data, .stream = stream, .draw = draw}});
 }
 
-}  // namespace isoline
+}  // namespace isoline::optimizers

@@ -6,7 +6,8 @@
 
 #include "make.h"
 
-namespace isoline {
+namespace isoline::problems {
+
 namespace {
 
 Real sum_of_squares_at_start(const std::string& spec) { return 2 * loss_at_start(make(spec)); }
@@ -132,4 +133,4 @@ TEST(VariableDimension, AHundredThousandUnknownsAreServedByProductsAlone) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -8,7 +8,7 @@
 
 #include "make.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 std::vector<std::string> specs() {
@@ -118,4 +118,4 @@ TEST(Conformance, FindsAWrongPushforward) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -5,7 +5,7 @@
 
 #include "make.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 TEST(Scaling, ThePublishedStartInYIsTheSameForEveryAlpha) {
@@ -105,4 +105,4 @@ TEST(Sine, TheFormsAreOneWhereXiIsOne) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -7,7 +7,7 @@
 #include "make.h"
 #include "problems/random_fields.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 Vector forward(const Problem& problem, const Vector& x) {
@@ -175,4 +175,4 @@ TEST(Heat, RepeatedDampedInversesFollowThePublishedErrorsAndDoNotDiverge) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::problems

@@ -6,7 +6,7 @@
 #include "problems/conformance.h"
 #include "tests/problems/make.h"
 
-namespace isoline {
+namespace isoline::problems {
 namespace {
 
 const std::vector<std::string> kLearned = {
@@ -141,4 +141,4 @@ TEST(Learning, ToyWatchesItsNeuronsAndItsPath) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::problems

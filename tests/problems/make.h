@@ -6,7 +6,7 @@
 #include "core/spec.h"
 #include "problems/problem.h"
 
-namespace isoline {
+namespace isoline::problems {
 
 inline const ProblemRegistry& all_problems() {
   static const ProblemRegistry registry = [] {
@@ -30,4 +30,4 @@ inline Real loss_at_start(const Problem& problem) {
   return at.loss;
 }
 
-}  // namespace isoline
+}  // namespace isoline::problems

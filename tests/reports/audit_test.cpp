@@ -9,7 +9,7 @@
 #include "reports/report.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 PowerLaw law(Real exponent, Real residual) {
@@ -112,4 +112,4 @@ TEST(AuditFile, IsReadWithTheStudyAndReportsDoWithoutIt) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,11 +7,11 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "reports/gate/gate.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // Eight cells on one problem with a minimum, four on one without, and one pair that makes no sense.
@@ -95,4 +95,4 @@ TEST(Baseline, StandsOnTheLeftOfAResultFolder) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

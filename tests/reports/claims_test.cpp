@@ -8,7 +8,8 @@
 #include "reports/comparison.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
+
 namespace {
 
 // A run whose error in x is `error` throughout; its cell is named by optimizer and seed.
@@ -224,4 +225,4 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

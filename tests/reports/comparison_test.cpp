@@ -10,7 +10,7 @@
 #include "reports/wording.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 TEST(Study, AnInvalidRecordIsListedAndNotFatal) {
@@ -202,4 +202,4 @@ TEST(Comparison, TimesTakenBesideOtherRunsAreMarked) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Landscape sampled(int n, const std::function<Real(Real, Real)>& loss) {
@@ -94,4 +94,4 @@ TEST(Contours, ASmallCircleOfACoarseGridIsRound) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -11,7 +11,7 @@
 #include "reports/tables/tables.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Sheet priced(const std::string& spec, Real pullback) {
@@ -121,4 +121,4 @@ TEST(Costs, StandBesideTheRawCounts) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

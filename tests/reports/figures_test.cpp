@@ -9,7 +9,8 @@
 #include "reports/learned.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
+
 namespace {
 
 struct Learned {
@@ -132,4 +133,4 @@ TEST_F(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

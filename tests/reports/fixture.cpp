@@ -9,8 +9,10 @@
 #include <cmath>
 
 #include "core/json.h"
+#include "core/ladder.h"
 
-namespace isoline {
+namespace isoline::reports {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,7 +22,7 @@ Hits hits_of(const PlainRun& run) {
   for (std::size_t j = 0; j < 51; ++j) {
     const bool is_met = j < run.hits;
     const std::int64_t work = is_met ? static_cast<std::int64_t>(j) * run.work_per_hit : -1;
-    hits.target.push_back(std::pow(10.0, -0.2 * static_cast<Real>(j)));
+    hits.target.push_back(rung(j));
     hits.iteration.push_back(is_met ? static_cast<std::int64_t>(j) : -1);
     hits.work.push_back(work);
     hits.forwards.push_back(work);
@@ -37,7 +39,7 @@ Curve curve_of(const PlainRun& run) {
     curve.work.push_back(k * run.work_per_hit);
     curve.wall_seconds.push_back(1e-5 * static_cast<Real>(k * run.work_per_hit));
     curve.processor_seconds.push_back(curve.wall_seconds.back());
-    curve.loss.push_back(std::pow(10.0, -0.2 * static_cast<Real>(j)));
+    curve.loss.push_back(rung(j));
     curve.x_error.push_back(std::sqrt(curve.loss.back()));
     curve.gradient_norm.push_back(curve.x_error.back());
     curve.step_norm.push_back(0.1 * curve.x_error.back());
@@ -113,4 +115,4 @@ Study study_of(const std::vector<Result>& results) {
   return study;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

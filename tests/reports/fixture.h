@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "core/record.h"
-#include "core/sheet.h"
+#include "core/records/record.h"
+#include "core/records/sheet.h"
 #include "reports/study.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // A folder of its own, removed at the end.
 class ResultFolder {
@@ -57,4 +57,4 @@ struct Size {
 };
 void write_sample_study(const std::filesystem::path& folder, const Size& size);
 
-}  // namespace isoline
+}  // namespace isoline::reports

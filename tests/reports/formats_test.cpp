@@ -6,13 +6,13 @@
 #include <sstream>
 
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "reports/report.h"
 #include "reports/text.h"
 #include "reports/wording.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr const char* kHostile = "<b>&|\"x\"</script><!--@all `$\\evil_{1}%#~^\n=cmd,*[";
@@ -220,4 +220,4 @@ TEST(Rerun, TheCommandAsksForTheCell) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

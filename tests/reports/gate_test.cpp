@@ -5,11 +5,11 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "reports/report.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -201,4 +201,4 @@ TEST(Gate, AllFormatsTellTheSame) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

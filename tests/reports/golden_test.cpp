@@ -10,7 +10,7 @@
 #include "reports/statistics/rank_tests.h"
 #include "reports/statistics/runtimes.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr Real kRounding = 1e-12;
@@ -109,4 +109,4 @@ TEST(Golden, ExpectedRunningTimeIsThatOfGeometricRestarts) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // `gd` takes `factor` times the work of `newton` on each of five problems.
@@ -64,4 +64,4 @@ TEST(Lead, NobodyLeadsWhereNothingIsSolved) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

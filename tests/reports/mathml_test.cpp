@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 std::string math(const std::string& content) { return "<math>" + content + "</math>"; }
@@ -46,4 +46,4 @@ TEST(Mathml, ForeignTextStaysText) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

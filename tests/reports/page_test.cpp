@@ -8,7 +8,7 @@
 #include "reports/text.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -80,4 +80,4 @@ TEST(Page, TenThousandRecordsStayBelowEightMegabytes) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

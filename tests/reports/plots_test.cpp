@@ -11,7 +11,7 @@
 #include "reports/report.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // a is best on p, q and r; b is two, four and sixteen times as dear there, and alone on s.
@@ -162,4 +162,4 @@ TEST(Plots, OfNothingAreNone) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using Sample = std::vector<Real>;
@@ -120,4 +120,4 @@ TEST(Adjustment, AgreesWithNumPy) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

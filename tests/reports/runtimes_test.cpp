@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 // (100 + 40 + 60) / 2; one success of three: E[T_s] + (1 − p)/p E[T_us] = 60 + 2 · 100 = 260.
@@ -82,4 +82,4 @@ TEST(Quantile, IsTheNearestRank) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -11,7 +11,7 @@
 #include "reports/tables/formats.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -181,4 +181,4 @@ TEST_F(SameFigures, AreTheNumbersThatTheirTextsRound) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

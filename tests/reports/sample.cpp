@@ -6,10 +6,12 @@
 #include <fstream>
 
 #include "core/json.h"
+#include "core/ladder.h"
 #include "tests/reports/fixture.h"
 #include "tests/reports/sample_parts.h"
 
-namespace isoline {
+namespace isoline::reports {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,7 +83,7 @@ void finish(Record& r, bool is_declared) {
     r.minimum = 0;
     r.hits.emplace();
     for (int j = 0; j < 51; ++j) {
-      const Real target = start * std::pow(10.0, -0.2 * j);
+      const Real target = start * rung(static_cast<std::size_t>(j));
       std::size_t k = 0;
       while (k < curve.loss.size() && !(curve.loss[k] <= target)) ++k;
       const bool is_met = k < curve.loss.size();
@@ -235,4 +237,4 @@ void write_sample_study(const fs::path& folder, const Size& size) {
   save(folder / "plan.json", to_json(plan).dump());
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 Landscape grid(std::array<Real, 4> window, const std::function<Real(Real, Real)>& loss) {
@@ -64,4 +64,4 @@ void descend(const Surface& s, const Kind& kind, Eigen::Vector2d& x) {
   x -= blend * newton * 0.8 + (1 - blend) * std::min(0.01, 0.3 / gradient.norm()) * gradient;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

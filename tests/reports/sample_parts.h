@@ -4,9 +4,9 @@
 #include <array>
 #include <functional>
 
-#include "core/sheet.h"
+#include "core/records/sheet.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 struct Kind {
   const char* name;
@@ -67,4 +67,4 @@ MeasuredPrices sample_prices(std::size_t problem);
 // One step of a descent whose direction is a blend of gradient and Newton, by the method's speed.
 void descend(const Surface& surface, const Kind& kind, Eigen::Vector2d& x);
 
-}  // namespace isoline
+}  // namespace isoline::reports

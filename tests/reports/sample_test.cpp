@@ -8,7 +8,7 @@
 #include "tests/reports/fixture.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 #ifdef ISOLINE_SANITIZE  // some ten times slower
@@ -36,4 +36,4 @@ TEST(Report, OfTenThousandCellsIsWholeAndItsPageBelowEightMegabytes) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

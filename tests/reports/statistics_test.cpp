@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 TEST(Spread, AnUnsolvedRunCountsAsInfinite) {
@@ -92,4 +92,4 @@ TEST(Profile, AgreesWithAnIndependentImplementation) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

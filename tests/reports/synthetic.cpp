@@ -8,9 +8,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/ladder.h"
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::array kPhysics = {"poisson", "heat",  "wave",    "lens",  "chain",
@@ -103,7 +104,7 @@ Hits hits_of(const Curve& curve) {
   Hits hits;
   std::size_t k = 0;
   for (int j = 0; j <= 50; ++j) {
-    const Real tau = std::pow(10.0, -0.2 * j);
+    const Real tau = rung(static_cast<std::size_t>(j));
     while (k < curve.loss.size() && curve.loss[k] > tau * curve.loss[0]) ++k;
     const bool is_met = k < curve.loss.size();
     hits.target.push_back(tau);
@@ -211,4 +212,4 @@ Record synthetic_record(const SyntheticSize& size, std::size_t index) {
   return record;
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

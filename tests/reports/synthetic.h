@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "core/record.h"
+#include "core/records/record.h"
 
-namespace isoline {
+namespace isoline::reports {
 
 // Every problem is given to every optimizer with every seed.
 struct SyntheticSize {
@@ -23,4 +23,4 @@ Record synthetic_record(const SyntheticSize& size, std::size_t index);  // in [0
 // The plan, the sheets and all records. Without a flush of each file.
 void write_synthetic_study(const std::filesystem::path& folder, const SyntheticSize& size);
 
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -5,10 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "core/sheet.h"
+#include "core/records/sheet.h"
 #include "tests/reports/synthetic.h"
 
-namespace isoline {
+namespace isoline::reports {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,4 +64,4 @@ void write_synthetic_study(const fs::path& folder, const SyntheticSize& size) {
   save(folder / "plan.json", to_json(plan));
 }
 
-}  // namespace isoline
+}  // namespace isoline::reports

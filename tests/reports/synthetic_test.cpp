@@ -7,11 +7,11 @@
 #include <map>
 
 #include "core/json.h"
-#include "core/schema.h"
+#include "core/records/schema.h"
 #include "reports/report.h"
 #include "tests/temporary_folder.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 #ifdef ISOLINE_SANITIZE  // some ten times slower
@@ -105,4 +105,4 @@ TEST(Report, OfThousandsOfRecordsGivesEachARowAndStatesTheSameNumberOfFailuresEv
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

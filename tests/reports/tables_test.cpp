@@ -9,7 +9,7 @@
 #include "reports/tables/formats.h"
 #include "tests/reports/fixture.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
@@ -173,4 +173,4 @@ TEST(Tables, EveryFormatPrintsTheSameFigures) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace isoline {
+namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kPairs = 100;  // of jobs
@@ -104,4 +104,4 @@ TEST(Timing, IsTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::reports

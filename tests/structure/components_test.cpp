@@ -5,10 +5,14 @@
 #include <set>
 #include <sstream>
 
-#include "benchmarks/catalog.h"
+#include "benchmarks/plan/catalog.h"
 #include "tests/structure/sources.h"
 
-namespace isoline {
+namespace isoline::benchmarks {
+
+using networks::network_registry;
+using optimizers::register_optimizers;
+using problems::register_problems;
 namespace {
 
 const Catalog& catalog() {
@@ -107,4 +111,4 @@ TEST(Components, ANameRegisteredTwiceIsAnError) {
 }
 
 }  // namespace
-}  // namespace isoline
+}  // namespace isoline::benchmarks

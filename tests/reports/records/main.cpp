@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   CLI::App app("Write a result folder of invented records");
-  isoline::SyntheticSize size;
+  isoline::reports::SyntheticSize size;
   std::string folder;
   app.add_option("FOLDER", folder, "The new result folder")
       ->required()
@@ -23,6 +23,6 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--random-seed", size.random_seed, "Of all that is drawn")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  isoline::write_synthetic_study(folder, size);
+  isoline::reports::write_synthetic_study(folder, size);
   fmt::print("{} records in {}\n", size.records(), folder);
 }

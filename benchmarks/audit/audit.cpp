@@ -1,0 +1,199 @@
+// The audit's measurements. Every oracle is granted, and counted; what a method declares is
+// compared with what it asked.
+#include "benchmarks/audit/audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "benchmarks/audit/audit_problems.h"
+#include "benchmarks/audit/audit_subject.h"
+#include "benchmarks/run/isolate.h"
+#include "core/json.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+constexpr double kAuditSeconds = 60;        // an optimizer; nearly all take a hundredth of a second
+constexpr std::int64_t kStepsOfPath = 5;    // of invariance: few, so that rounding stays small
+constexpr std::int64_t kStepsOfCount = 10;  // of the oracles
+constexpr std::int64_t kStepsOfApproach = 1000;
+
+Vector gradient_at_start(const Problem& problem) {
+  Point at;
+  problem.forward(problem.start(), at);
+  Matrix g(problem.outputs(), problem.samples());
+  problem.cotangent(at, g);
+  Vector gradient(problem.unknowns());
+  problem.pullback(g, gradient, at);
+  return gradient;
+}
+
+ScalingLaw scaling_law(const Subject& subject, Problem (*make)(Real)) {
+  constexpr int kDecades = 3, kPerDecade = 2;
+  ScalingLaw law;
+  std::vector<Real> lengths, changes;
+  for (int i = -kDecades * kPerDecade; i <= kDecades * kPerDecade; ++i) {
+    law.scales.push_back(std::pow(10.0, static_cast<Real>(i) / kPerDecade));
+    const Problem problem = make(law.scales.back());
+    const auto step = subject.first_step(problem);
+    lengths.push_back(step ? step->norm() : kUnknown);
+    changes.push_back(step ? std::abs(gradient_at_start(problem).dot(*step)) : kUnknown);
+  }
+  law.step = power_law(law.scales, std::move(lengths));
+  law.loss_change = power_law(law.scales, std::move(changes));
+  return law;
+}
+
+Real extent(const std::vector<Vector>& path) {
+  Real largest = 0;
+  for (const Vector& x : path) largest = std::max(largest, (x - path.front()).norm());
+  return largest;
+}
+
+// The largest distance of the paths, relative to the longer; one that has ended stays where it is.
+Real deviation(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+  if (a.empty() || b.empty()) return kUnknown;
+  Real largest = 0;
+  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+    const Real gap = (a[std::min(i, a.size() - 1)] - b[std::min(i, b.size() - 1)]).norm();
+    if (!std::isfinite(gap)) return std::numeric_limits<Real>::infinity();
+    largest = std::max(largest, gap);
+  }
+  const Real longest = std::max(extent(a), extent(b));
+  return longest > 0 ? largest / longest : kUnknown;
+}
+
+void measure_input_changes(const Subject& subject, AuditedOptimizer& audited) {
+  const std::vector<Vector> path = subject.run(bent_problem(), kStepsOfPath).x;
+  for (std::size_t kind = 0; kind < kChanges; ++kind) {
+    const Change change = change_of(kind);
+    std::vector<Vector> back;
+    for (const Vector& x : subject.run(changed_input(change), kStepsOfPath).x)
+      back.push_back(change.forward(x));
+    audited.deviations[kind] = deviation(path, back);
+  }
+}
+
+void measure_output_changes(const Subject& subject, const Problem& problem,
+                            Problem (*changed)(const Change&), AuditedOptimizer& audited) {
+  const std::vector<Vector> path = subject.run(problem, kStepsOfPath).x;
+  for (std::size_t kind = 0; kind < kChanges; ++kind)
+    audited.deviations[kChanges + kind] =
+        deviation(path, subject.run(changed(change_of(kind)), kStepsOfPath).x);
+}
+
+Approach approach(const Subject& subject, const Vicinity& vicinity) {
+  constexpr Real kRounding = 1e-14;  // of x of order 1
+  std::vector<Real> errors;
+  for (const Vector& x : subject.run(vicinity.problem, kStepsOfApproach).x)
+    errors.push_back((x - vicinity.solution).norm());
+  return approach_of(errors, kRounding);
+}
+
+// Between the step that the method takes in z, and what its step in x makes of z.
+Real angle(const Subject& subject, const Composition& composition) {
+  const auto promised = subject.first_step(composition.inner);
+  const auto step = subject.first_step(composition.whole);
+  if (!promised || !step) return kUnknown;
+  const Vector start = composition.whole.start();
+  const Vector made =
+      value_of(composition.stage, start + *step) - value_of(composition.stage, start);
+  const Real cross = made[0] * (*promised)[1] - made[1] * (*promised)[0];
+  return std::atan2(std::abs(cross), made.dot(*promised)) * 180 / std::numbers::pi;
+}
+
+void count_oracles(const Subject& subject, const Problem& problem, AuditedOptimizer& audited) {
+  const Path path = subject.run(problem, kStepsOfCount);
+  const OracleSet declared = subject.needs(problem);
+  audited.iterations = path.iterations;
+  for (std::size_t kind = 0; kind < kOracles; ++kind) {
+    const std::string name(kOracleNames[kind]);
+    const bool is_declared = declared.contains(static_cast<Oracle>(kind));
+    if (is_declared) audited.declared.push_back(name);
+    if (path.counts[kind] > 0) audited.counted[name] = path.counts[kind];
+    if (is_declared && path.counts[kind] == 0)
+      audited.flags.push_back(fmt::format("declares that it needs {}, and never asked", name));
+    if (!is_declared && path.counts[kind] > 0)
+      audited.flags.push_back(fmt::format("asked for {}, and does not declare it", name));
+  }
+}
+
+// Declared of rescaled inputs, component by component: the first of the changes. To keep more than
+// was declared is no false declaration.
+void compare_invariance(bool is_declared, AuditedOptimizer& audited) {
+  const Real found = audited.deviations.front();
+  if (!is_declared || std::isnan(found) || found <= kInvariantDeviation) return;
+  audited.flags.push_back(fmt::format(
+      "declares that rescaled inputs leave its path, and they move it by {:.2g}", found));
+}
+
+Json options_without_floors(const OptimizerEntry& entry) {
+  Json options = Json::object();
+  for (const OptionField& field : entry.options)
+    if ((field.name == "epsilon" || field.name == "cutoff") && contains(field.range, 0))
+      options[field.name] = 0.0;
+  return options;
+}
+
+void audit_direct(const Subject& subject, AuditedOptimizer& audited) {
+  audited.scalings = {scaling_law(subject, scaled_loss), scaling_law(subject, scaled_output),
+                      scaling_law(subject, scaled_input), scaling_law(subject, slope)};
+  measure_input_changes(subject, audited);
+  measure_output_changes(subject, bent_problem(), changed_output, audited);
+  audited.regular = approach(subject, regular_vicinity());
+  audited.singular = approach(subject, singular_vicinity());
+  audited.linear_angle = angle(subject, linear_composition());
+  audited.curved_angle = angle(subject, curved_composition());
+  count_oracles(subject, bent_problem(), audited);
+}
+
+// What makes sense where θ is the weights of a network: x is no unknown that could change units,
+// and no θ is the only solution.
+void audit_teacher(const Subject& subject, AuditedOptimizer& audited) {
+  audited.network = kTaughtNetwork;
+  audited.scalings[static_cast<std::size_t>(Scaled::loss)] = scaling_law(subject, taught_loss);
+  audited.scalings[static_cast<std::size_t>(Scaled::output)] = scaling_law(subject, taught_output);
+  audited.deviations.fill(kUnknown);
+  measure_output_changes(subject, taught_problem(), taught_change, audited);
+  count_oracles(subject, taught_problem(), audited);
+}
+
+}  // namespace
+
+AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name) {
+  const OptimizerEntry& entry = catalog.optimizers.at(name);
+  const Component component = complete_optimizer(catalog, name, options_without_floors(entry));
+  const Subject subject(catalog, entry, component.options);
+  AuditedOptimizer audited{.name = name, .spec = component.spec};
+  audited.reason = subject.why_inapplicable(bent_problem());
+  if (audited.reason.empty()) {
+    audit_direct(subject, audited);
+  } else if (subject.why_inapplicable(taught_problem()).empty()) {
+    audited.reason.clear();
+    audit_teacher(subject, audited);
+  } else {
+    return audited;
+  }
+  compare_invariance(entry.is_input_scale_invariant, audited);
+  return audited;
+}
+
+std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
+                                        const std::vector<std::string>& names) {
+  std::vector<AuditedOptimizer> all;
+  for (const std::string& name : names) {
+    const auto text = isolated_text([&] { return to_json(audit_optimizer(catalog, name)).dump(); },
+                                    kAuditSeconds);
+    if (text)
+      all.push_back(audited_from_json(parse_json(*text, name)));
+    else
+      all.push_back(
+          {.name = name, .spec = name, .reason = "its process crashed, threw or took too long"});
+  }
+  return all;
+}
+
+}  // namespace isoline::benchmarks

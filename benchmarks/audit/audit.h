@@ -1,0 +1,24 @@
+// The audit: what every optimizer's properties are, measured on problems with known answers.
+#pragma once
+
+#include "benchmarks/plan/catalog.h"
+#include "core/records/audited.h"
+
+namespace isoline::benchmarks {
+
+// At its defaults, but for floors that no law of scaling survives: options named `epsilon` and
+// `cutoff` are 0 where they may be. The spec in the result says so.
+AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name);
+
+// Each in a process of its own: one that crashes or hangs costs its own audit alone.
+std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
+                                        const std::vector<std::string>& names);
+
+// Fits log10 value = exponent · log10 scale + constant; without a law where a value is not positive
+// and finite.
+PowerLaw power_law(const std::vector<Real>& scales, std::vector<Real> values);
+
+// The order at which errors fall, from those above `floor`, until one no longer falls.
+Approach approach_of(const std::vector<Real>& errors, Real floor);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,122 @@
+// Joins records and plans. Each part takes the greater of the two in some total order, or their
+// union: both are joins of a lattice, hence the laws.
+#include "benchmarks/merge/join.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "core/json.h"
+#include "core/records/sheet.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+bool is_nondeterministic(const Json& record) { return record.at("nondeterministic").get<bool>(); }
+
+// All that two runs of one build must agree on.
+Json result_of(const Json& record) {
+  Json result = without_timings(record);
+  result.erase("provenance");
+  result.at("request").erase("rates");  // which file chose the options: they are in the cell
+  return result;
+}
+
+Json build_provenance(const Json& record) {
+  Json provenance = record.at("provenance");
+  provenance.erase("run");
+  return provenance;
+}
+
+// Runs that ended by themselves before those that a clock ended, then the latest; the text decides
+// what is left. The list of timings is joined apart.
+auto rank_of(const Json& record) {
+  Json rest = record;
+  rest.erase("repeat_wall_seconds");
+  const Json run = record.at("provenance").value("run", Json::object());
+  return std::tuple(!is_nondeterministic(record),
+                    run.is_object() ? run.value("started", std::string()) : std::string(),
+                    rest.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+// Sorted; a value as often as in the list that has it most often.
+Json joined_timings(const Json& a, const Json& b) {
+  std::vector<Real> left, right, both;
+  for (const Json& value : a) left.push_back(real_of(value));
+  for (const Json& value : b) right.push_back(real_of(value));
+  std::ranges::sort(left);
+  std::ranges::sort(right);
+  std::ranges::set_union(left, right, std::back_inserter(both));
+  return json_numbers(both.data(), both.size());
+}
+
+std::string shown(const Json& value) {
+  constexpr std::size_t kMost = 60;
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.size() > kMost ? text.substr(0, kMost) + "…" : text;
+}
+
+// "/summary/loss (1.5, 1.6), /status (…), and 3 more places".
+std::string first_differences(const Json& a, const Json& b) {
+  constexpr std::size_t kTold = 3;
+  const Json patch = Json::diff(a, b);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(patch.size(), kTold); ++i) {
+    const Json::json_pointer place(patch[i].at("path").get<std::string>());
+    const auto at = [&](const Json& json) {
+      return json.contains(place) ? shown(json.at(place)) : std::string("absent");
+    };
+    text += fmt::format("{}{} ({}, {})", i == 0 ? "" : ", ", place.to_string(), at(a), at(b));
+  }
+  if (patch.size() > kTold) text += fmt::format(", and {} more places", patch.size() - kTold);
+  return text;
+}
+
+}  // namespace
+
+JoinedRecord join_records(const Json& a, const Json& b) {
+  if (!is_nondeterministic(a) && !is_nondeterministic(b)) {
+    const Json left = result_of(a), right = result_of(b);
+    if (left != right) return {Json(), first_differences(left, right), false};
+  }
+  Json joined = rank_of(a) < rank_of(b) ? b : a;
+  joined["repeat_wall_seconds"] =
+      joined_timings(a.at("repeat_wall_seconds"), b.at("repeat_wall_seconds"));
+  return {joined, "", build_provenance(a) != build_provenance(b)};
+}
+
+Json join_plans(const Json& a, const Json& b) {
+  using Place = std::tuple<std::string, std::string, std::uint64_t>;
+  std::set<std::string> suites;
+  std::map<std::string, Place> place;  // by cell; the least where a digest has two
+  for (const Json* one : {&a, &b}) {
+    const Plan plan = plan_from_json(*one);
+    suites.insert(plan.suites.begin(), plan.suites.end());
+    for (const PlannedCell& cell : plan.cells) {
+      const Place here(cell.problem, cell.optimizer, cell.seed);
+      const auto [at, is_first] = place.emplace(cell.cell, here);
+      if (!is_first) at->second = std::min(at->second, here);
+    }
+  }
+  std::set<std::pair<Place, std::string>> sorted;
+  for (const auto& [cell, where] : place) sorted.emplace(where, cell);
+  Plan plan{.suites = {suites.begin(), suites.end()}, .cells = {}};
+  for (const auto& [where, cell] : sorted)
+    plan.cells.push_back({cell, std::get<0>(where), std::get<1>(where), std::get<2>(where)});
+  return to_json(plan);
+}
+
+bool have_other_wordings(const std::vector<std::string>& sheets) {
+  std::set<std::string> wordings;
+  for (const std::string& text : sheets) {
+    Json sheet = Json::parse(text, nullptr, false);
+    if (sheet.is_object()) sheet.erase("prices");
+    wordings.insert(sheet.is_object() ? sheet.dump() : text);
+  }
+  return wordings.size() > 1;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,27 @@
+// The join of two records of one cell and build: the arithmetic under `isoline merge`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/records/record.h"
+
+namespace isoline::benchmarks {
+
+// Associative, commutative and idempotent. Where the results differ `difference` tells the first
+// places, and what is returned means nothing.
+struct JoinedRecord {
+  Json record;
+  std::string difference;
+  bool is_provenance_other = false;  // that of the run aside
+};
+JoinedRecord join_records(const Json& a, const Json& b);
+
+// The union of two plans, sorted; suites and cells once each. Plan schema in, plan schema out.
+Json join_plans(const Json& a, const Json& b);
+
+// Whether sheets of one component, as JSON texts, differ in more than measured prices: no two
+// measurements are alike.
+bool have_other_wordings(const std::vector<std::string>& sheets);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,69 @@
+// Joins audits by the name of the optimizer.
+#include "benchmarks/merge/merge_audits.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "core/json.h"
+#include "core/records/audited.h"
+
+namespace isoline::benchmarks {
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Source {
+  Json audit;
+  fs::path folder;
+};
+
+void read_old_disputes(const fs::path& folder, AuditUnion& out) {
+  const fs::path file = folder / "conflicts.json";
+  if (!fs::exists(file)) return;
+  for (const Json& name : read_json(file).value("audits", Json::array()))
+    if (out.disputed.insert(name.get<std::string>()).second)
+      out.conflicts.push_back(
+          fmt::format("the audit of {}: in conflict since an earlier merge ({})",
+                      name.get<std::string>(), file.string()));
+}
+
+// As they are written again, so that equal measurements have equal text; none where it is damaged.
+std::vector<AuditedOptimizer> audits_in(const fs::path& file, AuditUnion& out) {
+  try {
+    return audit_from_json(read_json(file));
+  } catch (const std::exception& error) {
+    out.unreadable.push_back(fmt::format("{} is no audit: {}", file.string(), error.what()));
+    return {};
+  }
+}
+
+}  // namespace
+
+AuditUnion unite_audits(const std::vector<fs::path>& folders) {
+  AuditUnion out;
+  for (const fs::path& folder : folders) read_old_disputes(folder, out);
+  std::map<std::string, Source> by_name;
+  bool is_any = false;
+  for (const fs::path& folder : folders) {
+    const fs::path file = folder / "audit.json";
+    if (!fs::exists(file)) continue;
+    is_any = true;
+    for (const AuditedOptimizer& audited : audits_in(file, out)) {
+      const auto [known, is_new] =
+          by_name.try_emplace(audited.name, Source{to_json(audited), folder});
+      if (is_new || known->second.audit == to_json(audited)) continue;
+      if (out.disputed.insert(audited.name).second)
+        out.conflicts.push_back(fmt::format("the audit of {}: {} and {} measured different things",
+                                            audited.name, known->second.folder.string(),
+                                            folder.string()));
+    }
+  }
+  if (!is_any) return out;
+  out.json = audit_to_json({});
+  for (const auto& [name, source] : by_name)
+    if (!out.disputed.contains(name)) out.json["optimizers"].push_back(source.audit);
+  return out;
+}
+
+}  // namespace isoline::benchmarks

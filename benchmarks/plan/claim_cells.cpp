@@ -1,0 +1,147 @@
+// Claims read from JSON, their cells expanded like those of suites.
+#include "benchmarks/plan/claim_cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "benchmarks/plan/resources.h"
+#include "core/errors.h"
+#include "core/json.h"
+#include "core/records/schema.h"
+#include "core/suggest.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+struct Expansion {
+  const Catalog& catalog;
+  const Rates& rates;
+  std::string claim;  // its id, for errors
+};
+
+std::vector<Request> expanded(const Expansion& from, Json block) {
+  for (const char* own : {"long", "deviation"}) block.erase(own);
+  const Json suite{{"schema", "isoline.suite/1"}, {"name", "claims"}, {"matrix", {block}}};
+  return expand(from.catalog, suite_from_json(suite, "the claim " + from.claim), from.rates);
+}
+
+// The one problem of the set, unless the term names its own.
+std::string problem_of(const Expansion& from, const Json& term, const Json& block) {
+  if (term.contains("problem")) return term["problem"];
+  require(block.at("problems").size() == 1, [&] {
+    return fmt::format("the claim {} must name the problem of each term", from.claim);
+  });
+  return block["problems"][0];
+}
+
+// One way to fill a term: the cells of an optimizer on a problem, a digest a seed.
+Json alternative(const Expansion& from, const std::string& problem, const std::string& optimizer,
+                 Json block, const std::set<std::string>& known) {
+  block["problems"] = {problem};
+  block["optimizers"] = {optimizer};
+  Json cells = Json::array();
+  for (const Request& request : expanded(from, block)) {
+    cells.push_back(cell_digest(request));
+    require(known.contains(cells.back()), [&] {
+      return fmt::format("{} × {} is not among the cells of the claim {}", problem, optimizer,
+                         from.claim);
+    });
+  }
+  return {{"title", fmt::format("{} × {}", problem, optimizer)}, {"cells", cells}};
+}
+
+Json terms_of(const Expansion& from, const Json& quantity, const Json& block,
+              const std::set<std::string>& known) {
+  Json terms = Json::array();
+  for (const Json& term : quantity.at("terms")) {
+    const Json& optimizer = term.at("optimizer");
+    const Json all = optimizer.is_array() ? optimizer : Json::array({optimizer});
+    Json alternatives = Json::array();
+    for (const Json& one : all)
+      alternatives.push_back(alternative(from, problem_of(from, term, block), one, block, known));
+    terms.push_back(std::move(alternatives));
+  }
+  return terms;
+}
+
+Claim claim_from(const Catalog& catalog, const Rates& rates, const Json& json,
+                 const std::string& group) {
+  Claim claim{.group = group, .json = json, .cells = {}};
+  const Expansion from{catalog, rates, claim.id()};
+  if (!json.contains("cells")) return claim;
+  for (Json& block : claim.json["cells"]) {
+    Claim::Cells cells{block.value("long", false), expanded(from, block)};
+    std::set<std::string> known;
+    for (const Request& request : cells.requests) known.insert(cell_digest(request));
+    block["iterations"] = cells.requests.at(0).budget.iterations;
+    Json bare = block;
+    bare.erase("iterations");
+    block["terms"] = terms_of(from, json.at("quantity"), bare, known);
+    if (json.contains("contrast"))
+      block["contrast_terms"] = terms_of(from, json["contrast"].at("quantity"), bare, known);
+    claim.cells.push_back(std::move(cells));
+  }
+  return claim;
+}
+
+}  // namespace
+
+std::vector<Claim> claims_from_json(const Catalog& catalog, const Rates& rates, const Json& file,
+                                    const std::string& origin) {
+  const Json schema = parse_json(std::string(builtin_schemas().at("claims")), "claims schema");
+  const auto violations = schema_violations(file, schema);
+  require(violations.empty(), [&] {
+    return fmt::format("{} holds no claims: {}", origin, violations[0]);
+  });
+  std::vector<Claim> claims;
+  for (const Json& json : file.at("claims"))
+    claims.push_back(claim_from(catalog, rates, json, file.at("name")));
+  return claims;
+}
+
+std::vector<Claim> builtin_claims_of(const Catalog& catalog) {
+  const Rates rates = Rates::builtin();
+  std::vector<Claim> all;
+  for (const auto& [name, text] : builtin_claims())
+    for (Claim& claim : claims_from_json(catalog, rates, parse_json(std::string(text), name), name))
+      all.push_back(std::move(claim));
+  return all;
+}
+
+std::vector<Claim> chosen_claims(std::vector<Claim> claims, const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const Claim& claim : claims) {
+    known.push_back(claim.id());
+    if (std::ranges::find(known, claim.group) == known.end()) known.push_back(claim.group);
+  }
+  for (const std::string& name : names)
+    if (std::ranges::find(known, name) == known.end())
+      throw UsageError(unknown_name("claim", name, known));
+  std::erase_if(claims, [&](const Claim& claim) {
+    return !names.empty() && std::ranges::find(names, claim.id()) == names.end() &&
+           std::ranges::find(names, claim.group) == names.end();
+  });
+  return claims;
+}
+
+std::vector<Request> cells_of(const std::vector<Claim>& claims, bool with_long) {
+  std::vector<Request> requests;
+  std::set<std::string> known;
+  for (const Claim& claim : claims)
+    for (const Claim::Cells& cells : claim.cells) {
+      if (cells.is_long && !with_long) continue;
+      for (const Request& request : cells.requests)
+        if (known.insert(cell_digest(request)).second) requests.push_back(request);
+    }
+  return requests;
+}
+
+Json json_of(const std::vector<Claim>& claims) {
+  Json list = Json::array();
+  for (const Claim& claim : claims) list.push_back(claim.json);
+  return list;
+}
+
+}  // namespace isoline::benchmarks

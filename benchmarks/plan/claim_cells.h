@@ -1,0 +1,38 @@
+// Claims of papers: sentences with a published figure, the cells that decide them, and what is to
+// be read off these cells. Reports judge them; here they are read and their cells made findable.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/plan/suite.h"
+
+namespace isoline::benchmarks {
+
+struct Claim {
+  std::string group;  // the file it stands in
+  Json json;          // as reports/claims/claims.h says, its cells by digests
+  // One of each set of cells, the longest first.
+  struct Cells {
+    bool is_long = false;  // hours: run only when asked for
+    std::vector<Request> requests;
+  };
+  std::vector<Cells> cells;
+
+  std::string id() const { return json.at("id"); }
+};
+
+// The claims of one file; UsageError where it is none, or a term is not among its cells.
+std::vector<Claim> claims_from_json(const Catalog& catalog, const Rates& rates, const Json& file,
+                                    const std::string& origin);
+std::vector<Claim> builtin_claims_of(const Catalog& catalog);
+
+// Those with these ids, or of these groups; all without any. UsageError names the nearest.
+std::vector<Claim> chosen_claims(std::vector<Claim> claims, const std::vector<std::string>& names);
+
+// The cells of these claims, the long ones only when asked for; each once.
+std::vector<Request> cells_of(const std::vector<Claim>& claims, bool with_long);
+
+Json json_of(const std::vector<Claim>& claims);  // a list, for the report
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,36 @@
+// Rates belong neither to a problem nor to an optimizer: a table maps the options of a problem and
+// an optimizer to options, with the source of each value.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/records/record.h"
+
+namespace isoline::benchmarks {
+
+class Rates {
+ public:
+  Rates() = default;  // an empty table: every method at its defaults
+  static Rates builtin();
+  static Rates from_json(const Json& json, const std::string& origin);
+
+  struct Row {
+    Json problem;        // the options that it is for, as text or numbers
+    Json options;        // to fill in
+    std::string origin;  // file that says so
+  };
+  // The row for a problem and an optimizer's name, or nullptr. A row is for the problems that have
+  // the options it names, in their default mode unless it names the mode; the row that names most
+  // wins, and the last of these. `table` restricts the search to one file; tables of tuned rates
+  // are searched only so.
+  const Row* find(const Component& problem, const std::string& optimizer,
+                  const std::string& table = "") const;
+  void add(const Rates& other);
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::vector<Row>> rows_;  // by names
+};
+
+}  // namespace isoline::benchmarks

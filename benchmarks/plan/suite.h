@@ -1,0 +1,43 @@
+// A suite or a matrix of one's own: which problems meet which optimizers, on which seeds, with what
+// budget. Expands into requests.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/rates.h"
+#include "core/records/record.h"
+#include "core/spec.h"
+
+namespace isoline::benchmarks {
+
+// One block of a suite. Problems and optimizers are specs or selectors: "*" for all, "@family" for
+// the optimizers of a family, "@matrix-free", "@factorizing" (a dense factorization of size n) and
+// "@derivative-free" by what a step costs.
+struct MatrixBlock {
+  std::vector<std::string> problems, optimizers;
+  std::vector<std::string> except_problems, except_optimizers;  // names
+  std::vector<std::uint64_t> seeds = {0};
+  Budget budget;
+  int threads = 1;
+  double hard_seconds = 0;  // when a cell is killed; 0: the standard limit
+  std::string rates;        // the one table to look in; empty: all that are not of tuned rates
+};
+
+struct Suite {
+  std::string name, title;
+  std::vector<MatrixBlock> blocks;
+};
+
+// The spec's own options, and those of the row that it leaves open; the row may be null.
+Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row);
+
+// The name of a suite in the tree, or the path of a file.
+Suite read_suite(const std::string& name_or_path);
+Suite suite_from_json(const Json& json, const std::string& origin);
+
+// Every cell, in order, each once. Options not given are filled in from the rates, then defaults.
+std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,23 @@
+// One run, in this process: the loop that every method runs in.
+#pragma once
+
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/checkpoint.h"
+#include "core/records/record.h"
+#include "core/trace.h"
+
+namespace isoline::benchmarks {
+
+// Starts, steps and judges the method until it is done, or asked to stop; the meter writes the
+// trace. Returns the last θ.
+Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint);
+
+// Makes the components of the request and drives them. The verdict is in the trace, whatever
+// happens: an exception ends as `failed`, `memory` or `inapplicable`. `returned` gets the last θ.
+void execute(const Catalog& catalog, const Request& request, Trace& trace,
+             Checkpoint checkpoint = {}, Vector* returned = nullptr);
+
+// The record of a run from what it left behind.
+Record record_of(const Request& request, const Trace& trace);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,23 @@
+// What each oracle of a problem takes, measured in forward solves. Budgets count declared prices;
+// these stand in the problem's sheet, for reports.
+#pragma once
+
+#include <optional>
+
+#include "core/records/sheet.h"
+#include "problems/problem.h"
+
+namespace isoline::benchmarks {
+
+using problems::Problem;
+
+// Every oracle that the problem offers, at its start. Some 5 ms an oracle; a dense matrix that
+// would take more than 10 ms, as its declared price has it, is left out, and what is left when a
+// second has gone.
+MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
+
+// Whose prices these are: they hold for one build on one processor.
+std::string prices_build(int problem_revision);
+bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build);
+
+}  // namespace isoline::benchmarks

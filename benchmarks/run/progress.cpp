@@ -1,0 +1,83 @@
+// The progress line, its rate and its time left.
+#include "benchmarks/run/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "core/clock.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+constexpr double kLiveSeconds = 0.1, kPlainSeconds = 10;
+
+double seconds_since(std::int64_t nanoseconds) {
+  return 1e-9 * static_cast<double>(monotonic_nanoseconds() - nanoseconds);
+}
+
+std::size_t terminal_width() {
+  constexpr std::size_t kUsual = 80;
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<std::int64_t>(std::llround(seconds));
+  if (whole >= 3600) return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+  if (whole >= 60) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} s", whole);
+}
+
+Progress::Style Progress::style_of(int descriptor) {
+  const char* terminal = std::getenv("TERM");
+  const bool is_dumb = terminal == nullptr || std::strcmp(terminal, "dumb") == 0;
+  return isatty(descriptor) && !is_dumb ? Style::live : Style::plain;
+}
+
+Progress::Progress(Style style, std::string what, std::int64_t total, std::int64_t already)
+    : style_(style),
+      what_(std::move(what)),
+      total_(total),
+      already_(already),
+      begun_(monotonic_nanoseconds()),
+      shown_(begun_) {}
+
+Progress::~Progress() {
+  if (is_dirty_) std::fputs("\r\x1b[K", stderr);
+}
+
+std::string Progress::line() const {
+  const std::int64_t done = already_ + done_;
+  std::string text = fmt::format("{} {}/{}", what_, done, total_);
+  const double elapsed = seconds_since(begun_);
+  if (done_ > 0 && elapsed > 0) {
+    const double rate = static_cast<double>(done_) / elapsed;
+    text += fmt::format("  {:.3g}/s", rate);
+    if (done < total_)
+      text += fmt::format("  {} left", duration_text(static_cast<double>(total_ - done) / rate));
+  }
+  return current_.empty() ? text : text + "  " + current_;
+}
+
+void Progress::show(bool now) {
+  const double pause = style_ == Style::live ? kLiveSeconds : kPlainSeconds;
+  if (style_ == Style::silent || (!now && seconds_since(shown_) < pause)) return;
+  shown_ = monotonic_nanoseconds();
+  if (style_ == Style::live) {
+    fmt::print(stderr, "\r\x1b[K{}", line().substr(0, terminal_width() - 1));
+    std::fflush(stderr);
+    is_dirty_ = true;
+  } else {
+    fmt::print(stderr, "{}\n", line());
+  }
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,41 @@
+// Runs requests in worker processes, several at once, and stores a record of each as it ends.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/progress.h"
+#include "benchmarks/run/store.h"
+
+namespace isoline::benchmarks {
+
+struct RunOptions {
+  int jobs = 1;
+  bool force = false;      // repeat cells that are done
+  bool exclusive = false;  // one at a time, for tables of wall time
+  int repeat = 1;          // timings wanted of each cell
+  Limits limits;
+  double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
+  Progress::Style progress = Progress::Style::silent;
+  std::string command;  // for the record
+};
+
+struct Outcome {
+  std::int64_t planned = 0, reused = 0, run = 0;
+  std::map<Status, std::int64_t> statuses;  // of all planned cells that have a record
+  std::vector<std::string> failures;        // "problem × optimizer, seed 0: crashed: …"
+  std::vector<std::string> conflicts;       // cells whose repetition gave another result
+  std::int64_t reused_from_other_commits = 0;
+  bool is_interrupted = false;
+};
+
+Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
+                const RunOptions& options);
+
+// The limits of one request: its soft time limit, doubled, is its hard one.
+Limits limits_of(const Request& request, const Limits& standard);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,167 @@
+// Sheets of problems and optimizers, landscapes included.
+#include "benchmarks/run/sheets.h"
+
+#include <algorithm>
+#include <set>
+
+#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/prices.h"
+#include "core/errors.h"
+#include "core/json.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+constexpr Index kGrid = 81;   // points a side of a landscape
+constexpr Index kSmall = 16;  // largest target and truth that a sheet shows
+constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate"};
+
+std::vector<std::string> names_of(OracleSet oracles) {
+  std::vector<std::string> names;
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (oracles.contains(static_cast<Oracle>(kind))) names.emplace_back(kOracleNames[kind]);
+  return names;
+}
+
+Real grid_point(Real low, Real high, Index i) {
+  return low + (high - low) * static_cast<Real>(i) / static_cast<Real>(kGrid - 1);
+}
+
+std::vector<Real> small(const Matrix& values) {
+  if (values.size() > kSmall) return {};
+  return {values.data(), values.data() + values.size()};
+}
+
+// L over the problem's window in x, and over the box in y that the window maps into.
+void draw_landscapes(const Problem& problem, Sheet& sheet) {
+  Landscape in_x{*problem.window(), Matrix(kGrid, kGrid), problem.contour_spacing()};
+  const auto& [x1_low, x1_high, x2_low, x2_high] = in_x.window;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
+  Eigen::Vector2d high = -low;
+  Point point;
+  for (Index j = 0; j < kGrid; ++j)
+    for (Index i = 0; i < kGrid; ++i) {
+      const Eigen::Vector2d x(grid_point(x1_low, x1_high, i), grid_point(x2_low, x2_high, j));
+      problem.forward(x, point);
+      in_x.loss(i, j) = point.loss;
+      if (problem.outputs() != 2) continue;
+      low = low.cwiseMin(point.y.col(0));
+      high = high.cwiseMax(point.y.col(0));
+    }
+  sheet.landscape_x = in_x;
+  if (problem.outputs() != 2) return;
+  const std::array<Real, 4> image{low[0], high[0], low[1], high[1]};
+  Landscape in_y{problem.y_window().value_or(image), Matrix(kGrid, kGrid),
+                 problem.contour_spacing()};
+  const auto& [y1_low, y1_high, y2_low, y2_high] = in_y.window;
+  for (Index j = 0; j < kGrid; ++j)
+    for (Index i = 0; i < kGrid; ++i)
+      in_y.loss(i, j) = problem.loss_of(
+          Eigen::Vector2d(grid_point(y1_low, y1_high, i), grid_point(y2_low, y2_high, j)));
+  sheet.landscape_y = in_y;
+}
+
+}  // namespace
+
+Sheet problem_sheet(const Catalog& catalog, const Component& component) {
+  const ProblemEntry& entry = catalog.problems.at(component.name);
+  const Problem problem = make_problem(catalog, component, 0);
+  Sheet sheet{.kind = "problem",
+              .name = entry.name,
+              .spec = component.spec,
+              .title = entry.title,
+              .formula = entry.formula,
+              .source = entry.source,
+              .note = entry.note,
+              .options_text = describe_options(entry.options).dump(),
+              .oracles = names_of(problem.offers()),
+              .inverse = kInverseNames[static_cast<int>(problem.inverse_kind())],
+              .unknowns = problem.unknowns(),
+              .residuals = problem.residuals(),
+              .target = small(problem.target())};
+  sheet.panels = entry.panels;
+  if (problem.truth()) sheet.truth = small(*problem.truth());
+  if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
+  return sheet;
+}
+
+Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
+  const OptimizerEntry& entry = catalog.optimizers.at(component.name);
+  return {.kind = "optimizer",
+          .name = entry.name,
+          .spec = component.spec,
+          .title = entry.title,
+          .formula = entry.formula,
+          .source = entry.source,
+          .note = entry.note,
+          .options_text = describe_options(entry.options).dump(),
+          .oracles = names_of(entry.needs),
+          .privileges = privileges_of(entry.needs, Inverse::none),
+          .family = std::string(name_of(entry.family))};
+}
+
+namespace {
+
+constexpr double kSheetSeconds = 30;
+
+std::optional<MeasuredPrices> stored_prices(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    return sheet_from_json(read_json(file)).prices;
+  } catch (const UsageError&) {
+    return std::nullopt;  // damaged: it is written anew
+  }
+}
+
+// Those that the folder has already, where this build measured them on this processor: a run that
+// goes on does not change the report of what is done. The problem is made again, in a process of
+// its own: what goes wrong in measuring does not cost the sheet.
+std::optional<MeasuredPrices> prices_of(const Catalog& catalog, const Component& component,
+                                        const std::filesystem::path& file) {
+  const std::string build = prices_build(component.revision);
+  auto stored = stored_prices(file);
+  if (are_ours(stored, build)) return stored;
+  const auto text = isolated_text(
+      [&] {
+        Sheet measured;
+        measured.options_text = "[]";
+        measured.prices = measure_prices(make_problem(catalog, component, 0), build);
+        return to_json(measured).dump();
+      },
+      kSheetSeconds);
+  if (!text) return std::nullopt;
+  return sheet_from_json(parse_json(*text, "prices of " + component.spec)).prices;
+}
+
+}  // namespace
+
+void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store) {
+  std::set<std::string> known;
+  const auto made = [&](const std::string& spec, const auto& make) -> std::optional<Sheet> {
+    if (!known.insert(spec).second) return std::nullopt;
+    const auto text = isolated_text([&] { return to_json(make()).dump(); }, kSheetSeconds);
+    if (!text) return std::nullopt;
+    return sheet_from_json(parse_json(*text, spec));
+  };
+  for (const Request& request : requests) {
+    if (auto sheet = made("problem " + request.problem.spec,
+                          [&] { return problem_sheet(catalog, request.problem); })) {
+      sheet->prices =
+          prices_of(catalog, request.problem, store.folder() / "components" / sheet->file_name());
+      store.write(*sheet);
+    }
+    if (const auto sheet = made("optimizer " + request.optimizer.spec,
+                                [&] { return optimizer_sheet(catalog, request.optimizer); }))
+      store.write(*sheet);
+  }
+}
+
+std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
+  std::vector<PlannedCell> cells;
+  for (const Request& request : requests)
+    cells.push_back(
+        {cell_digest(request), request.problem.spec, request.optimizer.spec, request.seed});
+  return cells;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,46 @@
+// Makes every component of a plan once.
+#include "benchmarks/run/soundness.h"
+
+#include <set>
+
+#include "benchmarks/run/isolate.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+// The complaint, or nothing. Direct problems were checked whole when their options were completed.
+std::string complaint_about(const Catalog& catalog, const Request& request) {
+  try {
+    const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
+    entry.make(request.optimizer.options, catalog.optimizers);
+    if (request.problem.options.value("mode", "direct") == "learn")
+      make_problem(catalog, request.problem, request.seed);
+  } catch (const UsageError& error) {
+    return error.what();
+  } catch (const std::exception&) {
+    return "";  // its cells end as `failed` and say so
+  }
+  return "";
+}
+
+}  // namespace
+
+void require_sound(const Catalog& catalog, const std::vector<Request>& requests) {
+  constexpr double kSeconds = 60;
+  const auto complaint = isolated_text(
+      [&] {
+        std::set<std::string> problems, optimizers;
+        for (const Request& request : requests) {
+          const bool is_new = problems.insert(request.problem.spec).second |
+                              optimizers.insert(request.optimizer.spec).second;
+          if (!is_new) continue;
+          const std::string text = complaint_about(catalog, request);
+          if (!text.empty()) return text;
+        }
+        return std::string();
+      },
+      kSeconds);
+  if (complaint && !complaint->empty()) throw UsageError(*complaint);
+}
+
+}  // namespace isoline::benchmarks

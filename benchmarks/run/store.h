@@ -1,0 +1,42 @@
+// A result folder: what was planned, what is done, and one whole file a record.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/records/record.h"
+#include "core/records/sheet.h"
+
+namespace isoline::benchmarks {
+
+class Store {
+ public:
+  // Creates the folder where it is missing; UsageError where it cannot be.
+  explicit Store(std::filesystem::path folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+  // Adds the cells to the stored plan; those of earlier runs stay planned.
+  void plan(const std::string& suite, const std::vector<PlannedCell>& cells);
+
+  // The record of this request by this build, unless there is none, or it is damaged or
+  // interrupted.
+  std::optional<Record> find(const Request& request) const { return find_in(folder_, request); }
+  static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
+
+  // Writes the record whole; times of an earlier record of the same cell and build join its own.
+  void write(Record record, const std::optional<Record>& earlier);
+  void write(const Sheet& sheet);
+
+  // Where a run of this request by this build is kept while it goes.
+  std::filesystem::path checkpoint_path(const Request& request) const;
+  void remove_checkpoint(const Request& request) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace isoline::benchmarks

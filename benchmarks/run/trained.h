@@ -1,0 +1,33 @@
+// A trained network on disk, schema isoline.network/1: what it was trained on and how, its θ, and
+// the averaged statistics that it infers with.
+#pragma once
+
+#include <filesystem>
+
+#include "benchmarks/plan/catalog.h"
+#include "core/records/npy.h"
+
+namespace isoline::benchmarks {
+
+struct TrainedNetwork {
+  Component problem, optimizer;
+  std::uint64_t seed = 0;
+  std::int64_t iterations = 0;
+  Real loss = 0, x_error = 0;  // on the validation
+  Vector theta, statistics;    // (n), and what Network::infer is given
+};
+
+// As JSON where the name ends in .json, else the same with its numbers as raw bytes behind it.
+// Whole or not at all.
+void write_network(const TrainedNetwork& network, const std::filesystem::path& path);
+TrainedNetwork read_network(const std::filesystem::path& path);  // UsageError where it is none
+
+// The samples that pass through a network, averaged: what `statistics` holds.
+Vector averaged_statistics(const Problem& problem, VectorRef theta, std::int64_t first_step);
+
+// x of each input. One sample along the first index: (S, i) -> (S, k), and (S, [channels,] N, N) of
+// grids as pictures, row by row. UsageError where the shape does not fit.
+NumberArray infer(const Problem& problem, const TrainedNetwork& network, const NumberArray& input,
+                  const std::string& origin);
+
+}  // namespace isoline::benchmarks

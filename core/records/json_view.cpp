@@ -1,0 +1,169 @@
+// Values of JSON as simdjson leaves them on its tape.
+#include "core/records/json_view.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+#include "core/json.h"
+
+namespace isoline {
+namespace {
+
+using simdjson::dom::element;
+using simdjson::dom::element_type;
+
+[[noreturn]] void fail(const char* expected, const element& value) {
+  throw UsageError(fmt::format("expected {}, got {}", expected, simdjson::minify(value)));
+}
+
+// The value, or what was expected instead.
+template <class Value>
+Value checked(simdjson::simdjson_result<Value> result, const char* expected, const element& value) {
+  Value out{};
+  if (std::move(result).get(out) != simdjson::SUCCESS) fail(expected, value);
+  return out;
+}
+
+Real real(const element& value) {
+  double number = 0;
+  if (value.get(number) == simdjson::SUCCESS) return number;
+  std::string_view text;
+  if (value.get(text) != simdjson::SUCCESS) fail("a number", value);
+  if (text == "nan") return std::nan("");
+  if (text == "inf") return INFINITY;
+  if (text == "-inf") return -INFINITY;
+  fail("a number", value);
+}
+
+std::int64_t integer(const element& value) {
+  return checked(value.get_int64(), "an integer", value);
+}
+
+simdjson::dom::array array(const element& value) {
+  return checked(value.get_array(), "a list", value);
+}
+
+template <class Value, class Read>
+void read_all(const element& list, std::vector<Value>& out, Read read) {
+  const simdjson::dom::array values = array(list);
+  out.clear();
+  out.reserve(values.size());
+  for (const element value : values) out.push_back(read(value));
+}
+
+Json copy_of(const element& value);
+
+Json copy_of(const simdjson::dom::object& object) {
+  Json json = Json::object();
+  for (const auto& field : object) json.emplace(std::string(field.key), copy_of(field.value));
+  return json;
+}
+
+Json copy_of(const simdjson::dom::array& list) {
+  Json json = Json::array();
+  for (const element value : list) json.push_back(copy_of(value));
+  return json;
+}
+
+Json copy_of(const element& value) {
+  switch (value.type()) {
+    case element_type::OBJECT:
+      return copy_of(value.get_object().value_unsafe());
+    case element_type::ARRAY:
+      return copy_of(value.get_array().value_unsafe());
+    case element_type::STRING:
+      return std::string(value.get_string().value_unsafe());
+    case element_type::INT64: {
+      const std::int64_t number = value.get_int64().value_unsafe();
+      return number < 0 ? Json(number) : Json(static_cast<std::uint64_t>(number));
+    }
+    case element_type::UINT64:
+      return value.get_uint64().value_unsafe();
+    case element_type::DOUBLE:
+      return value.get_double().value_unsafe();
+    case element_type::BOOL:
+      return value.get_bool().value_unsafe();
+    case element_type::NULL_VALUE:
+      break;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+JsonView JsonView::at(std::string_view key) const {
+  element found;
+  if (element_[key].get(found) != simdjson::SUCCESS)
+    throw UsageError(fmt::format("it has no \"{}\"", key));
+  return JsonView(found);
+}
+
+bool JsonView::contains(std::string_view key) const {
+  return element_[key].error() == simdjson::SUCCESS;
+}
+
+std::vector<JsonView> JsonView::values() const {
+  std::vector<JsonView> all;
+  for (const element value : array(element_)) all.emplace_back(value);
+  return all;
+}
+
+std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
+  std::vector<std::pair<std::string, JsonView>> all;
+  for (const auto& field : checked(element_.get_object(), "an object", element_))
+    all.emplace_back(field.key, field.value);
+  return all;
+}
+
+std::string JsonView::text() const { return simdjson::minify(element_); }
+
+Json JsonView::json() const { return copy_of(element_); }
+
+void JsonView::get_to(bool& out) const { out = checked(element_.get_bool(), "a truth", element_); }
+void JsonView::get_to(std::int64_t& out) const { out = integer(element_); }
+void JsonView::get_to(int& out) const {
+  const std::int64_t number = integer(element_);
+  if (number != static_cast<int>(number)) fail("a small integer", element_);
+  out = static_cast<int>(number);
+}
+void JsonView::get_to(std::string& out) const {
+  out = checked(element_.get_string(), "a text", element_);
+}
+void JsonView::get_to(std::vector<std::int64_t>& out) const { read_all(element_, out, integer); }
+void JsonView::get_to(std::vector<std::string>& out) const {
+  read_all(element_, out, [](const element& value) { return JsonView(value).get<std::string>(); });
+}
+void JsonView::get_to(std::map<std::string, std::vector<std::int64_t>>& out) const {
+  out.clear();
+  for (const auto& [name, list] : items()) list.get_to(out[name]);
+}
+
+Real real_of(const JsonView& value) { return real(value.element_); }
+
+std::vector<Real> reals_of(const JsonView& list) {
+  std::vector<Real> values;
+  read_all(list.element_, values, real);
+  return values;
+}
+
+struct JsonReader::Parser {
+  simdjson::dom::parser parser;
+};
+
+JsonReader::JsonReader() : parser_(std::make_unique<Parser>()) {}
+JsonReader::~JsonReader() = default;
+
+// What is wrong and where is told by the parser that knows.
+JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
+  element root;
+  const simdjson::error_code error = parser_->parser.parse(text).get(root);
+  if (error == simdjson::SUCCESS) return JsonView(root);
+  parse_json(text, origin);
+  throw UsageError(fmt::format("{} is no JSON: {}", origin, simdjson::error_message(error)));
+}
+
+}  // namespace isoline

@@ -1,0 +1,117 @@
+// The record of one run, schema isoline.run/1: what was asked, what answered, what happened. One
+// JSON file each. Reports read nothing else of a run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/array.h"
+#include "core/budget.h"
+#include "core/oracle.h"
+#include "core/records/exhibit.h"
+#include "core/records/origin.h"
+#include "core/status.h"
+
+namespace isoline {
+
+// A component as asked for: its name and all its options, defaults filled in.
+struct Component {
+  std::string name;
+  Json options = Json::object();
+  std::string spec;  // "sine[xi=32]": the name and what differs from the defaults
+  int revision = 1;
+};
+
+// What was asked. Its digest is the cell.
+struct Request {
+  Component problem, optimizer;
+  std::uint64_t seed = 0;
+  Budget budget;
+  int threads = 1;
+  std::string rates;  // the file under benchmarks/rates that set options, or empty; not in the cell
+  double hard_seconds = 0;  // when it is killed; 0: the runner's own limit; not in the record
+};
+
+// The curve as columns of equal length.
+struct Curve {
+  std::vector<std::int64_t> iteration, work;
+  std::map<std::string, std::vector<std::int64_t>> counts;  // by oracle; never-asked ones left out
+  std::vector<Real> wall_seconds, processor_seconds, loss, x_error, gradient_norm, step_norm;
+  // Of learning problems, by window: the means over the training batches of the last steps.
+  std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
+};
+
+// When each of 51 targets τ = 10^(−j/5) was first reached: f ≤ f_L + τ (f₀ − f_L). −1: never.
+struct Hits {
+  std::vector<Real> target;
+  std::vector<std::int64_t> iteration, work, forwards;
+  std::map<std::string, std::vector<std::int64_t>> counts;  // as the curve's; old records: none
+  std::vector<Real> wall_seconds;                           // nan: never
+};
+
+// The path in x and y, at the iterations of the curve; where x and y are small.
+struct Trajectory {
+  std::vector<std::vector<Real>> x, y;
+};
+
+struct Summary {
+  std::int64_t iterations = 0, work = 0, rejected_steps = 0;
+  Real start_loss = 0, loss = 0, best_loss = 0;
+  Real start_x_error = 0, x_error = 0, gradient_norm = 0;
+  Real wall_seconds = 0, processor_seconds = 0;
+  std::int64_t peak_memory_bytes = 0;
+};
+
+inline std::string record_file_name(const std::string& cell, const std::string& build) {
+  return cell + "-" + build + ".json";
+}
+
+struct Record {
+  std::string cell, build;  // digests
+  Request request;
+  Status status = Status::running;
+  std::string message;
+  std::string claimed;                                  // what the method said of its own success
+  std::optional<Real> minimum;                          // f_L, where declared
+  std::map<std::string, std::optional<bool>> verified;  // by τ: "1e-1", "1e-3", "1e-6"
+  OracleCounts counts{};
+  OracleCounts prices{};
+  Summary summary;
+  Curve curve;
+  std::optional<Hits> hits;  // where f_L is declared
+  std::optional<Trajectory> trajectory;
+  std::map<std::string, std::vector<Real>> series;  // a problem's own quantities, as the curve
+  std::optional<Exhibit> exhibit;
+  std::vector<std::string> privileges;
+  bool is_nondeterministic = false;       // ended by a clock or a kill
+  std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
+  Provenance provenance;
+
+  std::string file_name() const { return record_file_name(cell, build); }
+};
+
+std::string cell_digest(const Request& request);
+
+Json to_json(const Record& record);
+// UsageError where it is no such record; the origin is named where it is no JSON.
+Record record_from_json(const Json& json);
+Record record_from_text(const std::string& text, const std::string& origin);
+Record read_record(const std::filesystem::path& path);
+
+Json to_json(const Request& request);
+Request request_from_json(const Json& json);
+
+// The record without what may differ between two runs of one build: times, memory, concurrency.
+Json without_timings(Json record);
+
+inline constexpr const char* kRunSchema = "isoline.run/1";
+
+// τ of `verified`, by its name in the record.
+inline const std::map<std::string, Real> kVerified = {
+    {"1e-1", 1e-1}, {"1e-3", 1e-3}, {"1e-6", 1e-6}};
+
+}  // namespace isoline

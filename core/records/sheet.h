@@ -1,0 +1,80 @@
+// What stands beside the records in a result folder: a sheet for each component used, and the plan.
+//
+//   OUT/plan.json              the planned matrix, stored before the first run
+//   OUT/runs/CELL-BUILD.json   the records
+//   OUT/components/*.json      the sheets
+//   OUT/report/                what `isoline report` writes
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/array.h"
+#include "core/records/panel.h"
+
+namespace isoline {
+
+using Json = nlohmann::json;
+
+// The loss of a two-dimensional problem on a grid: value(i, j) at the i-th x1 and the j-th x2.
+struct Landscape {
+  std::array<Real, 4> window{};  // x1 low, x1 high, x2 low, x2 high; both ends are grid points
+  Matrix loss;                   // (n1, n2)
+  // How its contours are spaced: "logarithm", "fifth root" or "powers of two", 2⁻⁵ to 2⁷.
+  std::string spacing = "logarithm";
+};
+
+// What one call of an oracle takes, in forward solves: the first at a fresh point.
+struct MeasuredPrice {
+  std::string oracle;
+  std::int64_t declared = 0;
+  Real price = 0, low = 0, high = 0;  // the median of the rounds, and their middle 80 %
+  std::int64_t rounds = 0, calls = 0;
+};
+
+// Measured at the published instance of a problem, with nothing else running.
+struct MeasuredPrices {
+  std::string build, processor;  // of the program and the machine that measured
+  Real forward_seconds = 0;      // the median
+  std::vector<MeasuredPrice> oracles;
+};
+
+// Schema isoline.component/1: what a reader of the report needs to know of a problem or optimizer.
+struct Sheet {
+  std::string kind;  // "problem" or "optimizer"
+  std::string name, spec, title, formula, source, note;
+  std::string options_text;             // describe_options() as JSON text
+  std::vector<std::string> oracles;     // offered by a problem, needed by an optimizer
+  std::vector<std::string> privileges;  // of an optimizer
+  std::string family;                   // of an optimizer
+  std::string inverse;                  // of a problem: none, exact, damped or estimate
+  Index unknowns = 0, residuals = 0;    // of a problem
+  std::optional<Landscape> landscape_x, landscape_y;  // of a problem with two unknowns, two outputs
+  std::vector<Real> target;                           // y*, where small
+  std::vector<Real> truth;                            // x*, where small and known
+  std::vector<Panel> panels;                          // of a problem: the figures of its paper
+  std::optional<MeasuredPrices> prices;               // of a problem
+
+  std::string file_name() const;
+};
+
+Json to_json(const Sheet& sheet);
+Sheet sheet_from_json(const Json& json);
+
+// Schema isoline.plan/1: every cell ever planned in the folder, in order.
+struct PlannedCell {
+  std::string cell, problem, optimizer;  // digest and specs
+  std::uint64_t seed = 0;
+};
+struct Plan {
+  std::vector<std::string> suites;
+  std::vector<PlannedCell> cells;
+};
+
+Json to_json(const Plan& plan);
+Plan plan_from_json(const Json& json);
+
+}  // namespace isoline

@@ -1,0 +1,134 @@
+// A U-net's workspace: sizes, kernels and batch norms.
+#include "networks/unet/state.h"
+
+#include "core/threads.h"
+
+namespace isoline::networks {
+namespace {
+
+// A task of about this many pixels stays in a core's cache and outweighs the call of oneDNN.
+constexpr Index kPixelsATask = 1024;
+
+}  // namespace
+
+void Norm::resize(Index channels) {
+  for (auto* numbers : {&gamma, &beta, &mean, &deviation}) numbers->resize(channels);
+  blocks.resize(channels / kChannels);
+}
+
+void Norm::set_forward(Index c) {
+  const Number factor = gamma[c] * deviation[c];
+  set(scale, c, factor);
+  set(shift, c, beta[c] - factor * mean[c]);
+  set(inverse, c, deviation[c]);
+  set(centre, c, -(deviation[c] * mean[c]));
+}
+
+void Norm::set_pullback(Index c, const Number& mean_g, const Number& mean_g_x) {
+  const Number factor = gamma[c] * deviation[c];
+  const Number along = -(factor * deviation[c] * mean_g_x);
+  set(slope, c, along);
+  set(offset, c, -(factor * mean_g + along * mean[c]));
+}
+
+Index UnetState::samples_a_task(const UnetPlan& plan, Index level) const {
+  const Index N = plan.size(level);
+  Index count = std::clamp(kPixelsATask / (N * N), Index{1}, samples);
+  while (samples % count != 0) --count;
+  return count;
+}
+
+ThreadState UnetState::make_thread(const UnetPlan& plan) const {
+  ThreadState thread;
+  Index in = 0, z = 0;
+  const Index channels = plan.channels();
+  for (const Unit& unit : plan.units) {
+    const Index images = samples_a_task(plan, unit.level), N = plan.size(unit.level);
+    const bool is_first = unit.source == Unit::Source::input;
+    const ConvolutionShape there{images, plan.channels_in(unit), channels, N, is_first};
+    const ConvolutionShape back{images, channels, plan.channels_in(unit), N};
+    thread.calls.push_back({.forward = Convolution(there, false),
+                            .forward_adds = Convolution(there, true),
+                            .gradient = KernelGradient(is_first ? there : back)});
+    if (!is_first) {
+      thread.calls.back().backward.emplace(back, false);
+      thread.calls.back().backward_adds.emplace(back, true);
+      in = std::max(in, images * plan.channels_in(unit) / kChannels * Grid{N, 1}.pixels());
+    }
+    z = std::max(z, images * plan.blocks() * Grid{N, 1}.pixels());
+  }
+  thread.in.resize(in, has_tangents);
+  thread.cotangent_in.resize(in, has_tangents);
+  thread.cotangent_z.resize(z, has_tangents);
+  thread.spare.resize(Grid{plan.N}.pixels(), has_tangents);
+  return thread;
+}
+
+void UnetState::fit(const UnetPlan& plan, Index batch, bool with_tangents) {
+  const Index wanted = library_threads();
+  const bool is_grown = batch != samples || (with_tangents && !has_tangents);
+  if (!is_grown && wanted <= static_cast<Index>(threads.size())) return;
+  samples = batch;
+  has_tangents = has_tangents || with_tangents;
+  const Index blocks = plan.blocks();
+  units.resize(plan.units.size());
+  cotangents.resize(plan.levels);
+  Index largest = 0, parts = 0, most = 0;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const Unit& unit = plan.units[i];
+    const Index N = plan.size(unit.level), tasks = samples / samples_a_task(plan, unit.level);
+    const Index kernel = plan.kernel_size(unit) / kChannels;
+    units[i].z.resize(samples * blocks * N * N, has_tangents);
+    units[i].kernel.resize(kernel, has_tangents);
+    units[i].transposed.resize(kernel, has_tangents);
+    units[i].norm.resize(plan.channels());
+    cotangents[unit.level].resize(samples * blocks * N * N, has_tangents);
+    largest = std::max(largest, kernel);
+    parts = std::max(parts, tasks * kernel * (has_tangents ? 2 : 1));
+    most = std::max(most, tasks);
+  }
+  input.resize(samples * plan.input_channels * Grid{plan.N, 1}.pixels());
+  output.resize(plan.output_channels * blocks, has_tangents);
+  output_biases.resize(plan.output_channels);
+  kernel_parts.resize(parts);
+  kernel_sum.resize(largest);
+  sums.resize(most * blocks * 4);
+  output_parts.resize(samples * plan.output_channels * blocks);
+  threads.clear();
+  for (Index i = 0; i < wanted; ++i) threads.push_back(make_thread(plan));
+}
+
+void UnetState::set_value(const UnetPlan& plan, VectorRef theta) {
+  set_kernels(plan, theta, &Place::value, &Dual<Real>::value);
+  for (Index o = 0; o < plan.output_channels; ++o)
+    output_biases[o].value = theta[plan.output_biases() + o];
+}
+
+void UnetState::set_tangent(const UnetPlan& plan, VectorRef v) {
+  set_kernels(plan, v, &Place::tangent, &Dual<Real>::tangent);
+  for (Index o = 0; o < plan.output_channels; ++o)
+    output_biases[o].tangent = v[plan.output_biases() + o];
+}
+
+void UnetState::set_kernels(const UnetPlan& plan, VectorRef theta, float* Place::*array,
+                            Real Dual<Real>::*number) {
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const Unit& unit = plan.units[i];
+    float* const kernel = units[i].kernel.place().*array;
+    float* const transposed = units[i].transposed.place().*array;
+    plan.for_each_weight(unit, [&](Index weight, Index at, Index at_transposed) {
+      kernel[at] = static_cast<float>(theta[weight]);
+      if (unit.source != Unit::Source::input) transposed[at_transposed] = kernel[at];
+    });
+    for (Index c = 0; c < plan.filters; ++c) {
+      units[i].norm.gamma[c].*number = theta[plan.norm(unit) + c];
+      units[i].norm.beta[c].*number = theta[plan.norm(unit) + plan.filters + c];
+    }
+  }
+  for (Index o = 0; o < plan.output_channels; ++o)
+    for (Index c = 0; c < plan.filters; ++c)
+      (output.place().*array)[o * plan.channels() + c] =
+          static_cast<float>(theta[plan.output() + o * plan.filters + c]);
+}
+
+}  // namespace isoline::networks
