@@ -100,8 +100,6 @@ Json parse_json(const std::string& text, const std::string& origin) {
   }
 }
 
-std::string json_text(const Json& value, int indent) { return value.dump(indent); }
-
 Json read_json(const fs::path& path) { return parse_json(read_text(path), path.string()); }
 
 void write_json(const fs::path& path, const Json& value) { write_text(path, value.dump(1) + "\n"); }

@@ -22,7 +22,6 @@ std::string read_text(const std::filesystem::path& path);
 void write_text(const std::filesystem::path& path, std::string_view text);
 
 Json parse_json(const std::string& text, const std::string& origin);  // UsageError names the origin
-std::string json_text(const Json& value, int indent = -1);
 Json read_json(const std::filesystem::path& path);
 void write_json(const std::filesystem::path& path, const Json& value);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/cli/interim.h"
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
@@ -43,8 +44,8 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .command = session.command()};
   if (!given.as_json) options.progress = Progress::style_of(STDERR_FILENO);
-  const Outcome outcome = run_plan(session.catalog(), "claims", cells_of(claims, given.with_long),
-                                   given.out, options);
+  const Outcome outcome =
+      run_plan(session.catalog(), "claims", cells_of(claims, given.with_long), given.out, options);
   for (const std::string& failure : outcome.failures) fmt::print(stderr, "{}\n", failure);
   return outcome;
 }
@@ -65,8 +66,7 @@ int claims_verb(const ClaimArguments& given, Session& session) {
   if (given.is_list) return list_claims(claims, given.as_json);
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
-  const std::vector<Judgement> judgements =
-      judge(json_of(claims), read_study({given.out}).runs);
+  const std::vector<Judgement> judgements = judge(json_of(claims), read_study({given.out}).runs);
   fmt::print("{}", given.as_json ? json_text(claims_json(judgements), 2) + "\n"
                                  : claims_terminal(judgements));
   const int of_runs = exit_code_of(outcome);

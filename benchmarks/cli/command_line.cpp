@@ -128,9 +128,8 @@ int CommandLine::run(int count, char** arguments) {
 }
 
 void CommandLine::add_run() {
-  const auto [verb, given] =
-      add("run", "Run a suite or a matrix of your own; what is done already is not repeated",
-          run_verb);
+  const auto [verb, given] = add(
+      "run", "Run a suite or a matrix of your own; what is done already is not repeated", run_verb);
   verb.add_option("SUITE", given.suite,
                   "Name of a suite, or path of one (default: quick); --problem and --optimizer "
                   "keep its cells of these");
@@ -187,8 +186,7 @@ void CommandLine::add_compare() {
   verb.add_option("--time-cells", given.timed,
                   "Cells (digests, or their beginnings) whose time is judged, 20 at most")
       ->delimiter(',');
-  verb.add_option("--noise", given.noise,
-                  "Least band of noise of times, relative (default: 0.1)")
+  verb.add_option("--noise", given.noise, "Least band of noise of times, relative (default: 0.1)")
       ->check(CLI::Range(0.0, 10.0));
   verb.add_flag("--common", given.is_common_only, "Let cells that only BASE has pass");
   CLI::Option* json = verb.add_flag("--json", given.as_json, "As JSON");
@@ -204,9 +202,8 @@ void CommandLine::add_compare() {
 }
 
 void CommandLine::add_baseline() {
-  const auto [verb, given] =
-      add("baseline", "Keep what later results are compared with, as one small file",
-          baseline_verb);
+  const auto [verb, given] = add(
+      "baseline", "Keep what later results are compared with, as one small file", baseline_verb);
   verb.add_option("RESULTS", given.folders, "Result folders of `isoline run`")->required();
   verb.add_option("--out", given.out, "The file (default: standard output)");
   verb.footer(
@@ -257,10 +254,9 @@ void CommandLine::add_list() {
 }
 
 void CommandLine::add_describe() {
-  const auto [verb, given] =
-      add("describe",
-          "Tell the formula, options, needs and source of a problem, network or optimizer",
-          describe_verb);
+  const auto [verb, given] = add(
+      "describe", "Tell the formula, options, needs and source of a problem, network or optimizer",
+      describe_verb);
   verb.add_option("NAME", given.name, "A name of `isoline list`, or a spec")->required();
   verb.add_flag("--json", given.as_json, "As JSON");
 }
@@ -324,8 +320,7 @@ void CommandLine::add_train() {
   verb.add_option("PROBLEM", given.problem,
                   "Problem: 'sine[xi=32]'; mode=learn goes without saying")
       ->required();
-  verb.add_option("--out", given.out,
-                  "Where to write it: .json, or any other name for raw numbers")
+  verb.add_option("--out", given.out, "Where to write it: .json, or any other name for raw numbers")
       ->required();
   verb.add_option("--optimizer", given.optimizer, "Training method")->capture_default_str();
   verb.add_option("--iterations", given.iterations, "Steps of training")

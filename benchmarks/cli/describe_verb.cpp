@@ -68,12 +68,9 @@ void print_options(const OptionTable& table, const Json& values) {
 
 void print(const NetworkEntry& network, const Json& options, bool as_json) {
   if (as_json) {
-    const Json json{{"kind", "network"},
-                    {"name", network.name},
-                    {"title", network.title},
-                    {"source", network.source},
-                    {"note", network.note},
-                    {"options", describe_options(network.options)}};
+    const Json json{{"kind", "network"},      {"name", network.name},
+                    {"title", network.title}, {"source", network.source},
+                    {"note", network.note},   {"options", describe_options(network.options)}};
     return fmt::print("{}\n", json.dump(2));
   }
   fmt::print("{}: {} (network)\n\nSource      {}\n", network.name, network.title, network.source);

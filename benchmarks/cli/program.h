@@ -10,8 +10,8 @@
 //     return isoline::main(count, arguments, with_mine, {kCommit, kDirty});
 //   }
 //
-// kCommit and kDirty stand in "isoline_commit.h", which CMake's isoline_names_commit(target) writes
-// at every build. Link Isoline::cli.
+// kCommit and kDirty stand in "isoline_build_info.h", which CMake's isoline_names_commit(target)
+// writes at every build. Link Isoline::cli.
 #pragma once
 
 #include <functional>

@@ -8,7 +8,6 @@
 #include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
-#include "reports/study.h"
 
 namespace isoline::benchmarks {
 

@@ -4,9 +4,7 @@
 
 #include <filesystem>
 
-namespace isoline::reports {
-struct Study;
-}
+#include "reports/study.h"
 
 namespace isoline::benchmarks {
 

@@ -17,7 +17,6 @@
 #include "benchmarks/run/soundness.h"
 #include "core/json.h"
 #include "core/spec.h"
-#include "reports/study.h"
 
 namespace isoline::benchmarks {
 
@@ -81,8 +80,7 @@ std::string fate_of(const PreviewedCell& cell) {
 
 void print_plan(const Undertaking& all, int jobs, bool lists_all, Session& session) {
   constexpr std::size_t kMost = 20;
-  const std::vector<PreviewedCell> cells =
-      preview(session.catalog(), all.requests, all.folder);
+  const std::vector<PreviewedCell> cells = preview(session.catalog(), all.requests, all.folder);
   double seconds = 0;
   std::size_t cached = 0, inapplicable = 0;
   for (const PreviewedCell& cell : cells) {
@@ -100,8 +98,7 @@ void print_plan(const Undertaking& all, int jobs, bool lists_all, Session& sessi
     fmt::print("{:28} {:44} seed {:<4} {}\n", request.problem.spec, request.optimizer.spec,
                request.seed, fate_of(cells[i]));
   }
-  if (listed < cells.size())
-    fmt::print("… and {} more; --all lists them\n", cells.size() - listed);
+  if (listed < cells.size()) fmt::print("… and {} more; --all lists them\n", cells.size() - listed);
 }
 
 // The properties at default options of all optimizers that ever ran in this folder.

@@ -27,6 +27,7 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr int kMemoryExit = 77;  // how a child says that an allocation failed outside of any catch
+constexpr int kThrownExit = 78;  // that what it wrote is an exception's text
 
 // Resident and virtual size of a process in bytes; 0 when it is gone.
 struct Sizes {
@@ -46,7 +47,7 @@ void limit(int resource, rlim_t value) {
 }
 
 // The child dies with its parent, leaves Ctrl-C to it, dumps no core and holds its memory limit.
-void confine(pid_t parent, std::int64_t memory_bytes) {
+void confine(pid_t parent, [[maybe_unused]] std::int64_t memory_bytes) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   std::signal(SIGINT, SIG_IGN);
@@ -54,8 +55,6 @@ void confine(pid_t parent, std::int64_t memory_bytes) {
   limit(RLIMIT_CORE, 0);
 #ifndef ISOLINE_SANITIZE  // the sanitizers' shadow memory does not fit under an address-space limit
   limit(RLIMIT_AS, static_cast<rlim_t>(memory_bytes + sizes_of(getpid()).address_space));
-#else
-  (void)memory_bytes;
 #endif
   std::set_new_handler([] { throw std::bad_alloc(); });
 }
@@ -163,8 +162,6 @@ void Worker::interrupt() {
 }
 
 namespace {
-
-constexpr int kThrownExit = 78;  // how a child says that what it wrote is an exception's text
 
 // Everything that comes out of `descriptor` until `deadline`; nothing if it does not end by then.
 std::optional<std::string> read_until(int descriptor, std::int64_t deadline) {

@@ -85,8 +85,7 @@ std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
     const Problem problem({.physics = std::make_unique<Witness>(kind),
                            .start = Vector::Ones(1),
                            .target = Matrix::Zero(1, 1)});
-    for (const std::string& one :
-         privileges_of(needs_of(entry, component.options, problem), kind))
+    for (const std::string& one : privileges_of(needs_of(entry, component.options, problem), kind))
       if (std::ranges::find(all, one) == all.end()) all.push_back(one);
   }
   return all;

@@ -75,23 +75,13 @@ Json read_provenance() {
           {"libraries", libraries()}};
 }
 
-Json& known() {
-  static Json read = read_provenance();
-  return read;
-}
-
 }  // namespace
-
-void set_program_tree(std::string commit, bool is_dirty) {
-  known()["isoline_commit"] = kCommit;
-  known()["commit"] = std::move(commit);
-  known()["dirty"] = is_dirty;
-}
 
 std::string version() { return ISOLINE_VERSION; }
 
 const Json& provenance() {
-  return known();
+  static const Json read = read_provenance();
+  return read;
 }
 
 std::string build_digest(int problem_revision, int optimizer_revision) {

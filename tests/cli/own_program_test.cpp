@@ -30,8 +30,7 @@ TEST_F(OwnProgram, ListsDescribesAndChecksWhatOnlyItHas) {
 }
 
 TEST_F(OwnProgram, ItsRecordsNameItsCommandAndItsCommit) {
-  const Finished run =
-      shell(kOwn + " run --problem twist --optimizer newton --out out --quiet");
+  const Finished run = shell(kOwn + " run --problem twist --optimizer newton --out out --quiet");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Json provenance = only_record().at("provenance");
   EXPECT_EQ(provenance.at("commit"), "0f1e2d3c4b5a");

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "benchmarks/cli/program.h"
+#include "isoline_build_info.h"
 #include "problems/dense_physics.h"
 
 namespace isoline {
@@ -40,9 +41,9 @@ Catalog with_mine() {
   catalog.problems.add(problem_entry(
       {.name = "twist", .title = "Twist", .formula = "(sinh x₁, x₁ x₂)", .source = "here"},
       parts<Twist>));
-  catalog.problems.add(problem_entry(
-      {.name = "thrower", .title = "Thrower", .formula = "none", .source = "here"},
-      parts<Thrower>));
+  catalog.problems.add(
+      problem_entry({.name = "thrower", .title = "Thrower", .formula = "none", .source = "here"},
+                    parts<Thrower>));
   return catalog;
 }
 
@@ -50,5 +51,5 @@ Catalog with_mine() {
 }  // namespace isoline
 
 int main(int count, char** arguments) {
-  return isoline::main(count, arguments, isoline::with_mine, {"0f1e2d3c4b5a", true});
+  return isoline::main(count, arguments, isoline::with_mine, {kCommit, kDirty});
 }
