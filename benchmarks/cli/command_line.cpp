@@ -32,12 +32,13 @@ constexpr const char* kExamples =
 
 const CLI::Range kJobs(1, 1024), kThreads(1, 256);
 
-// "2GB" to a number of bytes.
+// "2GB" to a number of bytes, or what is wrong with it.
 std::string to_bytes(std::string& text) {
-  const std::string given = text;
-  const CLI::AsSizeValue convert(false);
-  return convert(text).empty() ? ""
-                               : fmt::format("expected an amount such as 2GB, got '{}'", given);
+  try {
+    return CLI::AsSizeValue(false)(text);
+  } catch (const CLI::ValidationError&) {
+    return fmt::format("expected an amount such as 2GB, got '{}'", text);
+  }
 }
 
 template <class Arguments>

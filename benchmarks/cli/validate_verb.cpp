@@ -9,6 +9,7 @@
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/resources.h"
+#include "core/errors.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/threads.h"

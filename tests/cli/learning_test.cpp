@@ -8,7 +8,6 @@
 
 namespace isoline::benchmarks {
 
-using networks::Network;
 namespace {
 
 namespace fs = std::filesystem;

@@ -63,7 +63,7 @@ TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
            {"run --problem square --optimizer gd --seeds 5..3", "5..3"},
            {"run --problem square --optimizer gd --seeds many", "many"},
            {"run --problem square --optimizer gd --time soon", "soon"},
-           {"run --problem square --optimizer gd --memory lots", "lots"},
+           {"run --problem square --optimizer gd --memory lots", "2GB, got 'lots'"},
            {"run --problem square --optimizer gd --jobs 0", "--jobs"},
            {"run --problem square --optimizer gd --target 2", "--target"},
            {"run --problem square --optimizer gd --iterations -1", "--iterations"},
