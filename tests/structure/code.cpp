@@ -111,8 +111,9 @@ std::vector<Statement> statements_of(const std::string& code) {
 
 std::vector<Type> types_of(const Source& source) {
   static const std::regex space(R"re(^(inline )?namespace ?([\w:]*) ?\{)re");
-  static const std::regex type(
-      R"re(^(?:template <.*> )?(?:struct|class|enum class|enum|union) (?:alignas\([^)]*\) )?(\w+)( final)?( :.*| \{.*|;.*)?$)re");
+  static const std::string kind = "(?:struct|class|enum class|enum|union) (?:alignas\\([^)]*\\) )?";
+  static const std::regex type("^(?:template <.*> )?" + kind +
+                               R"re((\w+)( final)?( :.*| \{.*|;.*)?$)re");
   std::vector<std::string> spaces;
   std::vector<Type> types;
   for (std::size_t i = 0; i < source.lines.size(); ++i) {

@@ -214,10 +214,16 @@ TEST(Style, AStatementSaysOneThing) {
 
 // A view of an array that dies or changes before the view is read: write the type.
 TEST(Style, AutoHoldsNoExpressionOfEigen) {
-  static const std::regex expression(
-      R"re(\bauto&{0,2} \w+ = [^;\[]*\.(array|matrix|col|row|block|segment|head|tail|transpose|cwise\w+|colwise|rowwise|reshaped|diagonal|(left|right|middle)Cols|(top|bottom|middle)Rows|replicate|asDiagonal|noalias|unaryExpr|binaryExpr|triangularView|selfadjointView)(<\w+>)?\()re");
-  static const std::regex number(
-      R"re((\.eval|\.(size|rows|cols|sum|norm|squaredNorm|dot|maxCoeff|minCoeff|mean|prod|any|all|count|allFinite|hasNaN|data|value)(<[\w:]+>)?)\([^()]*\)$)re");
+  static const std::string views =
+      "array|matrix|col|row|block|segment|head|tail|transpose|cwise\\w+|colwise|rowwise|reshaped|"
+      "diagonal|(left|right|middle)Cols|(top|bottom|middle)Rows|replicate|asDiagonal|noalias|"
+      "unaryExpr|binaryExpr|triangularView|selfadjointView";
+  static const std::string numbers =
+      "eval|size|rows|cols|sum|norm|squaredNorm|dot|maxCoeff|minCoeff|mean|prod|any|all|count|"
+      "allFinite|hasNaN|data|value";
+  static const std::regex expression(R"re(\bauto&{0,2} \w+ = [^;\[]*\.()re" + views +
+                                     R"re()(<\w+>)?\()re");
+  static const std::regex number(R"re(\.()re" + numbers + R"re()(<[\w:]+>)?\([^()]*\)$)re");
   for (const Source& source : sources())
     for (const Statement& statement : statements_of(code_of(source.text))) {
       if (!std::regex_search(statement.text, expression)) continue;
