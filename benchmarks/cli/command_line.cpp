@@ -34,10 +34,11 @@ const CLI::Range kJobs(1, 1024), kThreads(1, 256);
 
 // "2GB" to a number of bytes, or what is wrong with it.
 std::string to_bytes(std::string& text) {
+  const std::string given = text;  // the conversion takes the text apart before it fails
   try {
     return CLI::AsSizeValue(false)(text);
   } catch (const CLI::ValidationError&) {
-    return fmt::format("expected an amount such as 2GB, got '{}'", text);
+    return fmt::format("expected an amount such as 2GB, got '{}'", given);
   }
 }
 
