@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "benchmarks/plan/catalog.h"
@@ -17,7 +16,7 @@ inline const Catalog& catalog() {
 
 inline Problem make_problem(const std::string& text) {
   const Spec spec = parse_spec(text);
-  return isoline::make_problem(catalog(), complete_problem(catalog(), spec.name, options_of(spec)),
+  return isoline::make_problem(catalog(), complete_problem(catalog(), spec),
                                0);
 }
 
@@ -28,7 +27,7 @@ inline Budget endless() {
 
 inline Component complete_method(const std::string& text) {
   const Spec spec = parse_spec(text);
-  return complete_optimizer(catalog(), spec.name, options_of(spec));
+  return complete_optimizer(catalog(), spec);
 }
 
 inline std::unique_ptr<Optimizer> make_method(const std::string& text) {

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/files.h"
 #include "problems/conformance.h"
 #include "tests/benchmarks/matrix.h"
 #include "tests/cli/readme_examples.h"
@@ -71,7 +73,7 @@ TEST(ReadmeExamples, TheProblemHoldsWhatEveryProblemMust) {
   const Catalog catalog = catalog_with_readme_examples();
   for (const std::string& name : readme_problems()) {
     const Problem problem =
-        make_problem(catalog, complete_problem(catalog, name, Json::object()), 0);
+        make_problem(catalog, complete_problem(catalog, name, OptionValues()), 0);
     RandomStream stream(0, name, "check");
     for (const Finding& finding : examine(problem, stream))
       EXPECT_TRUE(finding.holds()) << name << ": " << finding.property << " " << finding.figure;
