@@ -5,6 +5,8 @@
 #include "benchmarks/micro/trial.h"
 
 namespace isoline::benchmarks::micro {
+
+using optimizers::Family;
 namespace {
 
 // Tiny, where overhead shows; middling; and two grids whose transforms allocate inside FFTW.

@@ -12,6 +12,8 @@
 #include "core/option_json.h"
 
 namespace isoline::benchmarks {
+
+using optimizers::privileges_of;
 namespace {
 
 constexpr Index kGrid = 81;   // points a side of a landscape
