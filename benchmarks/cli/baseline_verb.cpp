@@ -5,7 +5,7 @@
 
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
-#include "core/json.h"
+#include "core/files.h"
 #include "reports/gate/baseline.h"
 #include "reports/study.h"
 

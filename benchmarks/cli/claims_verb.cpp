@@ -3,9 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "benchmarks/cli/interim.h"
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
@@ -34,7 +32,7 @@ int list_claims(const std::vector<Claim>& claims, bool as_json) {
   for (const Claim& claim : claims) {
     if (claim.group != group) fmt::print("{}\n", claim.group);
     group = claim.group;
-    fmt::print("  {:38} {}\n", claim.id(), claim.json.at("sentence").get<std::string>());
+    fmt::print("  {:38} {}\n", claim.id, claim.sentence);
   }
   return kGood;
 }

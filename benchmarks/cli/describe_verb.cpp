@@ -8,6 +8,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
+#include "core/option_json.h"
 #include "core/spec.h"
 #include "networks/network.h"
 
@@ -21,17 +22,17 @@ namespace {
 struct Described {
   Sheet sheet;
   OptionTable table;
-  Json options;  // as given, the rest at their defaults
+  OptionValues options;  // as given, the rest at their defaults
 };
 
 Described described(const Catalog& catalog, const Spec& spec) {
   if (catalog.problems.contains(spec.name)) {
-    const Component problem = complete_problem(catalog, spec.name, options_of(spec));
+    const Component problem = complete_problem(catalog, spec);
     return {problem_sheet(catalog, problem), catalog.problems.at(spec.name).options,
             problem.options};
   }
   if (catalog.optimizers.contains(spec.name)) {
-    const Component optimizer = complete_optimizer(catalog, spec.name, options_of(spec));
+    const Component optimizer = complete_optimizer(catalog, spec);
     return {optimizer_sheet(catalog, optimizer), catalog.optimizers.at(spec.name).options,
             optimizer.options};
   }
@@ -41,23 +42,14 @@ Described described(const Catalog& catalog, const Spec& spec) {
   throw UsageError(unknown_name("component", spec.name, known));
 }
 
-std::string text_of(const OptionValue& value) {
-  return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
-}
-
-std::string text_of(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  return value.is_number_float() ? fmt::format("{}", value.get<Real>()) : value.dump();
-}
-
 std::string law_of(const OptionField& field) {
   if (!field.choices.empty()) return fmt::format("{}", fmt::join(field.choices, "|"));
   const bool is_number =
       std::holds_alternative<Real>(field.standard) || std::holds_alternative<Index>(field.standard);
-  return is_number ? isoline::text_of(field.range) : "";
+  return is_number ? text_of(field.range) : "";
 }
 
-void print_options(const OptionTable& table, const Json& values) {
+void print_options(const OptionTable& table, const OptionValues& values) {
   fmt::print("{}", table.empty() ? "\nIt has no options.\n" : "\nOptions\n");
   for (const OptionField& field : table) {
     const std::string value = text_of(values.at(field.name)), standard = text_of(field.standard);
@@ -66,7 +58,7 @@ void print_options(const OptionTable& table, const Json& values) {
   }
 }
 
-void print(const NetworkEntry& network, const Json& options, bool as_json) {
+void print(const NetworkEntry& network, const OptionValues& options, bool as_json) {
   if (as_json) {
     const Json json{{"kind", "network"},      {"name", network.name},
                     {"title", network.title}, {"source", network.source},

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "benchmarks/cli/command_line.h"
-#include "benchmarks/cli/interim.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"

@@ -16,17 +16,17 @@ namespace {
 
 Request request_of(const TrainArguments& given, const Catalog& catalog) {
   const Spec problem_spec = parse_spec(given.problem), spec = parse_spec(given.optimizer);
-  Json options = options_of(problem_spec);
-  if (!options.contains("mode")) options["mode"] = "learn";
+  OptionValues options = options_of(problem_spec);
+  if (!options.contains("mode")) options.set("mode", "learn");
   const Component problem = complete_problem(catalog, problem_spec.name, options);
-  require(problem.options["mode"] == "learn", "train: mode=direct leaves nothing to train");
+  require(problem.is_learned, "train: mode=direct leaves nothing to train");
   const Rates rates = Rates::builtin();
-  return {.problem = problem,
-          .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
-          .seed = given.seed,
-          .budget = {.iterations = given.iterations, .target = 0},
-          .threads = given.threads,
-          .rates = ""};
+  return named({.problem = problem,
+                .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
+                .seed = given.seed,
+                .budget = {.iterations = given.iterations, .target = 0},
+                .threads = given.threads,
+                .rates = ""});
 }
 
 bool is_trained(const Trace& trace) {

@@ -10,6 +10,7 @@
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/tune.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/spec.h"
 
@@ -23,7 +24,7 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
                   .seeds = parse_seeds(given.seeds),
                   .budget = {.iterations = given.iterations, .work = given.work}};
   for (const Spec& spec : parse_specs(given.problem))
-    plan.problems.push_back(complete_problem(catalog, spec.name, options_of(spec)));
+    plan.problems.push_back(complete_problem(catalog, spec));
   if (given.optimizer.empty()) {
     plan.optimizers = {"sip"};
     for (const auto& [name, entry] : catalog.optimizers)
@@ -80,11 +81,11 @@ int tune_verb(const TuneArguments& given, Session& session) {
                            .command = session.command()};
   const TuningResult result = tune(catalog, plan, given.folder, options);
   if (result.outcome.is_interrupted) return exit_code_of(result.outcome);
-  for (const Json& row : result.rows)
+  for (const Json& row : *result.rows)
     fmt::print("{:28} {:24} {}; best of 1, 2, …: {}\n", row["problem"].get<std::string>(),
                row["optimizer"].get<std::string>(), row["options"].dump(),
                row["source"]["best_of"].dump());
-  if (!given.table.empty()) write_table(given, plan, result.rows);
+  if (!given.table.empty()) write_table(given, plan, *result.rows);
   return kGood;
 }
 

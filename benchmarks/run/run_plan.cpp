@@ -7,7 +7,8 @@
 
 #include "benchmarks/run/sheets.h"
 #include "benchmarks/run/soundness.h"
-#include "core/json.h"
+#include "core/digest.h"
+#include "core/records/plan.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -16,7 +17,7 @@ std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
   std::vector<PlannedCell> cells;
   for (const Request& request : requests)
     cells.push_back(
-        {cell_digest(request), request.problem.spec, request.optimizer.spec, request.seed});
+        {request.cell, request.problem.spec, request.optimizer.spec, request.seed});
   return cells;
 }
 
@@ -50,7 +51,7 @@ Outcome run_plan(const Catalog& catalog, const std::string& name,
 std::string folder_name_of(const std::vector<Request>& requests, const std::string& title) {
   constexpr std::size_t kDigits = 8;
   std::vector<std::string> cells;
-  for (const Request& request : requests) cells.push_back(cell_digest(request));
+  for (const Request& request : requests) cells.push_back(request.cell);
   std::ranges::sort(cells);  // the order of the words on the command line does not matter
   std::string all;
   for (const std::string& cell : cells) all += cell;
