@@ -88,6 +88,10 @@ Spec parse_spec(std::string_view text) {
   return specs[0];
 }
 
+std::string name_of_spec(std::string_view spec) {
+  return std::string(spec.substr(0, spec.find('[')));
+}
+
 Json options_of(const Spec& spec) {
   Json options = Json::object();
   for (const auto& [key, value] : spec.options) {

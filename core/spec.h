@@ -20,6 +20,9 @@ struct Spec {
 std::vector<Spec> parse_specs(std::string_view text);
 Spec parse_spec(std::string_view text);  // UsageError unless it is exactly one
 
+// "sine" of "sine[xi=32]": for labels where a spec is all there is; others carry the name with it.
+std::string name_of_spec(std::string_view spec);
+
 Json options_of(const Spec& spec);  // {key: text}
 
 // "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; commas join.

@@ -11,7 +11,7 @@ namespace isoline::benchmarks {
 
 struct Claim {
   std::string group;  // the file it stands in
-  Json json;          // as reports/claims/claims.h says, its cells by digests
+  Json json;          // as reports/sections/judging.h says, its cells by digests
   // One of each set of cells, the longest first.
   struct Cells {
     bool is_long = false;  // hours: run only when asked for
