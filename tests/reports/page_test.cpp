@@ -79,10 +79,11 @@ TEST(Page, IsToldTheMethodOfEachOptimizer) {
   EXPECT_TRUE(has(page, "gd, tuned"));
   EXPECT_TRUE(has(page, "\"methods\":[\"gd\",\"gd\"]"));
   const std::filesystem::path scripts = ISOLINE_SOURCE_DIR "/reports/page";
-  for (const auto& file : std::filesystem::directory_iterator(scripts))
-    if (file.path().extension() == ".js")
-      for (const char* cut : {"split('[", "split(/[[", "indexOf('["})
-        EXPECT_FALSE(has(read_text(file.path()), cut)) << file.path();
+  for (const auto& file : std::filesystem::directory_iterator(scripts)) {
+    if (file.path().extension() != ".js") continue;
+    for (const char* cut : {"split('[", "split(/[[", "indexOf('["})
+      EXPECT_FALSE(has(read_text(file.path()), cut)) << file.path();
+  }
 }
 
 TEST(Page, ShowsFormulasAsTheyAreWritten) {

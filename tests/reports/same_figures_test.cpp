@@ -54,7 +54,7 @@ Rows of_json(const Json& table) {
 // Escaped bars stand in names alone, before the first that separates.
 Rows of_markdown(const std::string& report, const std::string& title) {
   Rows rows;
-  std::istringstream lines(between(report, "\n### " + title + "\n", "\n### "));
+  std::istringstream lines(between(report, "\n### " + title + "\n", "\n##"));
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("| ")) continue;
     rows.push_back(numbers_in(
