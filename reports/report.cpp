@@ -1,7 +1,8 @@
 // Writes all formats of a report into a folder, several at a time.
 #include "reports/report.h"
 
-#include "core/json.h"
+#include "core/files.h"
+#include "core/files.h"
 #include "core/threads.h"
 
 namespace isoline::reports {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/digest.h"
 #include "core/json.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/evidence.h"
@@ -169,7 +170,7 @@ Json table_json(const Table& table) {
 Json plot_json(const Plot& plot, const Comparison& c) {
   constexpr const char* kKinds[] = {"steps", "dots", "bars", "matrix"};
   const auto numbers = [](const std::vector<Real>& values) {
-    return json_numbers(values.data(), values.size());
+    return json_numbers(values);
   };
   Json rows = Json::array(), series = Json::array();
   for (const PlotRow& row : plot.rows) rows.push_back(row.name);

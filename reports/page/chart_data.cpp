@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 #include <unordered_map>
@@ -31,10 +30,6 @@ std::size_t points_per_path(std::size_t paths) {
 std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
 std::string coarse(Real value) {  // three digits: enough for a curve
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : "null";
-}
-
-std::string quoted(const std::string& text) {
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 // "[a,b,c]" of whatever `item` writes.
@@ -168,7 +163,7 @@ std::string problem_json(const Comparison& c, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
   std::string text =
       fmt::format("{{\"spec\":{},\"asked\":{},\"name\":{},\"cells\":{},\"curves\":{}",
-                  quoted(shown_spec(problem.spec)), quoted(problem.spec), quoted(problem.name),
+                  json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec), json_quoted(problem.name),
                   cells_json(c, p), curves_json(c, p));
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
@@ -196,7 +191,7 @@ std::string claims_about(const Document& document) {
         optimizers.insert(at->second->optimizer);
         problems.insert(at->second->problem);
       }
-    text += fmt::format("{}{}:[{},{}]", text.size() > 1 ? "," : "", quoted(judgement.id),
+    text += fmt::format("{}{}:[{},{}]", text.size() > 1 ? "," : "", json_quoted(judgement.id),
                         indices(optimizers), indices(problems));
   }
   return text + "}";
@@ -210,13 +205,13 @@ std::string page_data(const Document& document) {
       "{{\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
       "\"figures\":{},\"problems\":[",
       list(c.optimizers,
-           [](const OptimizerAxis& optimizer) { return quoted(shown_spec(optimizer.label)); }),
-      list(c.optimizers, [](const OptimizerAxis& optimizer) { return quoted(optimizer.method); }),
+           [](const OptimizerAxis& optimizer) { return json_quoted(shown_spec(optimizer.label)); }),
+      list(c.optimizers, [](const OptimizerAxis& optimizer) { return json_quoted(optimizer.method); }),
       list(c.optimizers,
-           [](const OptimizerAxis& optimizer) { return quoted(family_title(optimizer.family())); }),
+           [](const OptimizerAxis& optimizer) { return json_quoted(family_title(optimizer.family())); }),
       list(c.optimizers,
            [](const OptimizerAxis& optimizer) {
-             return quoted(joined(optimizer.privileges));
+             return json_quoted(joined(optimizer.privileges));
            }),
       claims_about(document), figures_json(document.figures));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <unordered_map>
 
 namespace isoline::reports {
@@ -15,11 +16,11 @@ struct Segment {
   Edge from, to;
 };
 
-class Grid {
+class Lattice {
  public:
-  explicit Grid(const Landscape& landscape) : landscape_(landscape) {}
+  explicit Lattice(const Landscape& landscape) : landscape_(landscape) {}
   Index columns() const { return landscape_.loss.rows(); }  // along x1
-  Index rows() const { return landscape_.loss.cols(); }     // along x2
+  Index rows() const { return landscape_.loss.columns(); }  // along x2
   Real loss(Index i, Index j) const { return landscape_.loss(i, j); }
   Edge edge(Index i, Index j, bool is_upward) const {
     return static_cast<Edge>(2 * (i + j * columns()) + (is_upward ? 1 : 0));
@@ -44,7 +45,7 @@ class Grid {
 
 // The segments of one cell: crossed edges joined in pairs. In a saddle, where all four are crossed,
 // the mean of the corners decides which corners are cut off.
-void add_segments(const Grid& grid, Index i, Index j, Real level, std::vector<Segment>& segments) {
+void add_segments(const Lattice& grid, Index i, Index j, Real level, std::vector<Segment>& segments) {
   const std::array<Real, 4> corner = {grid.loss(i, j), grid.loss(i + 1, j), grid.loss(i + 1, j + 1),
                                       grid.loss(i, j + 1)};
   const Real mean = (corner[0] + corner[1] + corner[2] + corner[3]) / 4;
@@ -105,7 +106,7 @@ Real between(const std::array<Real, 4>& p, Real t) {
 }
 
 // (n) values to ((n − 1) times + 1); a parabola continues them past the ends.
-std::vector<Real> refined(const std::vector<Real>& values, std::size_t times) {
+std::vector<Real> refined(std::span<const Real> values, std::size_t times) {
   const std::size_t n = values.size();
   const Real before = 3 * (values[0] - values[1]) + values[2];
   const Real after = 3 * (values[n - 1] - values[n - 2]) + values[n - 3];
@@ -119,23 +120,12 @@ std::vector<Real> refined(const std::vector<Real>& values, std::size_t times) {
   return fine;
 }
 
-using Losses = decltype(Landscape::loss);
-
-bool is_finite(const Losses& loss) {
-  for (Index j = 0; j < loss.cols(); ++j)
-    for (Index i = 0; i < loss.rows(); ++i)
-      if (!std::isfinite(loss(i, j))) return false;
-  return true;
-}
-
 // (n1, n2) to ((n1 − 1) times + 1, n2), transposed: twice is both directions.
-Losses refined_and_turned(const Losses& coarse) {
+Grid refined_and_turned(const Grid& coarse) {
   constexpr Index kTimes = 3;
-  Losses fine(coarse.cols(), (coarse.rows() - 1) * kTimes + 1);
-  for (Index j = 0; j < coarse.cols(); ++j) {
-    std::vector<Real> column;
-    for (Index i = 0; i < coarse.rows(); ++i) column.push_back(coarse(i, j));
-    const std::vector<Real> values = refined(column, kTimes);
+  Grid fine(coarse.columns(), (coarse.rows() - 1) * kTimes + 1);
+  for (Index j = 0; j < coarse.columns(); ++j) {
+    const std::vector<Real> values = refined(coarse.column(j), kTimes);
     for (std::size_t i = 0; i < values.size(); ++i) fine(j, static_cast<Index>(i)) = values[i];
   }
   return fine;
@@ -144,8 +134,10 @@ Losses refined_and_turned(const Losses& coarse) {
 // Small closed isolines of a coarse grid would be polygons.
 Landscape refined(const Landscape& coarse) {
   constexpr Index kLeast = 3;
-  const Losses& loss = coarse.loss;
-  if (std::min(loss.rows(), loss.cols()) < kLeast || !is_finite(loss)) return coarse;
+  const Grid& loss = coarse.loss;
+  const bool is_finite =
+      std::ranges::all_of(loss.values(), [](Real value) { return std::isfinite(value); });
+  if (std::min(loss.rows(), loss.columns()) < kLeast || !is_finite) return coarse;
   return {coarse.window, refined_and_turned(refined_and_turned(loss)), coarse.spacing};
 }
 
@@ -158,7 +150,7 @@ std::vector<Real> even_steps(Real low, Real high, int count, Real (*from)(Real))
 }  // namespace
 
 std::vector<Polyline> isolines(const Landscape& landscape, Real level) {
-  const Grid grid(landscape);
+  const Lattice grid(landscape);
   std::vector<Segment> segments;
   for (Index j = 0; j + 1 < grid.rows(); ++j)
     for (Index i = 0; i + 1 < grid.columns(); ++i) add_segments(grid, i, j, level, segments);
@@ -175,12 +167,11 @@ std::vector<Real> contour_levels(const Landscape& landscape) {
   if (landscape.spacing == "powers of two")
     return even_steps(-6, 8, kLevels, [](Real i) { return std::exp2(i); });
   Real low = INFINITY, high = 0;
-  for (Index j = 0; j < landscape.loss.cols(); ++j)
-    for (Index i = 0; i < landscape.loss.rows(); ++i)
-      if (const Real loss = landscape.loss(i, j); std::isfinite(loss) && loss > 0) {
-        low = std::min(low, loss);
-        high = std::max(high, loss);
-      }
+  for (const Real loss : landscape.loss.values())
+    if (std::isfinite(loss) && loss > 0) {
+      low = std::min(low, loss);
+      high = std::max(high, loss);
+    }
   if (!(low < high)) return {};
   if (landscape.spacing == "fifth root")
     return even_steps(0, std::pow(high, 0.2), kLevels, [](Real v) { return std::pow(v, 5); });

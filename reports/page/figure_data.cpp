@@ -81,6 +81,10 @@ std::string figures_html(const Document& document) {
                       : "<div class=panels>" + html + "</div>";
 }
 
+std::string json_quoted(const std::string& text) {
+  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string figures_json(const std::vector<Figure>& all) {
   Json list = Json::array();
   for (const Figure& figure : all)

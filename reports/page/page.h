@@ -25,6 +25,7 @@ std::string figures_html(const Document& document);
 // What the charts draw, as JSON that is safe inside a script element.
 std::string page_data(const Document& document);
 std::string figures_json(const std::vector<Figure>& figures);
+std::string json_quoted(const std::string& text);
 
 // A dagger that tells what an optimizer sees; empty where it sees no more than others.
 std::string dagger(const std::vector<std::string>& privileges);

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "core/json.h"
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
 #include "reports/sections/words.h"
@@ -169,11 +167,13 @@ std::string details_html(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s, budgets);
+  std::vector<std::string> quoted;
+  for (const std::string& budget : budgets) quoted.push_back(json_quoted(budget));
   std::string html = fmt::format(
       "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th "
       "scope=col>problem<th scope=col>"
       "optimizer<th scope=col>runs<br>to 1e-6",
-      html_text(Json(budgets).dump()));
+      html_text("[" + joined(quoted) + "]"));
   for (const char* what : {"work", "time, ms,"})
     for (const Tolerance& tolerance : kTolerances)
       html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);

@@ -35,10 +35,6 @@ std::map<std::string, std::string> names_by_spec(const Study& study, Component R
   return names;
 }
 
-bool is_learned(const Component& problem) {
-  return problem.options.value("mode", "direct") == "learn";
-}
-
 }  // namespace
 
 OptimizerLabels::OptimizerLabels(const Study& study)
@@ -79,7 +75,7 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;
     if (could_declare && !record.minimum) at->is_minimum_declared = false;
-    at->is_learned = is_learned(record.request.problem);
+    at->is_learned = record.request.problem.is_learned;
   }
   return axis;
 }

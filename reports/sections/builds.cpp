@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <ranges>
 #include <set>
 
@@ -19,34 +18,18 @@ using Lines = std::vector<std::string>;
 const std::vector<std::string> kTerms = {"version",      "commit",    "compiler", "build",
                                          "instructions", "processor", "system",   "libraries"};
 
-// Text of any JSON value, "" where there is none.
-std::string text_at(const Json& json, const char* key) {
-  const auto at = json.is_object() ? json.find(key) : json.end();
-  if (!json.is_object() || at == json.end()) return "";
-  return at->is_string() ? at->get<std::string>() : at->dump();
-}
-
-std::string libraries_of(const Json& provenance) {
-  std::string text;
-  const auto libraries = provenance.find("libraries");
-  if (libraries == provenance.end() || !libraries->is_object()) return text;
-  for (const auto& [name, version] : libraries->items())
-    text +=
-        fmt::format("{}{} {}", text.empty() ? "" : ", ", name, text_at(*libraries, name.c_str()));
-  return text;
-}
-
-Lines lines_of(const Json& provenance) {
-  const std::string commit = text_at(provenance, "commit"), cores = text_at(provenance, "cores");
-  const bool is_dirty = text_at(provenance, "dirty") == "true";
-  return {text_at(provenance, "version"),
-          commit.empty() || !is_dirty ? commit : commit + " with uncommitted changes",
-          text_at(provenance, "compiler") + " " + text_at(provenance, "flags"),
-          text_at(provenance, "build_type"),
-          text_at(provenance, "instruction_set"),
-          text_at(provenance, "processor") + (cores.empty() ? "" : ", " + cores + " cores"),
-          text_at(provenance, "system"),
-          libraries_of(provenance)};
+Lines lines_of(const Build& build) {
+  std::vector<std::string> libraries;
+  for (const auto& [name, version] : build.libraries) libraries.push_back(name + " " + version);
+  const bool is_changed = build.is_dirty.value_or(false) && !build.commit.empty();
+  return {build.version,
+          build.commit + (is_changed ? " with uncommitted changes" : ""),
+          build.compiler + " " + build.flags,
+          build.build_type,
+          build.instruction_set,
+          build.processor + (build.cores > 0 ? fmt::format(", {} cores", build.cores) : ""),
+          build.system,
+          joined(libraries)};
 }
 
 struct Origins {
@@ -56,14 +39,12 @@ struct Origins {
 
 Origins origins_of(const Comparison& c) {
   Origins all;
-  std::set<const Json*> seen;
+  std::set<const Build*> seen;  // one in memory for records of one build
   for (const Run& run : c.runs) {
     const Provenance& provenance = run.record->provenance;
-    const Json* version = provenance.find("version");  // one in memory for records of one build
-    const bool is_new = version == nullptr || seen.insert(version).second;
-    if (is_new && all.builds.size() < kMostBuilds) all.builds.insert(lines_of(provenance));
-    if (provenance.is_object() && provenance.contains("run") && all.commands.size() < kMostBuilds)
-      all.commands.insert(text_at(provenance["run"], "command"));
+    const bool is_new = seen.insert(provenance.build.get()).second;
+    if (is_new && all.builds.size() < kMostBuilds) all.builds.insert(lines_of(*provenance.build));
+    if (all.commands.size() < kMostBuilds) all.commands.insert(provenance.run.command);
   }
   all.commands.erase("");
   return all;

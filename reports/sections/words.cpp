@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/shell.h"
+
 namespace isoline::reports {
 namespace {
 
@@ -180,12 +182,6 @@ std::string rerun_command(const Request& request) {
   return fmt::format("./isoline run --problem {} --optimizer {} --seeds ={} {}",
                      shell_word(request.problem.spec), shell_word(request.optimizer.spec),
                      request.seed, budget_options(request));
-}
-
-std::string shell_word(std::string_view text) {
-  std::string word = "'";
-  for (const char letter : text) word += letter == '\'' ? "'\\''" : std::string(1, letter);
-  return word + "'";
 }
 
 }  // namespace isoline::reports

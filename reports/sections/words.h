@@ -43,6 +43,5 @@ std::string matrix_text(const Cell& cell, std::size_t tolerance);
 // The command that asks for the same cell again: all its options explicit, no table of rates.
 std::string rerun_command(const Request& request);
 std::string budget_options(const Request& request);  // "--iterations 1000 --rates none"
-std::string shell_word(std::string_view text);
 
 }  // namespace isoline::reports
