@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/records/audited.h"
+#include "core/records/plan.h"
 #include "core/records/record.h"
 #include "core/records/sheet.h"
 #include "core/threads.h"

@@ -7,7 +7,7 @@
 namespace isoline::reports {
 namespace {
 
-Picture picture_of(std::string title, const Matrix& field, Index N) {
+Picture picture_of(std::string title, const Grid& field, Index N) {
   Picture picture{std::move(title), N, {}};
   for (Index row = 0; row < N; ++row)
     for (Index column = 0; column < N; ++column)

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/words.h"
@@ -23,7 +23,7 @@ class RestartedHits {
            const std::string& key) {
     const bool is_certain = targets.size() == 1;  // every draw is the same
     for (std::size_t draw = 0; draw < (is_certain ? 1 : kDraws); ++draw) {
-      RandomStream random(fnv1a(key), "report", "restarted targets", draw);
+      Draws random(fnv1a(key), "report", "restarted targets", draw);
       follow(targets, spent, random, is_certain ? Real(kDraws) : 1);
     }
   }
@@ -39,7 +39,7 @@ class RestartedHits {
   // Attempts drawn one after the other, what each spent added up, until the most that any of them
   // meets is met.
   void follow(const std::vector<std::vector<Real>>& targets, const std::vector<Real>& spent,
-              RandomStream& random, Real weight) {
+              Draws& random, Real weight) {
     std::size_t most = 0, met = 0;
     for (const auto& costs : targets)
       most = std::max(most,

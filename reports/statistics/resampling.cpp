@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 
 namespace isoline::reports {
 namespace {
@@ -39,10 +39,9 @@ std::vector<Real> ratios_of(const GroupSum& all) {
 void resample(std::size_t count, const DrawStream& from,
               const std::function<void(const Places&)>& use) {
   Places places(count);
-  const RandomStream first(from.seed, from.component, from.purpose, 0);
-  RandomStream random = first;
+  Draws random(from.seed, from.component, from.purpose);
   for (std::size_t draw = 0; draw < kDraws; ++draw) {
-    if (!from.is_for_all) random = first.of_sample(draw);
+    if (!from.is_for_all) random.restart(draw);
     for (std::size_t& place : places)
       place = static_cast<std::size_t>(random.uniform() * Real(count));
     use(places);

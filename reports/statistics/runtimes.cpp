@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 #include "reports/statistics/resampling.h"
 
 namespace isoline::reports {
 namespace {
 
-std::size_t drawn(RandomStream& random, std::size_t count) {
+std::size_t drawn(Draws& random, std::size_t count) {
   return static_cast<std::size_t>(random.uniform() * Real(count));
 }
 
@@ -31,7 +31,7 @@ std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const
     return std::vector<Real>(kDraws, kNever);
   std::vector<Real> costs;
   for (std::size_t draw = 0; draw < kDraws; ++draw) {
-    RandomStream random(fnv1a(key), "report", "restarts", draw);
+    Draws random(fnv1a(key), "report", "restarts", draw);
     Real cost = 0;
     while (true) {
       const Attempt& attempt = attempts[drawn(random, attempts.size())];
