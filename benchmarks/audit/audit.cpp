@@ -198,4 +198,12 @@ std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
   return all;
 }
 
+std::string audit_text(const std::vector<AuditedOptimizer>& all) {
+  return json_text(audit_to_json(all), 2) + "\n";
+}
+
+void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem::path& path) {
+  write_json(path, audit_to_json(all));
+}
+
 }  // namespace isoline::benchmarks

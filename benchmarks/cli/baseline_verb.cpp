@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "reports/gate/baseline.h"
-#include "reports/study.h"
+#include "reports/read/study.h"
 
 namespace isoline::benchmarks {
 

@@ -3,23 +3,22 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/on_terminal.h"
+#include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"
-#include "reports/claims/claims.h"
-#include "reports/study.h"
 
 namespace isoline::benchmarks {
 
 using reports::claims_json;
-using reports::claims_terminal;
-using reports::judge;
+using reports::claims_section;
 using reports::Judgement;
 using reports::read_study;
+using reports::terminal_section;
 using reports::Verdict;
 namespace {
 
@@ -64,9 +63,9 @@ int claims_verb(const ClaimArguments& given, Session& session) {
   if (given.is_list) return list_claims(claims, given.as_json);
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
-  const std::vector<Judgement> judgements = judge(json_of(claims), read_study({given.out}).runs);
+  const std::vector<Judgement> judgements = judged(claims, read_study({given.out}).runs);
   fmt::print("{}", given.as_json ? json_text(claims_json(judgements), 2) + "\n"
-                                 : claims_terminal(judgements));
+                                 : terminal_section(claims_section(judgements)));
   const int of_runs = exit_code_of(outcome);
   return of_runs == kGood ? exit_code_of(judgements) : of_runs;
 }

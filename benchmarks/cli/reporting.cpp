@@ -3,39 +3,33 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "benchmarks/cli/session.h"
-#include "benchmarks/plan/claim_cells.h"
-#include "reports/claims/claims.h"
-#include "reports/report.h"
 
 namespace isoline::benchmarks {
 
 using reports::compare_optimizers;
-using reports::Comparison;
+using reports::Document;
+using reports::document_of;
 using reports::judge;
 using reports::Judgement;
 using reports::Study;
 using reports::terminal_table;
 using reports::write_report;
-namespace {
 
-// The claims of the tree whose cells are among the runs, judged.
-std::vector<Judgement> covered_claims(const Study& study, Session& session) {
-  std::vector<Judgement> judgements =
-      judge(json_of(builtin_claims_of(session.catalog())), study.runs);
-  std::erase_if(judgements, [](const Judgement& judgement) { return !judgement.is_covered; });
-  return judgements;
+std::vector<Judgement> judged(const std::vector<Claim>& claims, const std::vector<Record>& runs) {
+  return judge(json_of(claims), runs);
 }
-
-}  // namespace
 
 void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,
                      bool quiet) {
-  Comparison comparison = compare_optimizers(study);
-  comparison.claims = covered_claims(study, session);
-  write_report(comparison, out);
+  std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
+  std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
+  const Document document = document_of(compare_optimizers(study), std::move(claims));
+  write_report(document, out);
   if (!quiet)
-    fmt::print("{}\nreport: {}\n", terminal_table(comparison), (out / "index.html").string());
+    fmt::print("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string());
 }
 
 }  // namespace isoline::benchmarks

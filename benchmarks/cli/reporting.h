@@ -1,10 +1,12 @@
 // A study reported as `run` and `report` do it: every format in a folder, the main table on the
-// terminal.
+// terminal; and the claims that runs decide.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
-#include "reports/study.h"
+#include "benchmarks/plan/claim_cells.h"
+#include "reports/report.h"
 
 namespace isoline::benchmarks {
 
@@ -12,5 +14,8 @@ class Session;
 
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
                      Session& session, bool quiet = false);
+
+std::vector<reports::Judgement> judged(const std::vector<Claim>& claims,
+                                       const std::vector<Record>& runs);
 
 }  // namespace isoline::benchmarks

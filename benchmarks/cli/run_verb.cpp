@@ -15,7 +15,6 @@
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/soundness.h"
-#include "core/json.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
@@ -44,12 +43,6 @@ void override_blocks(const RunArguments& given, Suite& suite) {
   }
 }
 
-Rates rates_of(const std::string& given) {
-  if (given == "builtin") return Rates::builtin();
-  if (given == "none") return {};
-  return Rates::from_json(read_json(given), given);
-}
-
 // A suite, whole or the part of it that --problem and --optimizer keep; or a matrix of these alone.
 // Only a whole suite goes to the folder of its name: a part there would pass for the whole.
 Undertaking undertaking_of(const RunArguments& given, const Catalog& catalog) {
@@ -64,7 +57,7 @@ Undertaking undertaking_of(const RunArguments& given, const Catalog& catalog) {
                      .optimizers = {given.optimizer.empty() ? "*" : given.optimizer}}};
   }
   override_blocks(given, suite);
-  Undertaking all{suite.name, expand(catalog, suite, rates_of(given.rates)), given.out};
+  Undertaking all{suite.name, expand(catalog, suite, Rates::named(given.rates)), given.out};
   if (is_suite && is_limited)
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;
@@ -102,21 +95,19 @@ void print_plan(const Undertaking& all, int jobs, bool lists_all, Session& sessi
 }
 
 // The properties at default options of all optimizers that ever ran in this folder.
-std::vector<AuditedOptimizer> write_audit(const Catalog& catalog, const Study& study,
-                                          const fs::path& out) {
+std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const Study& study) {
   std::set<std::string> names;
   for (const Record& record : study.runs)
     if (const std::string& name = record.request.optimizer.name; catalog.optimizers.contains(name))
       names.insert(name);
-  std::vector<AuditedOptimizer> all = audit_all(catalog, {names.begin(), names.end()});
-  write_json(out / "audit.json", audit_to_json(all));
-  return all;
+  return audit_all(catalog, {names.begin(), names.end()});
 }
 
 void report_on(const fs::path& out, bool quiet, Session& session) {
   Study study = read_study({out});
   if (study.runs.empty()) return;  // interrupted before the first record
-  study.audits = write_audit(session.catalog(), study, out);
+  study.audits = audit_of(session.catalog(), study);
+  write_audit(study.audits, out / "audit.json");
   if (!quiet) fmt::print("\n");
   write_and_print(study, out / "report", session, quiet);
 }

@@ -16,8 +16,7 @@ namespace {
 std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
   std::vector<PlannedCell> cells;
   for (const Request& request : requests)
-    cells.push_back(
-        {request.cell, request.problem.spec, request.optimizer.spec, request.seed});
+    cells.push_back({request.cell, request.problem.spec, request.optimizer.spec, request.seed});
   return cells;
 }
 

@@ -55,8 +55,7 @@ void draw_landscapes(const Problem& problem, Sheet& sheet) {
   sheet.landscape_x = in_x;
   if (problem.outputs() != 2) return;
   const std::array<Real, 4> image{low[0], high[0], low[1], high[1]};
-  Landscape in_y{problem.y_window().value_or(image), Grid(kGrid, kGrid),
-                 problem.contour_spacing()};
+  Landscape in_y{problem.y_window().value_or(image), Grid(kGrid, kGrid), problem.contour_spacing()};
   const auto& [y1_low, y1_high, y2_low, y2_high] = in_y.window;
   for (Index j = 0; j < kGrid; ++j)
     for (Index i = 0; i < kGrid; ++i)

@@ -11,7 +11,8 @@
 #include "core/json.h"
 #include "core/threads.h"
 #include "reports/report.h"
-#include "reports/text.h"
+#include "reports/formats/escape.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {

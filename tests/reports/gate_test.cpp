@@ -179,7 +179,7 @@ TEST(Gate, ReportsAreComparedToo) {
   });
   for (const ResultFolder* folder : {&before, &after}) {
     const Study study = read_study({folder->path()});
-    folder->add_file("report.json", json_report(compare_optimizers(study)));
+    folder->add_file("report.json", json_report(document_of(compare_optimizers(study))));
   }
   const auto old_report = before.path() / "report.json", report = after.path() / "report.json";
   EXPECT_EQ(compare_results(old_report, old_report, {}).exit_code, 0);
