@@ -19,7 +19,7 @@ TEST(FourierOperator, HasThePublishedNumberOfParameters) {
   EXPECT_EQ(network->parameters(), 2'368'001);
   Index complex = 0;
   for (const Block& block : network->layout())
-    if (block.kind == Block::Kind::convolution) complex += block.rows * block.columns / 2;
+    if (block.kind == Block::Kind::spectrum) complex += block.rows * block.columns / 2;
   EXPECT_EQ(network->parameters() - complex, 1'188'353);
 }
 

@@ -6,7 +6,7 @@
 #include "core/threads.h"
 
 int main(int count, char** arguments) {
-  isoline::start_single_threaded(arguments);
+  isoline::prepare_libraries(arguments);
   isoline::micro::register_metering();
   isoline::micro::register_steps();
   isoline::micro::register_training();
