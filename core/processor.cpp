@@ -59,16 +59,26 @@ struct Feature {
 };
 
 constexpr Feature kFeatures[] = {
-    {"sse3", 1, 0, 2, 0, kAlways},          {"ssse3", 1, 0, 2, 9, kAlways},
-    {"sse4_1", 1, 0, 2, 19, kAlways},       {"sse4_2", 1, 0, 2, 20, kAlways},
-    {"avx", 1, 0, 2, 28, kAvx},             {"f16c", 1, 0, 2, 29, kAvx},
-    {"fma", 1, 0, 2, 12, kAvx},             {"avx2", 7, 0, 1, 5, kAvx},
-    {"bmi1", 7, 0, 1, 3, kAlways},          {"bmi2", 7, 0, 1, 8, kAlways},
-    {"avx_vnni", 7, 1, 0, 4, kAvx},         {"avx512f", 7, 0, 1, 16, kAvx512},
-    {"avx512dq", 7, 0, 1, 17, kAvx512},     {"avx512cd", 7, 0, 1, 28, kAvx512},
-    {"avx512bw", 7, 0, 1, 30, kAvx512},     {"avx512vl", 7, 0, 1, 31, kAvx512},
-    {"avx512_vnni", 7, 0, 2, 11, kAvx512},  {"avx512_bf16", 7, 1, 0, 5, kAvx512},
-    {"avx512_fp16", 7, 0, 3, 23, kAvx512},  {"amx_tile", 7, 0, 3, 24, kTiles},
+    {"sse3", 1, 0, 2, 0, kAlways},
+    {"ssse3", 1, 0, 2, 9, kAlways},
+    {"sse4_1", 1, 0, 2, 19, kAlways},
+    {"sse4_2", 1, 0, 2, 20, kAlways},
+    {"avx", 1, 0, 2, 28, kAvx},
+    {"f16c", 1, 0, 2, 29, kAvx},
+    {"fma", 1, 0, 2, 12, kAvx},
+    {"avx2", 7, 0, 1, 5, kAvx},
+    {"bmi1", 7, 0, 1, 3, kAlways},
+    {"bmi2", 7, 0, 1, 8, kAlways},
+    {"avx_vnni", 7, 1, 0, 4, kAvx},
+    {"avx512f", 7, 0, 1, 16, kAvx512},
+    {"avx512dq", 7, 0, 1, 17, kAvx512},
+    {"avx512cd", 7, 0, 1, 28, kAvx512},
+    {"avx512bw", 7, 0, 1, 30, kAvx512},
+    {"avx512vl", 7, 0, 1, 31, kAvx512},
+    {"avx512_vnni", 7, 0, 2, 11, kAvx512},
+    {"avx512_bf16", 7, 1, 0, 5, kAvx512},
+    {"avx512_fp16", 7, 0, 3, 23, kAvx512},
+    {"amx_tile", 7, 0, 3, 24, kTiles},
 };
 
 Processor read_processor() {

@@ -22,8 +22,8 @@ using Register = typename packet_traits<Scalar>::type;
 template <class Scalar>
 constexpr Index kLanes = packet_traits<Scalar>::size;
 
-// Columns of a tile. Two registers of rows by as many sums hide the latency of a multiply-add; there
-// are 32 registers with AVX-512 and 16 without.
+// Columns of a tile. Two registers of rows by as many sums hide the latency of a multiply-add;
+// there are 32 registers with AVX-512 and 16 without.
 constexpr int kColumns = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 4;
 
 // A matrix as numbers and the steps from one to the next: along the inner index, and across it.
@@ -46,10 +46,11 @@ void tile(const Panel<Scalar>& A, const Panel<Scalar>& B, Index depth, const Res
   Register<Scalar> sum[Columns][Registers];
   for (int c = 0; c < Columns; ++c)
     for (int r = 0; r < Registers; ++r)
-      sum[c][r] = C.keep == 0 ? pset1<Register<Scalar>>(Scalar(0))
-                              : pmul(pset1<Register<Scalar>>(C.keep),
-                                     ploadu<Register<Scalar>>(C.numbers + c * C.stride +
-                                                              r * kLanes<Scalar>));
+      sum[c][r] =
+          C.keep == 0
+              ? pset1<Register<Scalar>>(Scalar(0))
+              : pmul(pset1<Register<Scalar>>(C.keep),
+                     ploadu<Register<Scalar>>(C.numbers + c * C.stride + r * kLanes<Scalar>));
   for (Index p = 0; p < depth; ++p) {
     Register<Scalar> a[Registers];
     for (int r = 0; r < Registers; ++r)

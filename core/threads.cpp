@@ -1,4 +1,5 @@
-// Threads of the libraries: one before main, more where a request says so. Their kernels and caches.
+// Threads of the libraries: one before main, more where a request says so. Their kernels and
+// caches.
 #include "core/threads.h"
 
 #include <omp.h>

@@ -36,8 +36,8 @@ std::vector<Block> FourierOperator::layout() const {
   for (const Layer& layer : layers_) {
     const Index pairs = layer.in * layer.out, modes = fourier_.modes() / 2;
     for (Index corner = 0; layer.has_modes && corner < 2; ++corner)
-      blocks.push_back({layer.modes + corner * 2 * pairs * modes, 2 * pairs, modes,
-                        Block::Kind::spectrum});
+      blocks.push_back(
+          {layer.modes + corner * 2 * pairs * modes, 2 * pairs, modes, Block::Kind::spectrum});
     blocks.push_back({layer.weights, layer.out, layer.in, Block::Kind::weight});
     blocks.push_back({layer.weights + layer.out * layer.in, layer.out, 1, Block::Kind::bias});
   }

@@ -2,8 +2,8 @@
 //   a₀ = input,  z_l = W_l a_{l−1} + b_l,  a_l = s(z_l),  x = z_L,  θ = (W₁, b₁, …, W_L, b_L)
 // Rumelhart, Hinton, Williams (1986). Arrays are transposed, one sample a row, and the inputs of a
 // layer end in a column of ones: in θ b_l follows W_l, so that each pass is one product with
-// [W b] a layer. What belongs to one sample is summed in a fixed order: equal samples get equal bits
-// in x, in pushforwards and in rows of the Jacobian, in any batch and at any place in it.
+// [W b] a layer. What belongs to one sample is summed in a fixed order: equal samples get equal
+// bits in x, in pushforwards and in rows of the Jacobian, in any batch and at any place in it.
 #pragma once
 
 #include <algorithm>

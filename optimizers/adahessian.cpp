@@ -1,8 +1,8 @@
 // AdaHessian, Yao et al. (2021): Adam with the diagonal of the Hessian in place of the gradient in
 // v. D = z ⊙ ∇²L z, z of random signs (Hutchinson), one probe a step; m ← β₁ m + (1 − β₁) ∇L, v ←
 // β₂ v + (1 − β₂) D², θ ← θ − η m̂/(√v̂ᵖ + ε). As in torch_optimizer, the absolute values |D| of a
-// convolution's taps are averaged for each pair of channels, so also those of the modes of a Fourier
-// layer, and p is ½ where the paper has 1.
+// convolution's taps are averaged for each pair of channels, so also those of the modes of a
+// Fourier layer, and p is ½ where the paper has 1.
 #include <cmath>
 
 #include "optimizers/optimizer.h"
@@ -74,7 +74,8 @@ void fields(AdaHessian& o, auto& field) {
   field("beta2", o.beta2, between(0, 1), "decay β₂ of the mean squared diagonal");
   field("epsilon", o.epsilon, at_least(0), "floor ε of the scale");
   field("power", o.power, between(0, 1), "power p of the diagonal; the paper's Hessian power");
-  field("average", o.averages, "whether |D| is averaged over the taps or modes of a pair of channels");
+  field("average", o.averages,
+        "whether |D| is averaged over the taps or modes of a pair of channels");
 }
 
 }  // namespace

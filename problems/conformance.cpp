@@ -180,9 +180,7 @@ class Examination {
     return stream_.normal_vector(problem_.residuals())
         .reshaped(problem_.outputs(), problem_.samples());
   }
-  Vector near_start() {
-    return near(problem_.start(), problem_.start_scale(), stream_);
-  }
+  Vector near_start() { return near(problem_.start(), problem_.start_scale(), stream_); }
 
   Matrix push(VectorRef v) {
     Matrix Jv(problem_.outputs(), problem_.samples());

@@ -54,7 +54,7 @@ Vector near(const Vector& standard, StartScale scale, RandomStream& noise);
 // problem leaves target, input, context and truth empty, which `samples` draws.
 struct ProblemParts {
   std::unique_ptr<Physics> physics;
-  Vector start;                      // θ₀, (n)
+  Vector start;  // θ₀, (n)
   StartScale start_scale = StartScale::at_least_one;
   Matrix target;                     // y*, (m, B)
   std::unique_ptr<Network> network;  // identity where empty

@@ -9,6 +9,9 @@
 #include "networks/network.h"
 
 namespace isoline::benchmarks::micro {
+
+using networks::make_network;
+using networks::Network;
 namespace {
 
 constexpr Index kN = 64, kBatch = 128, kThreads = 2;
@@ -24,7 +27,8 @@ struct Steps {
   Steps() {
     RandomStream stream(0, "unet", "micro");
     const Index n = network->parameters(), size = kN * kN * kBatch;
-    theta = network->start(stream), v = stream.normal_vector(n), gradient = v;
+    theta = network->start(stream);
+    v = gradient = stream.normal_vector(n);
     in = stream.normal_vector(size).reshaped(kN * kN, kBatch);
     u = stream.normal_vector(size).reshaped(kN * kN, kBatch);
     x = u;
