@@ -34,8 +34,10 @@ class Rescaled final : public Optimizer {
     }
     found_ = at_.x();
     for (Index b = 0; b < found_.cols(); ++b) {
-      const Real length = slope_.col(b).stableNorm();  // of components as small as 1e-200 too
-      if (length > 0) found_.col(b) -= slope_.col(b) / length;
+      const Real largest = slope_.col(b).cwiseAbs().maxCoeff();
+      if (largest == 0) continue;
+      slope_.col(b) /= largest;  // squares of 1e-200 would vanish
+      found_.col(b) -= slope_.col(b) / slope_.col(b).norm();
     }
     descent_.approach(found_, Proxy::l2, at_, theta);
     return Status::running;

@@ -23,6 +23,20 @@ TEST(FourierOperator, HasThePublishedNumberOfParameters) {
   EXPECT_EQ(network->parameters() - complex, 1'188'353);
 }
 
+// A row is the real or imaginary part of a pair of channels, a column a mode of one corner.
+TEST(FourierOperator, SpectraAreLaidOutByPairsOfChannelsAndModes) {
+  constexpr Index kWidth = 3, kModesKept = 2;
+  const auto network = make("fno[modes=2,width=3]", 8);
+  Index spectra = 0;
+  for (const Block& block : network->layout()) {
+    if (block.kind != Block::Kind::spectrum) continue;
+    EXPECT_EQ(block.rows, 2 * kWidth * kWidth);
+    EXPECT_EQ(block.columns, kModesKept * kModesKept);
+    ++spectra;
+  }
+  EXPECT_EQ(spectra, 4 * 2);  // layers, corners of the half spectrum
+}
+
 TEST(FourierOperator, WantsAGridWithRoomForItsModes) {
   EXPECT_THROW(make_network("fno", {.inputs = 4, .outputs = 4}), UsageError);
   EXPECT_THROW(make("fno[modes=13]", 16), UsageError);  // 26 of 25 cells
