@@ -18,16 +18,6 @@
 namespace isoline::reports {
 namespace {
 
-bool is_timed_alone(const Record& record) {
-  const auto run = record.provenance.find("run");
-  if (run == record.provenance.end() || !run->is_object()) return true;
-  const auto jobs = run->find("concurrent_jobs"), exclusive = run->find("exclusive");
-  const bool is_exclusive =
-      exclusive != run->end() && exclusive->is_boolean() && exclusive->get<bool>();
-  const bool is_concurrent = jobs != run->end() && jobs->is_number() && jobs->get<Real>() > 1;
-  return is_exclusive || !is_concurrent;
-}
-
 // Places of names on an axis.
 using Places = std::unordered_map<std::string, std::size_t>;
 
@@ -52,7 +42,7 @@ void fill_cells(Comparison& c, const OptimizerLabels& label) {
                 optimizer.at(label(record.request.problem.spec, record.request.optimizer.spec)),
             .work = {},
             .seconds = {},
-            .is_timed_alone = is_timed_alone(record)};
+            .is_timed_alone = record.provenance.run.is_timed_alone()};
     fill_reached(run, best);
     fill_costs(run, c.problems[run.problem].prices);
     c.cells[run.problem][run.optimizer].runs.push_back(c.runs.size());

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/digest.h"
 #include "reports/audit/audit.h"
 #include "reports/readings.h"
 #include "reports/report.h"

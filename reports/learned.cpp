@@ -13,7 +13,7 @@ namespace {
 bool is_learned(const Comparison& c, std::size_t p) {
   for (const Cell& cell : c.cells[p])
     for (const std::size_t run : cell.runs)
-      return c.runs[run].record->request.problem.options.value("mode", "direct") == "learn";
+      return c.runs[run].record->request.problem.is_learned;
   return false;
 }
 

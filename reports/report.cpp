@@ -1,6 +1,7 @@
 // Writes all formats of a report into a folder, several at a time.
 #include "reports/report.h"
 
+#include "core/files.h"
 #include "core/json.h"
 #include "core/threads.h"
 #include "reports/tables/formats.h"

@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "core/errors.h"
-#include "core/json.h"
+#include "core/files.h"
 
 namespace isoline::reports {
 namespace {
@@ -51,12 +51,7 @@ std::string read_into(Record& record, const fs::path& file) {
   }
 }
 
-std::string started(const Record& record) {
-  const auto run = record.provenance.find("run");
-  if (run == record.provenance.end() || !run->is_object()) return "";
-  const auto time = run->find("started");
-  return time != run->end() && time->is_string() ? time->get<std::string>() : "";
-}
+const std::string& started(const Record& record) { return record.provenance.run.started; }
 
 // ISO times sort as text; the file name decides where they are absent or equal.
 bool is_newer(const Record& a, const Record& b) {
@@ -100,7 +95,7 @@ void read_runs(Study& study, const std::vector<fs::path>& folders, const Listene
 
 void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& known) {
   for (const fs::path& file : json_files(folder / "components")) try {
-      Sheet sheet = sheet_from_json(read_json(file));
+      Sheet sheet = sheet_from_text(read_text(file), file.string());
       if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
     } catch (const std::exception& error) {
       study.unreadable.push_back({file, error.what()});
@@ -110,7 +105,7 @@ void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& kn
 void read_plan(Study& study, const fs::path& folder, std::set<std::string>& known) {
   const fs::path file = folder / "plan.json";
   if (fs::exists(file)) try {
-      Plan plan = plan_from_json(read_json(file));
+      Plan plan = plan_from_text(read_text(file), file.string());
       for (std::string& suite : plan.suites)
         if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
           study.plan.suites.push_back(std::move(suite));

@@ -7,6 +7,7 @@
 
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 
 namespace isoline::benchmarks {

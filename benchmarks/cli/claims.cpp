@@ -39,7 +39,7 @@ void list_claims(const std::vector<Claim>& claims, bool as_json) {
   for (const Claim& claim : claims) {
     if (claim.group != group) fmt::print("{}\n", claim.group);
     group = claim.group;
-    fmt::print("  {:38} {}\n", claim.id(), claim.json.at("sentence").get<std::string>());
+    fmt::print("  {:38} {}\n", claim.id, claim.sentence);
   }
 }
 

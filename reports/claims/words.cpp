@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/json.h"
 #include "reports/claims/quantities.h"
 #include "reports/text.h"

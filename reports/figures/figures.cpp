@@ -15,19 +15,16 @@
 namespace isoline::reports {
 namespace {
 
-const Json& options_of(const Comparison& c, std::size_t problem) {
-  static const Json none = Json::object();
+const Component& component_of(const Comparison& c, std::size_t problem) {
+  static const Component none;
   for (const Cell& cell : c.cells[problem])
-    if (!cell.runs.empty()) return c.runs[cell.runs[0]].record->request.problem.options;
+    if (!cell.runs.empty()) return c.runs[cell.runs[0]].record->request.problem;
   return none;
 }
 
-bool is_wanted(const Json& options, const Panel& panel) {
-  const bool is_direct = options.value("mode", "direct") == "direct";
-  return !is_direct && std::ranges::all_of(panel.where, [&](const auto& wanted) {
-    const auto found = options.find(wanted.first);
-    return found != options.end() && found->is_number() &&
-           found->template get<Real>() == wanted.second;
+bool is_wanted(const Component& problem, const Panel& panel) {
+  return problem.is_learned && std::ranges::all_of(panel.where, [&](const auto& wanted) {
+    return problem.options.number(wanted.first, std::nan("")) == wanted.second;
   });
 }
 
@@ -36,7 +33,7 @@ std::vector<std::size_t> wanted_problems(const Comparison& c, const std::string&
                                          const Panel& panel) {
   std::vector<std::size_t> problems;
   for (std::size_t p = 0; p < c.problems.size(); ++p)
-    if (c.problems[p].name() == name && is_wanted(options_of(c, p), panel)) problems.push_back(p);
+    if (c.problems[p].name() == name && is_wanted(component_of(c, p), panel)) problems.push_back(p);
   return problems;
 }
 
@@ -45,11 +42,13 @@ std::vector<Sweep> sweeps_over(const Comparison& c, const std::vector<std::size_
                                const std::string& option) {
   std::map<std::string, Sweep> groups;
   for (const std::size_t p : problems) {
-    Json rest = options_of(c, p);
-    if (!rest.contains(option) || !rest[option].is_number()) continue;
-    const Real value = rest[option];
+    OptionValues rest = component_of(c, p).options;
+    const Real value = rest.number(option, std::nan(""));
+    if (std::isnan(value)) continue;
     rest.erase(option);
-    groups[rest.dump()].push_back({value, p});
+    std::string key;
+    for (const NamedOption& each : rest) key += each.name + "=" + text_of(each.value) + ",";
+    groups[key].push_back({value, p});
   }
   std::vector<Sweep> sweeps;
   constexpr std::size_t kFewest = 3;  // two values are no sweep

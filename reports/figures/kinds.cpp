@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "reports/html/curves.h"
 #include "reports/text.h"
@@ -140,9 +141,9 @@ Figure path_figure(const Comparison& c, std::size_t p, const std::string& pair) 
 // take(y*, x*, x) for every number of every sample shown.
 template <class Take>
 void each_error(const Record& record, Take take) {
-  if (!record.exhibit || record.exhibit->is_picture() || record.exhibit->truth.size() == 0) return;
+  if (!record.exhibit || record.exhibit->is_picture() || record.exhibit->truth.is_empty()) return;
   const Exhibit& shown = *record.exhibit;
-  for (Index b = 0; b < shown.x.cols(); ++b)
+  for (Index b = 0; b < shown.x.columns(); ++b)
     for (Index i = 0; i < shown.x.rows() && i < shown.target.rows(); ++i)
       take(shown.target(i, b), shown.truth(i, b), shown.x(i, b));
 }
@@ -200,8 +201,9 @@ Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel)
     for (const auto& [value, problem] : sweep) {
       std::vector<Real> errors;
       for (const Record* record : records_of(c, problem, s)) {
-        const Json& options = record->request.problem.options;
-        const Real scale = panel.divided_by.empty() ? 1 : options.at(panel.divided_by).get<Real>();
+        const OptionValues& options = record->request.problem.options;
+        const Real scale =
+            panel.divided_by.empty() ? 1 : options.number(panel.divided_by, std::nan(""));
         errors.push_back(record->summary.x_error / scale);
       }
       if (!errors.empty()) push(line, value, band_of(std::move(errors)));

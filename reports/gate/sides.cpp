@@ -1,6 +1,8 @@
 // Reads the two sides of a comparison: result folders, a baseline, reports.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/errors.h"
 #include "core/json.h"
 #include "reports/gate/baseline.h"

@@ -19,7 +19,7 @@ class Grid {
  public:
   explicit Grid(const Landscape& landscape) : landscape_(landscape) {}
   Index columns() const { return landscape_.loss.rows(); }  // along x1
-  Index rows() const { return landscape_.loss.cols(); }     // along x2
+  Index rows() const { return landscape_.loss.columns(); }     // along x2
   Real loss(Index i, Index j) const { return landscape_.loss(i, j); }
   Edge edge(Index i, Index j, bool is_upward) const {
     return static_cast<Edge>(2 * (i + j * columns()) + (is_upward ? 1 : 0));
@@ -105,33 +105,43 @@ Real between(const std::array<Real, 4>& p, Real t) {
 }
 
 // (n) values to ((n − 1) times + 1); a parabola continues them past the ends.
-Vector refined(const Vector& values, Index times) {
-  const Index n = values.size();
+template <class Values>
+std::vector<Real> refined(const Values& values, Index n, Index times) {
   const auto at = [&](Index i) {
-    if (i < 0) return 3 * (values[0] - values[1]) + values[2];
-    return i < n ? values[i] : 3 * (values[n - 1] - values[n - 2]) + values[n - 3];
+    if (i < 0) return 3 * (values(0) - values(1)) + values(2);
+    return i < n ? values(i) : 3 * (values(n - 1) - values(n - 2)) + values(n - 3);
   };
-  Vector fine((n - 1) * times + 1);
-  for (Index k = 0; k + 1 < fine.size(); ++k) {
+  std::vector<Real> fine;
+  for (Index k = 0; k < (n - 1) * times; ++k) {
     const Index i = k / times;
-    fine[k] = between({at(i - 1), at(i), at(i + 1), at(i + 2)},
-                      static_cast<Real>(k % times) / static_cast<Real>(times));
+    fine.push_back(between({at(i - 1), at(i), at(i + 1), at(i + 2)},
+                           static_cast<Real>(k % times) / static_cast<Real>(times)));
   }
-  fine[fine.size() - 1] = values[n - 1];
+  fine.push_back(values(n - 1));
   return fine;
 }
 
 // Small closed isolines of a coarse grid would be polygons.
 Landscape refined(const Landscape& coarse) {
   constexpr Index kTimes = 3, kLeast = 3;
-  const Matrix& loss = coarse.loss;
-  if (std::min(loss.rows(), loss.cols()) < kLeast || !loss.allFinite()) return coarse;
-  Matrix half((loss.rows() - 1) * kTimes + 1, loss.cols());
-  for (Index j = 0; j < loss.cols(); ++j) half.col(j) = refined(Vector(loss.col(j)), kTimes);
-  Landscape fine{coarse.window, Matrix(half.rows(), (loss.cols() - 1) * kTimes + 1),
+  const isoline::Grid& loss = coarse.loss;
+  const bool is_finite =
+      std::ranges::all_of(loss.values(), [](Real value) { return std::isfinite(value); });
+  if (std::min(loss.rows(), loss.columns()) < kLeast || !is_finite) return coarse;
+  std::vector<Real> columns;
+  for (Index j = 0; j < loss.columns(); ++j)
+    for (const Real value : refined([&](Index i) { return loss(i, j); }, loss.rows(), kTimes))
+      columns.push_back(value);
+  const Index rows = (loss.rows() - 1) * kTimes + 1;
+  const isoline::Grid half(rows, loss.columns(), std::move(columns));
+  Landscape fine{coarse.window, isoline::Grid(rows, (loss.columns() - 1) * kTimes + 1),
                  coarse.spacing};
-  for (Index i = 0; i < half.rows(); ++i)
-    fine.loss.row(i) = refined(Vector(half.row(i)), kTimes).transpose();
+  for (Index i = 0; i < rows; ++i) {
+    const std::vector<Real> row =
+        refined([&](Index j) { return half(i, j); }, loss.columns(), kTimes);
+    for (Index j = 0; j < fine.loss.columns(); ++j)
+      fine.loss(i, j) = row[static_cast<std::size_t>(j)];
+  }
   return fine;
 }
 
@@ -161,7 +171,7 @@ std::vector<Real> contour_levels(const Landscape& landscape) {
   if (landscape.spacing == "powers of two")
     return even_steps(-6, 8, kLevels, [](Real i) { return std::exp2(i); });
   Real low = INFINITY, high = 0;
-  for (const Real loss : landscape.loss.reshaped())
+  for (const Real loss : landscape.loss.values())
     if (std::isfinite(loss) && loss > 0) low = std::min(low, loss), high = std::max(high, loss);
   if (!(low < high)) return {};
   if (landscape.spacing == "fifth root")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "core/json.h"
 #include "reports/html/html.h"
@@ -66,25 +67,26 @@ std::string list_row(const char* term, const std::string& items) {
 
 // "0.01", or "0.001 to 14.7, 9 values" where a table of rates or a sweep chose by problem.
 std::string values_of(const Comparison& c, std::size_t s, const std::string& option) {
-  std::vector<Json> values;
+  std::vector<OptionValue> values;
   for (const auto& problem : c.cells)
     for (const std::size_t run : problem[s].runs) {
-      const Json& options = c.runs[run].record->request.optimizer.options;
-      if (const auto at = options.find(option); at != options.end()) values.push_back(*at);
+      const OptionValues& options = c.runs[run].record->request.optimizer.options;
+      if (const OptionValue* at = options.find(option)) values.push_back(*at);
     }
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
-  const auto text = [](const Json& value) {
-    if (value.is_number()) return figure(value.get<Real>());
-    return value.is_string() ? value.get<std::string>() : value.dump();
+  const auto text = [](const OptionValue& value) {
+    if (const Real* number = std::get_if<Real>(&value)) return figure(*number);
+    if (const Index* number = std::get_if<Index>(&value)) return figure(Real(*number));
+    return text_of(value);
   };
   if (values.empty()) return "";
   if (values.size() == 1) return text(values[0]);
-  if (values.front().is_number())
+  if (values.front().index() < 2)  // numbers
     return fmt::format("{} to {}, {} values", text(values.front()), text(values.back()),
                        values.size());
   std::vector<std::string> words;
-  for (const Json& value : values) words.push_back(text(value));
+  for (const OptionValue& value : values) words.push_back(text(value));
   return fmt::format("{}", fmt::join(words, ", "));
 }
 

@@ -11,45 +11,28 @@
 namespace isoline::reports {
 namespace {
 
-// Text of any JSON value, "" where there is none.
-std::string text_at(const Json& json, const char* key) {
-  const auto at = json.is_object() ? json.find(key) : json.end();
-  if (!json.is_object() || at == json.end()) return "";
-  return at->is_string() ? at->get<std::string>() : at->dump();
-}
-
-std::string libraries_of(const Json& provenance) {
+std::string libraries_of(const Build& build) {
   std::string text;
-  const auto libraries = provenance.find("libraries");
-  if (libraries == provenance.end() || !libraries->is_object()) return text;
-  for (const auto& [name, version] : libraries->items())
-    text +=
-        fmt::format("{}{} {}", text.empty() ? "" : ", ", name, text_at(*libraries, name.c_str()));
+  for (const auto& [name, version] : build.libraries)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, version);
   return text;
 }
 
 // The lines of one build; equal ones are told once.
-std::string build_html(const Json& provenance) {
+std::string build_html(const Build& build) {
   const auto line = [](const char* term, const std::string& text) {
     if (text.empty()) return std::string();
     return fmt::format("<dt>{}</dt><dd>{}</dd>\n", term, html_text(text));
   };
-  if (!provenance.is_object()) return "";
-  const bool is_dirty = text_at(provenance, "dirty") == "true";
-  const std::string commit = text_at(provenance, "commit");
-  const std::string compiler = text_at(provenance, "compiler");
-  const std::string processor = text_at(provenance, "processor"),
-                    cores = text_at(provenance, "cores");
-  return line("version", text_at(provenance, "version")) +
-         line("commit",
-              commit.empty() || !is_dirty ? commit : commit + " with uncommitted changes") +
-         line("compiler",
-              compiler + (compiler.empty() ? "" : "  ") + text_at(provenance, "flags")) +
-         line("build", text_at(provenance, "build_type")) +
-         line("instructions", text_at(provenance, "instruction_set")) +
-         line("processor", processor + (cores.empty() ? "" : ", " + cores + " cores")) +
-         line("system", text_at(provenance, "system")) +
-         line("libraries", libraries_of(provenance));
+  const bool is_changed = build.is_dirty.value_or(false) && !build.commit.empty();
+  const std::string compiled =
+      build.compiler.empty() ? build.flags : build.compiler + "  " + build.flags;
+  const std::string cores = build.cores > 0 ? fmt::format(", {} cores", build.cores) : "";
+  return line("version", build.version) +
+         line("commit", build.commit + (is_changed ? " with uncommitted changes" : "")) +
+         line("compiler", compiled) + line("build", build.build_type) +
+         line("instructions", build.instruction_set) + line("processor", build.processor + cores) +
+         line("system", build.system) + line("libraries", libraries_of(build));
 }
 
 }  // namespace
@@ -57,14 +40,12 @@ std::string build_html(const Json& provenance) {
 std::string provenance_html(const Comparison& c) {
   constexpr std::size_t kMostBuilds = 8;
   std::set<std::string> builds, commands;
-  std::set<const Json*> seen;
+  std::set<const Build*> seen;
   for (const Run& run : c.runs) {
     const Provenance& provenance = run.record->provenance;
-    const Json* version = provenance.find("version");  // one in memory for records of one build
-    const bool is_new = version == nullptr || seen.insert(version).second;
-    if (is_new && builds.size() <= kMostBuilds) builds.insert(build_html(provenance));
-    if (provenance.is_object() && provenance.contains("run") && commands.size() <= kMostBuilds)
-      commands.insert(text_at(provenance["run"], "command"));
+    const bool is_new = seen.insert(provenance.build.get()).second;  // one for records of a build
+    if (is_new && builds.size() <= kMostBuilds) builds.insert(build_html(*provenance.build));
+    if (commands.size() <= kMostBuilds) commands.insert(provenance.run.command);
   }
   commands.erase("");
   std::string html;

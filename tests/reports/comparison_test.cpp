@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/errors.h"
 #include "core/json.h"
 #include "reports/reached.h"
@@ -190,10 +192,10 @@ TEST(Comparison, WithoutADeclaredMinimumTheBestKnownIsOne) {
 
 TEST(Comparison, TimesTakenBesideOtherRunsAreMarked) {
   Record shared = record_of({});
-  shared.provenance["run"]["concurrent_jobs"] = 4;
+  shared.provenance.run.concurrent_jobs = 4;
   Record alone = record_of({.optimizer = "adam"});
-  alone.provenance["run"]["concurrent_jobs"] = 4;
-  alone.provenance["run"]["exclusive"] = true;
+  alone.provenance.run.concurrent_jobs = 4;
+  alone.provenance.run.is_exclusive = true;
   Study study;
   study.runs = {alone, shared};
   const Comparison comparison = compare_optimizers(study);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/records/schema.h"
@@ -38,7 +40,7 @@ TEST(Gate, TwoRunsOfOneBuildAreEqual) {
     record.summary.wall_seconds = 99;  // times and provenance of a run may differ
     record.curve.wall_seconds[3] = 99;
     record.hits->wall_seconds[3] = 99;
-    record.provenance["run"]["started"] = "2026-07-01T00:00:00Z";
+    record.provenance.run.started = "2026-07-01T00:00:00Z";
   });
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.joined, 12U);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/files.h"
 #include "core/json.h"
 #include "reports/report.h"
 #include "tests/reports/fixture.h"

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "reports/report.h"
