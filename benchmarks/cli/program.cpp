@@ -26,7 +26,7 @@ std::string command_of(const std::string& program, int count, char** arguments) 
 
 int main(int count, char** arguments, const std::function<benchmarks::Catalog()>& catalog,
          const SourceTree& tree) {
-  start_single_threaded(arguments);
+  prepare_libraries(arguments);
   if (!tree.commit.empty()) set_program_tree(tree.commit, tree.is_dirty);
   const std::string program = std::filesystem::path(arguments[0]).filename().string();
   benchmarks::Session session(command_of(program, count, arguments), catalog);
