@@ -128,6 +128,10 @@ std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
 
 std::string JsonView::text() const { return simdjson::minify(element_at(place_)); }
 
+std::string JsonView::tree_text() const { return json().dump(); }
+
+std::string json_of_text(const std::string& text) { return Json(text).dump(); }
+
 Json JsonView::json() const { return copy_of(element_at(place_)); }
 
 bool JsonView::is_null() const { return element_at(place_).is_null(); }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/digest.h"
 #include "core/records/forms.h"
 
@@ -83,7 +85,11 @@ std::string Sheet::file_name() const {
   return fmt::format("{}-{}-{}.json", kind, name, digest(spec));
 }
 
-Json to_json(const Sheet& sheet) { return Form<Sheet>::write(sheet); }
+Json to_json(const Sheet& sheet) {
+  Json json;
+  Form<Sheet>::write(sheet, JsonPlace(json));
+  return json;
+}
 
 Sheet sheet_from_text(const std::string& text, const std::string& origin) {
   JsonReader reader;
@@ -100,11 +106,10 @@ Sheet sheet_from_text(const std::string& text, const std::string& origin) {
 Sheet sheet_from_json(const Json& json) { return sheet_from_text(json.dump(), "it"); }
 
 Json sheet_schema() {
-  Json schema = Form<Sheet>::law();
-  schema["$schema"] = kSchemaDialect;
-  schema["title"] =
-      "isoline.component/1: what a reader needs to know of a problem or an optimizer";
-  schema["definitions"]["number"] = number_definition();
+  Json schema;
+  Form<Sheet>::law(JsonPlace(schema));
+  complete_schema(JsonPlace(schema),
+                  "isoline.component/1: what a reader needs to know of a problem or an optimizer");
   return schema;
 }
 
