@@ -132,9 +132,7 @@ class FieldSchema {
                    "additionalProperties": false})");
   }
 
-  void constant(const char* name, const char* value) {
-    place_of(name, true)["const"].set(value);
-  }
+  void constant(const char* name, const char* value) { place_of(name, true)["const"].set(value); }
   template <class Value>
   void operator()(const char* name, const Value&, const char* law = "") {
     describe<Form<Value>>(place_of(name, true), law);
@@ -173,7 +171,9 @@ class FieldSchema {
 
 // Structs that name their members.
 template <class Type>
-concept Declared = requires(Type& value, FieldSchema& field) { fields(value, field); };
+concept Declared = requires(Type& value, FieldSchema& field) {
+  fields(value, field);
+};
 
 template <Declared Type>
 struct Form<Type> {

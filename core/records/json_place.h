@@ -29,12 +29,13 @@ class JsonPlace {
   void set(std::uint64_t value) const;
   void set(std::string_view value) const;
   void set(const char* value) const { set(std::string_view(value)); }
-  void set(Real value) const;                   // also infinite, or not a number
+  void set(Real value) const;                    // also infinite, or not a number
   void set(std::span<const Real> values) const;  // a list of them
   void set(Json value) const;
 
-  void parse(std::string_view text) const;    // JSON as text
-  void include(std::string_view text) const;  // the members of an object as text, put beside its own
+  void parse(std::string_view text) const;  // JSON as text
+  void include(
+      std::string_view text) const;  // the members of an object as text, put beside its own
   // A further law of a schema. One that refers to a definition stands alone, so both are asked for.
   void restrict(std::string_view law) const;
 

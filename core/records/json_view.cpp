@@ -155,9 +155,12 @@ void JsonView::get_to(std::string& out) const {
   const element here = element_at(place_);
   out = checked(here.get_string(), "a text", here);
 }
-void JsonView::get_to(std::vector<std::int64_t>& out) const { read_all(element_at(place_), out, integer); }
+void JsonView::get_to(std::vector<std::int64_t>& out) const {
+  read_all(element_at(place_), out, integer);
+}
 void JsonView::get_to(std::vector<std::string>& out) const {
-  read_all(element_at(place_), out, [](const element& value) { return view_of(value).get<std::string>(); });
+  read_all(element_at(place_), out,
+           [](const element& value) { return view_of(value).get<std::string>(); });
 }
 Real real_of(const JsonView& value) { return real(element_at(value.place_)); }
 

@@ -45,8 +45,7 @@ Plan plan_from_json(const Json& json) { return plan_from_text(json.dump(), "it")
 Json plan_schema() {
   Json schema;
   Form<Plan>::law(JsonPlace(schema));
-  complete_schema(JsonPlace(schema),
-                  "isoline.plan/1: every cell ever planned in a result folder");
+  complete_schema(JsonPlace(schema), "isoline.plan/1: every cell ever planned in a result folder");
   return schema;
 }
 

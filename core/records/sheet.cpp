@@ -26,8 +26,7 @@ void fields(Like<Landscape> auto& landscape, auto& field) {
   field("window", landscape.window);
   field("rows", rows);
   field("columns", columns);
-  field("spacing", landscape.spacing,
-        R"({"enum": ["logarithm", "fifth root", "powers of two"]})");
+  field("spacing", landscape.spacing, R"({"enum": ["logarithm", "fifth root", "powers of two"]})");
   field("loss", loss);
   if constexpr (std::remove_cvref_t<decltype(field)>::kReads) {
     require(rows >= 0 && columns >= 0 && static_cast<Index>(loss.size()) == rows * columns,
@@ -51,8 +50,7 @@ void fields(Like<MeasuredPrice> auto& price, auto& field) {
 void fields(Like<MeasuredPrices> auto& prices, auto& field) {
   field("build", prices.build);
   field("processor", prices.processor);
-  field("forward_seconds", prices.forward_seconds,
-        R"({"type": "number", "exclusiveMinimum": 0})");
+  field("forward_seconds", prices.forward_seconds, R"({"type": "number", "exclusiveMinimum": 0})");
   field("oracles", prices.oracles);
 }
 
