@@ -7,7 +7,7 @@
 
 #include "reports/read/comparison.h"
 #include "reports/sections/figures.h"
-#include "reports/sections/judging.h"
+#include "reports/sections/verdicts.h"
 #include "reports/sections/section.h"
 
 namespace isoline::reports {

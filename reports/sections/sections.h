@@ -6,7 +6,7 @@
 
 #include "core/records/audited.h"
 #include "reports/read/comparison.h"
-#include "reports/sections/judging.h"
+#include "reports/sections/verdicts.h"
 #include "reports/sections/section.h"
 
 namespace isoline::reports {
