@@ -28,7 +28,7 @@ void gelu(Field& z, Field& a) {
 void multiply_by_gelu_slope(Field& z, Field& g, Flat<float>& room) {
   room.resize(std::max<Index>(room.size(), 4096));
   in_chunks(z.size(), [&](Index begin, Index count) {
-    const auto at = z.numbers().segment(begin, count);
+    const Eigen::Ref<const Flat<float>> at = z.numbers().segment(begin, count);
     multiply_by_slope<float>(kGelu, at, at, g.numbers().segment(begin, count), room.head(count));
   });
 }
@@ -36,8 +36,8 @@ void multiply_by_gelu_slope(Field& z, Field& g, Flat<float>& room) {
 // out = gelu''(z) dz h
 void bend(Field& z, Field& dz, Field& h, Field& out) {
   in_chunks(z.size(), [&](Index begin, Index count) {
-    const auto at = z.numbers().segment(begin, count);
-    auto made = out.numbers().segment(begin, count);
+    const Eigen::Ref<const Flat<float>> at = z.numbers().segment(begin, count);
+    FlatOut<float> made = out.numbers().segment(begin, count);
     made = dz.numbers().segment(begin, count) * h.numbers().segment(begin, count);
     multiply_by_bend<float>(kGelu, at, at, made);
   });
@@ -148,7 +148,7 @@ void fields(Options& o, auto& field) {
   field("width", o.width, between(1, 1024), "C, channels of the Fourier layers");
 }
 
-std::unique_ptr<Network> make_fno(const Json& options, const NetworkShape& shape) {
+std::unique_ptr<Network> make_fno(const OptionValues& options, const NetworkShape& shape) {
   const auto o = read_options<Options>(options);
   const Index N = shape.grid, padded = N + FourierOperator::kPadding;
   require(N >= 2 && shape.input_channels == 1 && shape.output_channels == 1,

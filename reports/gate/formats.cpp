@@ -7,7 +7,8 @@
 
 #include "core/json.h"
 #include "reports/gate/gate.h"
-#include "reports/text.h"
+#include "reports/formats/escape.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {

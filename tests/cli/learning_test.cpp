@@ -3,12 +3,12 @@
 
 #include <cmath>
 
+#include "core/files.h"
 #include "core/records/number_file.h"
 #include "tests/cli/shell.h"
 
 namespace isoline::benchmarks {
 
-using networks::Network;
 namespace {
 
 namespace fs = std::filesystem;

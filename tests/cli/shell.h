@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/files.h"
 #include "core/json.h"
-#include "core/records/record.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {

@@ -117,6 +117,12 @@ class Questions(WithTree):
             self.assertEqual(result.stdout, f'program {" ".join(question)}\n')
             self.assertEqual(tree.calls(), [], question)
 
+    def test_help_on_tests_needs_no_program(self):
+        tree = Tree(self.folder)
+        result = tree.run('test', '--help')
+        self.assertIn('--kernels', result.stdout)
+        self.assertEqual(tree.calls(), [])
+
     def test_without_a_program_they_build_it(self):
         tree = Tree(self.folder)
         self.assertEqual(tree.run('--help').stdout, 'program --help\n')
@@ -199,6 +205,12 @@ class Arguments(WithTree):
         tree.run('test', '-R', 'core', '--stop-on-failure')
         self.assertRegex(tree.calls('ctest')[0], '-R core --stop-on-failure$')
         self.assertIn('-DISOLINE_TESTS=ON', tree.calls('cmake')[0])
+
+    def test_kernels_are_named_by_the_table(self):
+        result = Tree(self.folder).run('test', '--kernels', 'nobody')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no row 'nobody'; there are: ", result.stderr)
+        self.assertIn(' haswell ', result.stderr)
 
     def test_tests_once_on_stay_on(self):
         tree = Tree(self.folder)
