@@ -5,6 +5,7 @@
 #include <sys/utsname.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 #include <unordered_map>
@@ -107,7 +108,11 @@ Provenance::Provenance() {
   build = unknown;
 }
 
-Json to_json(const Provenance& provenance) { return Form<Provenance>::write(provenance); }
+Json to_json(const Provenance& provenance) {
+  Json json;
+  Form<Provenance>::write(provenance, JsonPlace(json));
+  return json;
+}
 
 // One copy of each build's part for all records that a thread reads.
 Provenance provenance_from(const JsonView& json) {
@@ -144,7 +149,7 @@ void set_program_tree(std::string commit, bool is_dirty) {
 
 std::string build_digest(int problem_revision, int optimizer_revision) {
   const Build& build = *this_build();
-  const Json libraries = Form<std::map<std::string, std::string>>::write(build.libraries);
+  const Json libraries(build.libraries);
   const CacheSizes caches = cache_sizes();
   return digest(fmt::format("{} {} {} {} {} {} {} {}", kHarnessRevision, problem_revision,
                             optimizer_revision, libraries.dump(), build.instruction_set, caches.l1,
