@@ -253,6 +253,53 @@ ninja: build stopped: subcommand failed.
 """
 
 
+# Writes down its kernel and its threads; fails where it is the one of $FAILING.
+NUMERICAL_TEST = r"""#!/bin/bash
+echo "$(basename "$0") $OPENBLAS_CORETYPE $ISOLINE_TEST_THREADS" >> "$CALLS"
+if [[ "$OPENBLAS_CORETYPE $(basename "$0")" == "$FAILING" ]]; then
+  echo '[  FAILED  ] Sums.AreSums (3 ms)'
+  exit 1
+fi
+"""
+
+
+class Kernels(WithTree):
+    """The numerical tests, row by row; every processor that runs this has SSE3."""
+
+    PROGRAMS = ('core_tests', 'networks_tests', 'problems_tests', 'optimizers_tests')
+
+    def setUp(self):
+        super().setUp()
+        self.tree = Tree(self.folder)
+        tests = self.tree.path / 'build/release/tests'
+        tests.mkdir(parents=True)
+        for program in self.PROGRAMS:
+            write_program(tests / program, NUMERICAL_TEST)
+
+    def run_rows(self, *rows, failing=''):
+        return self.tree.run('test', '--kernels', *rows, FAILING=failing)
+
+    def test_a_row_is_run_on_one_and_on_two_threads(self):
+        result = self.run_rows('prescott')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.splitlines()[-1], '2 passed, 0 failed, 0 skipped')
+        calls = [call for call in self.tree.calls() if '_tests Prescott' in call]
+        self.assertEqual(calls, [f'{program} Prescott {threads}' for threads in (1, 2)
+                                 for program in self.PROGRAMS])
+
+    def test_one_failure_fails_the_row_and_is_named(self):
+        result = self.run_rows('prescott', failing='Prescott networks_tests')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('Sums.AreSums', result.stdout)
+        self.assertEqual(result.stdout.splitlines()[-1], '0 passed, 2 failed, 0 skipped')
+
+    def test_a_name_of_no_row_is_refused_before_anything_is_built(self):
+        result = self.run_rows('pentium')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no row 'pentium'; there are: prescott haswell", result.stderr)
+        self.assertEqual(self.tree.calls('ninja'), [])
+
+
 class Failures(WithTree):
     def run_with(self, words):
         errors = self.folder / 'errors'
