@@ -6,7 +6,7 @@
 //   leads tables/                         the tables of statistics, in every format plots/ their
 //   plots: numbers and SVG figures/                        the figures of the papers, panel by
 //   panel audit/                          the measured properties, in each format claims/ what
-//   papers say, held against the runs gate/                           what got worse from one
+//   papers say, held against the runs compare/                        what got worse from one
 //   result to another; baselines learned                         what networks have learned text,
 //   wording, readings         how figures, phrases and whole sentences are written csv, json,
 //   latex, markdown,     one output format each terminal, html/ and page/

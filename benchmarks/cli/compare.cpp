@@ -5,7 +5,7 @@
 
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
-#include "reports/gate/gate.h"
+#include "reports/compare/gate.h"
 
 namespace isoline::benchmarks {
 

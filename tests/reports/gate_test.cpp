@@ -1,5 +1,5 @@
 // The gate: what is worse is caught, what is the same passes, what cannot be compared says so.
-#include "reports/gate/gate.h"
+#include "reports/compare/gate.h"
 
 #include <gtest/gtest.h>
 
