@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/errors.h"
+#include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
 namespace {
