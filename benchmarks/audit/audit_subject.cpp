@@ -37,7 +37,7 @@ class Recorded final : public Optimizer {
 }  // namespace
 
 std::string Subject::why_inapplicable(const Problem& problem) const {
-  return isoline::why_inapplicable(entry_, options_, problem);
+  return optimizers::why_inapplicable(entry_, options_, problem);
 }
 
 OracleSet Subject::needs(const Problem& problem) const {

@@ -14,6 +14,7 @@ namespace isoline::benchmarks {
 
 using reports::audit_terminal;
 using reports::AuditColumn;
+using reports::kAuditColumns;
 namespace {
 
 struct AuditOptions {

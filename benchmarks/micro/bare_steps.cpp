@@ -7,6 +7,9 @@
 #include <memory>
 
 namespace isoline::benchmarks::micro {
+
+using problems::Inverse;
+using problems::Point;
 namespace {
 
 using Pivots = Eigen::Matrix<lapack_int, Eigen::Dynamic, 1>;

@@ -9,6 +9,7 @@
 
 namespace isoline::benchmarks::micro {
 
+using problems::Problem;
 using BareStep = std::function<void(Vector& theta)>;
 
 // For a method not known here, one step of gradient descent. The problem outlives the step.

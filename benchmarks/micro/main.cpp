@@ -7,14 +7,14 @@
 
 int main(int count, char** arguments) {
   isoline::start_single_threaded(arguments);
-  isoline::micro::register_metering();
-  isoline::micro::register_steps();
-  isoline::micro::register_training();
-  isoline::micro::register_libraries();
-  isoline::micro::register_transforms();
-  isoline::micro::register_networks();
-  isoline::micro::register_isolation();
-  isoline::micro::register_unet();
+  isoline::benchmarks::micro::register_metering();
+  isoline::benchmarks::micro::register_steps();
+  isoline::benchmarks::micro::register_training();
+  isoline::benchmarks::micro::register_libraries();
+  isoline::benchmarks::micro::register_transforms();
+  isoline::benchmarks::micro::register_networks();
+  isoline::benchmarks::micro::register_isolation();
+  isoline::benchmarks::micro::register_unet();
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -3,6 +3,8 @@
 #include "benchmarks/micro/trial.h"
 
 namespace isoline::benchmarks::micro {
+
+using optimizers::Linearization;
 namespace {
 
 constexpr int kCalls = 1000, kPairs = 401;

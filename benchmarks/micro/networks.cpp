@@ -9,6 +9,9 @@
 #include "problems/problem.h"
 
 namespace isoline::benchmarks::micro {
+
+using networks::make_network;
+using networks::Network;
 namespace {
 
 constexpr Index kSamples = 100, kRows = 2;  // B, rows of the Jacobian a sample

@@ -4,6 +4,8 @@
 #include "benchmarks/micro/trial.h"
 
 namespace isoline::benchmarks::micro {
+
+using optimizers::Family;
 namespace {
 
 // Tiny, where overhead shows; middling; and two grids whose transforms allocate inside FFTW.

@@ -8,6 +8,9 @@
 #include "problems/dense_physics.h"
 
 namespace isoline::benchmarks::micro {
+
+using networks::make_network;
+using problems::DensePhysics;
 namespace {
 
 // A few steps at a time, or the scheduler of a busy machine would interrupt each reading.

@@ -17,8 +17,8 @@ inline const Catalog& catalog() {
 
 inline Problem make_problem(const std::string& text) {
   const Spec spec = parse_spec(text);
-  return isoline::make_problem(catalog(), complete_problem(catalog(), spec.name, options_of(spec)),
-                               0);
+  return benchmarks::make_problem(catalog(),
+                                  complete_problem(catalog(), spec.name, options_of(spec)), 0);
 }
 
 // Iterations without end, so that nothing but the method decides.

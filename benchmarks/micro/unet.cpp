@@ -9,6 +9,9 @@
 #include "networks/network.h"
 
 namespace isoline::benchmarks::micro {
+
+using networks::make_network;
+using networks::Network;
 namespace {
 
 constexpr Index kN = 64, kBatch = 128, kThreads = 2;

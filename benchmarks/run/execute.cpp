@@ -14,6 +14,8 @@
 #include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
+
+using optimizers::privileges_of;
 namespace {
 
 void conclude(Trace& trace, Status status, std::string_view message) {

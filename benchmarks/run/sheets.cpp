@@ -10,6 +10,8 @@
 #include "core/json.h"
 
 namespace isoline::benchmarks {
+
+using optimizers::privileges_of;
 namespace {
 
 constexpr Index kGrid = 81;   // points a side of a landscape
