@@ -35,7 +35,6 @@ find_package(Ceres 2.1 REQUIRED)
 find_file(ISOLINE_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js REQUIRED)
 
 # The versions a record names.
-file(STRINGS ${Isoline__fftw_INCLUDE}/fftw3.h _fftw REGEX "FFTW_VERSION" LIMIT_COUNT 1)
 file(STRINGS ${Isoline__onednn_INCLUDE}/oneapi/dnnl/dnnl_version.h _lines REGEX "VERSION_(MAJOR|MINOR|PATCH) ")
 string(REGEX REPLACE "[^0-9;]" "" _lines "${_lines}")
 list(JOIN _lines "." _onednn)

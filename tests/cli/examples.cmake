@@ -1,9 +1,15 @@
-# readme_examples(out): cuts the ```cpp blocks out of README.md, each into the file its first line
-# names, and writes the catalog that holds them all. `out` receives the sources to compile.
+# readme_examples(out): cuts the ```cpp blocks out of README.md and docs/, each into the file its first
+# line names, and writes the catalog that holds them all. `out` receives the sources to compile.
 function(readme_examples out)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/README.md)
+  file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/*.md)
+  list(PREPEND pages ${PROJECT_SOURCE_DIR}/README.md)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${pages})
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/readme)
-  file(READ ${PROJECT_SOURCE_DIR}/README.md text)
+  set(text "")
+  foreach(page IN LISTS pages)
+    file(READ ${page} one)
+    string(APPEND text "${one}")
+  endforeach()
   set(sources ${folder}/catalog.cpp)
   set(fence "```cpp\n")
   string(LENGTH "${fence}" fence_length)
@@ -19,7 +25,7 @@ function(readme_examples out)
     string(SUBSTRING "${text}" 0 ${end} block)
     string(SUBSTRING "${text}" ${end} -1 text)
     if(NOT block MATCHES "^// ((problems|optimizers)/([a-z0-9_]+)\\.cpp)")
-      message(FATAL_ERROR "README.md: line one of a cpp block must be // problems/NAME.cpp or "
+      message(FATAL_ERROR "README.md, docs/: line one of a cpp block must be // problems/NAME.cpp or "
                           "// optimizers/NAME.cpp")
     endif()
     set(room ${CMAKE_MATCH_2})
@@ -33,7 +39,7 @@ function(readme_examples out)
     string(APPEND ${room}_names "\"${entry}\", ")
   endwhile()
   file(CONFIGURE OUTPUT ${folder}/catalog.cpp CONTENT
-"// Generated from the cpp blocks of README.md.
+"// Generated from the cpp blocks of README.md and docs/.
 #include \"tests/cli/readme_examples.h\"
 
 namespace isoline::problems {

@@ -1,4 +1,4 @@
-// The worked examples of the README, compiled as the page prints them.
+// The worked examples of the README and the guide, compiled as the pages print them.
 #pragma once
 
 #include "benchmarks/plan/catalog.h"
@@ -6,7 +6,7 @@
 namespace isoline::benchmarks {
 
 Catalog catalog_with_readme_examples();      // generated, with the two below
-std::vector<std::string> readme_problems();  // names of its examples
+std::vector<std::string> readme_problems();  // names of the examples
 std::vector<std::string> readme_optimizers();
 
 }  // namespace isoline::benchmarks

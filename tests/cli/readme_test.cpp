@@ -1,7 +1,9 @@
-// What the README tells a reader to do works: its commands run, its two examples compile and run.
+// What the README and the guide tell a reader to do works: their commands run, their two examples
+// compile and run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "problems/conformance.h"
@@ -16,51 +18,101 @@ using problems::Finding;
 using problems::Problem;
 namespace {
 
-std::string readme() { return read_text(std::filesystem::path(ISOLINE_SOURCE_DIR) / "README.md"); }
+const std::filesystem::path kTree = ISOLINE_SOURCE_DIR;
 
-// The lines of every block that is fenced as `language`.
-std::vector<std::string> fenced_lines(const std::string& language) {
+// The README and the guide, from the root of the tree.
+std::vector<std::string> pages() {
+  std::vector<std::string> all = {"README.md"};
+  for (const auto& entry : std::filesystem::directory_iterator(kTree / "docs"))
+    all.push_back("docs/" + entry.path().filename().string());
+  std::ranges::sort(all);
+  return all;
+}
+
+std::vector<std::string> lines_of_page(const std::string& page) {
   std::vector<std::string> lines;
-  bool is_inside = false;
-  std::istringstream text(readme());
-  for (std::string line; std::getline(text, line);) {
-    if (line.starts_with("```"))
-      is_inside = line == "```" + language;
-    else if (is_inside && !line.empty() && !line.starts_with('#'))
-      lines.push_back(line);
-  }
+  std::istringstream text(read_text(kTree / page));
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
+}
+
+// The lines of every block of commands. A fence without a language holds what is only shown.
+std::vector<std::string> commands(const std::string& page) {
+  std::vector<std::string> all;
+  bool is_inside = false;
+  for (const std::string& line : lines_of_page(page)) {
+    if (line.starts_with("```"))
+      is_inside = line == "```sh" || line == "```bash";
+    else if (is_inside && !line.empty() && !line.starts_with('#'))
+      all.push_back(line);
+  }
+  return all;
 }
 
 // These two need the whole machine; continuous integration runs them from a clean clone.
 const std::vector<std::string> kMainCommands = {"./isoline run", "./isoline test"};
 
-std::vector<std::string> commands() {
-  std::vector<std::string> all = fenced_lines("sh");
-  for (const std::string& line : fenced_lines("bash")) all.push_back(line);
-  return all;
-}
+TEST(Readme, ShowsTheTwoCommands) { EXPECT_EQ(commands("README.md"), kMainCommands); }
 
-TEST(Readme, ShowsTheTwoCommands) {
-  const std::vector<std::string> all = commands();
-  for (const std::string& command : kMainCommands)
-    EXPECT_NE(std::ranges::find(all, command), all.end()) << command;
-}
+class Page : public testing::TestWithParam<std::string> {};
 
-TEST(Readme, EveryOtherCommandRunsInTheOrderOfThePage) {
+// A page needs no other: its commands run in a folder of its own.
+TEST_P(Page, EveryCommandRunsInTheOrderOfThePage) {
   const Shell shell;
-  std::size_t count = 0;
-  for (const std::string& command : commands()) {
+  for (const std::string& command : commands(GetParam())) {
     if (std::ranges::find(kMainCommands, command) != kMainCommands.end()) continue;
     const Finished result = shell(command);
     EXPECT_EQ(result.exit_code, 0) << command << "\n" << result.err;
     EXPECT_NE(result.out, "") << command;
-    ++count;
   }
-  EXPECT_GE(count, 5U);
 }
 
-// --- its worked examples, cut from the page when the build is configured
+TEST_P(Page, LinksToFilesOfTheTreeThatExist) {
+  const std::string text = read_text(kTree / GetParam());
+  const std::filesystem::path folder = (kTree / GetParam()).parent_path();
+  for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+    const std::string target = text.substr(at + 2, text.find_first_of(")#", at) - at - 2);
+    if (target.empty() || target.find("://") != std::string::npos) continue;
+    EXPECT_TRUE(std::filesystem::exists(folder / target)) << target;
+  }
+}
+
+std::string name_of_page(const testing::TestParamInfo<std::string>& page) {
+  std::string name = std::filesystem::path(page.param).stem();
+  std::erase(name, '-');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Guide, Page, testing::ValuesIn(pages()), name_of_page);
+
+TEST(Readme, LinksEveryPageOfTheGuide) {
+  const std::string readme = read_text(kTree / "README.md");
+  std::size_t count = 0;
+  for (const std::string& page : pages()) {
+    count += commands(page).size();
+    if (page == "README.md") continue;
+    EXPECT_NE(readme.find("](" + page + ")"), std::string::npos) << page;
+  }
+  EXPECT_GE(count, 25U) << "the commands were not found";
+}
+
+TEST(Readme, IsAScreenAndAHalf) { EXPECT_LE(lines_of_page("README.md").size(), 100U); }
+
+// Whatever is said has one home: no line of prose stands on two pages.
+TEST(Readme, NothingIsSaidTwice) {
+  constexpr std::size_t kProse = 50;
+  std::map<std::string, std::string> said;
+  std::vector<std::string> all = pages();
+  all.push_back("CONTRIBUTING.md");
+  for (const std::string& page : all)
+    for (const std::string& line : lines_of_page(page)) {
+      if (line.size() < kProse) continue;
+      const auto [at, is_new] = said.emplace(line, page);
+      EXPECT_TRUE(is_new || at->second == page) << page << " and " << at->second << ": " << line;
+    }
+}
+
+// --- the worked examples, cut from the pages when the build is configured
 
 TEST(ReadmeExamples, AreOneProblemAndOneOptimizer) {
   EXPECT_EQ(readme_problems().size(), 1U);
@@ -101,16 +153,6 @@ TEST(ReadmeExamples, RunWithEverythingElseInTheCatalog) {
   const auto is_solved = [](const Record& r) { return r.verified.at("1e-6") == true; };
   EXPECT_GE(std::ranges::count_if(row.records, is_solved), 12) << "of the methods, on the example";
   EXPECT_GE(std::ranges::count_if(column.records, is_solved), 4) << "problems, by the example";
-}
-
-TEST(Readme, LinksToFilesOfTheTreeThatExist) {
-  const std::string text = readme();
-  for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
-    const std::string target = text.substr(at + 2, text.find_first_of(")#", at) - at - 2);
-    if (target.empty() || target.find("://") != std::string::npos) continue;
-    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(ISOLINE_SOURCE_DIR) / target))
-        << target;
-  }
 }
 
 }  // namespace

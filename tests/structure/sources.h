@@ -2,10 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
-
-#include "core/json.h"
 
 namespace isoline {
 
@@ -15,7 +15,9 @@ struct Source {
   std::vector<std::string> lines;
 
   bool is_header() const { return path.ends_with(".h"); }
+  bool is_test() const { return path.starts_with("tests/"); }
   std::string room() const { return path.substr(0, path.find('/')); }
+  std::string folder() const { return path.substr(0, path.rfind('/')); }
   std::string stem() const { return std::filesystem::path(path).stem(); }
 };
 
@@ -35,6 +37,12 @@ inline const std::filesystem::path& root() {
   return path;
 }
 
+inline std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
 // Every .h and .cpp of every room.
 inline const std::vector<Source>& sources() {
   static const std::vector<Source> all = [] {
@@ -44,7 +52,7 @@ inline const std::vector<Source>& sources() {
       for (const auto& entry : std::filesystem::recursive_directory_iterator(root() / room)) {
         const std::string extension = entry.path().extension();
         if (extension != ".h" && extension != ".cpp") continue;
-        const std::string text = read_text(entry.path());
+        const std::string text = text_of(entry.path());
         found.push_back(
             {std::filesystem::relative(entry.path(), root()).string(), text, lines_of(text)});
       }

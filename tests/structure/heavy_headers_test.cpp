@@ -1,0 +1,77 @@
+// Compile time is a feature: how many files may parse each heavy header, directly or through ours.
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <sstream>
+
+#include "tests/structure/includes.h"
+
+namespace isoline {
+namespace {
+
+struct HeavyHeader {
+  std::string name;   // or how its name begins
+  std::string files;  // which of ours are counted
+  std::size_t most;
+  std::string reason;  // for that number
+};
+
+const std::string kProduct = "(?!tests/|benchmarks/micro/).*";
+const std::string kTests = "(tests|benchmarks/micro)/.*";
+
+const std::vector<HeavyHeader> kHeavyHeaders = {
+    {"CLI/", kProduct, 1, "the command line is read in one file"},
+    {"nlohmann/json.hpp", kProduct, 40, "files that read or write JSON themselves"},
+    {"nlohmann/json.hpp", kTests, 40, "tests that look into JSON or make it"},
+    {"simdjson.h", kProduct, 6, "readers of records by the hundred thousand"},
+    {"valijson/", ".*", 1, "schemas are checked in one file"},
+    {"Eigen/", "reports/.*", 0, "a report holds plain numbers"},
+    {"Eigen/", "core/records/.*", 0, "records and sheets hold plain numbers"},
+    {"Eigen/SVD", kProduct, 0, "decompositions are LAPACK's, in core/decompose.cpp"},
+    {"Eigen/Dense", ".*", 0, "the same"},
+    {"fmt/ranges.h", ".*", 10, "texts that join lists; fmt/format.h does for all else"},
+    {"fmt/chrono.h", ".*", 2, "dates in one or two texts"},
+    {"ceres/", kProduct, 1, "one door"},
+    {"oneapi/dnnl/", kProduct, 1, "one door"},
+    {"regex", kProduct, 3, "texts are read by hand where that is short"}};
+
+std::string chain(const std::vector<std::string>& way) {
+  std::string text;
+  for (const std::string& file : way) text += (text.empty() ? "" : " -> ") + file;
+  return text;
+}
+
+TEST(HeavyHeaders, AreParsedByNoMoreFilesThanNeedThem) {
+  for (const HeavyHeader& header : kHeavyHeaders) {
+    const std::regex counted(header.files);
+    std::size_t count = 0;
+    std::ostringstream ways;
+    for (const Source& source : sources()) {
+      if (source.is_header() || !std::regex_match(source.path, counted)) continue;
+      const auto way = way_to(source, header.name);
+      if (!way) continue;
+      ++count;
+      ways << "\n  " << chain(*way);
+    }
+    EXPECT_LE(count, header.most) << header.name << " in " << header.files << " (" << header.reason
+                                  << "): include a lighter header, or raise the number"
+                                  << ways.str();
+    RecordProperty("parsed " + header.name + " in " + header.files, int(count));
+  }
+}
+
+// The reader of includes follows headers: else every count above would be 0.
+TEST(HeavyHeaders, AreFoundThroughOurOwnHeaders) {
+  std::size_t direct = 0, all = 0;
+  for (const Source& source : sources()) {
+    const auto way = way_to(source, "Eigen/Core");
+    if (!way || source.is_header()) continue;
+    ++all;
+    direct += way->size() == 2;
+  }
+  EXPECT_GT(all, 100U);
+  EXPECT_LT(direct, all / 2);
+}
+
+}  // namespace
+}  // namespace isoline
