@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace isoline {
@@ -13,5 +14,7 @@ constexpr std::uint64_t fnv1a(std::string_view text, std::uint64_t state = kDige
   for (const char letter : text) state = (state ^ static_cast<unsigned char>(letter)) * kPrime;
   return state;
 }
+
+std::string digest(std::string_view text);  // as 16 hexadecimal digits
 
 }  // namespace isoline

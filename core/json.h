@@ -4,28 +4,25 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
-#include "core/array.h"
+#include "core/real.h"
 
 namespace isoline {
 
 using Json = nlohmann::json;
 
 Json json_number(Real value);
+Json json_numbers(std::span<const Real> values);
 Real real_of(const Json& value);  // UsageError when it is no number
-Json json_numbers(const Real* values, std::size_t count);
+std::vector<Real> reals_of(const Json& list);
 
-// Text of a file, and whole-or-nothing writing: temporary file, fsync, rename.
-std::string read_text(const std::filesystem::path& path);
-void write_text(const std::filesystem::path& path, std::string_view text);
+std::string json_text(const Json& value, int indent = -1);  // for who prints and does not parse
 
 Json parse_json(const std::string& text, const std::string& origin);  // UsageError names the origin
 Json read_json(const std::filesystem::path& path);
 void write_json(const std::filesystem::path& path, const Json& value);
-
-// FNV-1a, 64 bits, as 16 hexadecimal digits: names files by what they hold.
-std::string digest(std::string_view text);
 
 }  // namespace isoline

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "core/json.h"
 #include "core/suggest.h"
 
 namespace isoline {
@@ -21,74 +19,60 @@ bool parses_whole(const std::string& text, auto& value) {
   return error == std::errc() && stop == end;
 }
 
-// One field's value in canonical type, or UsageError.
+// One field's value in the field's type, or UsageError.
 class FieldParser {
  public:
-  FieldParser(const std::string& component, const OptionField& field, const Json& given)
+  FieldParser(const std::string& component, const OptionField& field, const OptionValue& given)
       : component_(component), field_(field), given_(given) {}
 
-  Json operator()(Real) const {
+  OptionValue operator()(Real) const {
     const Real value = number();
-    if (!contains(field_.range, value)) reject("in " + text_of(field_.range));
-    return json_number(value);
+    if (!isoline::contains(field_.range, value)) reject("in " + text_of(field_.range));
+    return value;
   }
-  Json operator()(Index) const {
+  OptionValue operator()(Index) const {
     const Real value = number();
     if (value != std::floor(value) || std::abs(value) > 1e15) reject("a whole number");
-    if (!contains(field_.range, value)) reject("in " + text_of(field_.range));
-    return static_cast<std::int64_t>(value);
+    if (!isoline::contains(field_.range, value)) reject("in " + text_of(field_.range));
+    return static_cast<Index>(value);
   }
-  Json operator()(bool) const {
-    if (given_.is_boolean()) return given_;
-    if (given_ == "true" || given_ == "yes" || given_ == "1") return true;
-    if (given_ == "false" || given_ == "no" || given_ == "0") return false;
+  OptionValue operator()(bool) const {
+    if (std::holds_alternative<bool>(given_)) return given_;
+    const std::string* text = std::get_if<std::string>(&given_);
+    if (text && (*text == "true" || *text == "yes" || *text == "1")) return true;
+    if (text && (*text == "false" || *text == "no" || *text == "0")) return false;
     reject("true or false");
   }
-  Json operator()(const std::string&) const {
-    if (!given_.is_string()) reject("text");
-    const auto value = given_.get<std::string>();
-    const bool is_known = std::ranges::find(field_.choices, value) != field_.choices.end();
+  OptionValue operator()(const std::string&) const {
+    const std::string* value = std::get_if<std::string>(&given_);
+    if (!value) reject("text");
+    const bool is_known = std::ranges::find(field_.choices, *value) != field_.choices.end();
     if (!field_.choices.empty() && !is_known)
       reject(fmt::format("one of {}", fmt::join(field_.choices, ", ")),
-             nearest_name(value, field_.choices));
-    return value;
+             nearest_name(*value, field_.choices));
+    return *value;
   }
 
  private:
   Real number() const {
-    if (given_.is_number()) return given_.get<Real>();
+    if (const Real* value = std::get_if<Real>(&given_)) return *value;
+    if (const Index* value = std::get_if<Index>(&given_)) return static_cast<Real>(*value);
+    const std::string* text = std::get_if<std::string>(&given_);
     Real value = 0;
-    if (!given_.is_string() || !parses_whole(given_.get<std::string>(), value)) reject("a number");
-    if (std::isnan(value)) reject("a number");
+    if (!text || !parses_whole(*text, value) || std::isnan(value)) reject("a number");
     return value;
   }
   [[noreturn]] void reject(const std::string& law, const std::string& nearest = "") const {
-    const std::string got = given_.is_string() ? given_.get<std::string>() : given_.dump();
-    std::string text = fmt::format("{}: {} must be {}, got {}", component_, field_.name, law, got);
+    std::string text = fmt::format("{}: {} must be {}, got {}", component_, field_.name, law,
+                                   text_of(given_));
     if (!nearest.empty()) text += fmt::format("; did you mean {}?", nearest);
     throw UsageError(text);
   }
 
   const std::string& component_;
   const OptionField& field_;
-  const Json& given_;
+  const OptionValue& given_;
 };
-
-Json standard_of(const OptionField& field) {
-  return std::visit(
-      [](const auto& value) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Real>)
-          return json_number(value);
-        else
-          return value;
-      },
-      field.standard);
-}
-
-std::string text_of(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  return value.is_number_float() ? fmt::format("{}", value.get<Real>()) : value.dump();
-}
 
 }  // namespace
 
@@ -103,59 +87,78 @@ std::string text_of(const Range& range) {
                      range.high, is_bounded ? "]" : ")");
 }
 
-Json complete_options(const OptionTable& table, const std::string& component, const Json& given) {
-  Json complete = Json::object();
+std::string text_of(const OptionValue& value) {
+  return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
+}
+
+const OptionValue* OptionValues::find(std::string_view name) const {
+  const auto found = std::ranges::lower_bound(values_, name, {}, &NamedOption::name);
+  return found != values_.end() && found->name == name ? &found->value : nullptr;
+}
+
+const OptionValue& OptionValues::at(std::string_view name) const {
+  const OptionValue* found = find(name);
+  require(found != nullptr, [&] { return fmt::format("there is no option {}", name); });
+  return *found;
+}
+
+Real OptionValues::number(std::string_view name, Real otherwise) const {
+  const OptionValue* found = find(name);
+  if (!found) return otherwise;
+  if (const Real* value = std::get_if<Real>(found)) return *value;
+  if (const Index* value = std::get_if<Index>(found)) return static_cast<Real>(*value);
+  return otherwise;
+}
+
+std::string OptionValues::text(std::string_view name, std::string_view otherwise) const {
+  const OptionValue* found = find(name);
+  const std::string* value = found ? std::get_if<std::string>(found) : nullptr;
+  return value ? *value : std::string(otherwise);
+}
+
+void OptionValues::set(std::string_view name, OptionValue value) {
+  const auto place = std::ranges::lower_bound(values_, name, {}, &NamedOption::name);
+  if (place != values_.end() && place->name == name)
+    place->value = std::move(value);
+  else
+    values_.insert(place, {std::string(name), std::move(value)});
+}
+
+void OptionValues::set_all(const OptionValues& others) {
+  for (const NamedOption& each : others) set(each.name, each.value);
+}
+
+void OptionValues::erase(std::string_view name) {
+  std::erase_if(values_, [&](const NamedOption& each) { return each.name == name; });
+}
+
+OptionValues complete_options(const OptionTable& table, const std::string& component,
+                              const OptionValues& given) {
+  OptionValues complete;
   std::vector<std::string> names;
   for (const OptionField& field : table) {
     names.push_back(field.name);
-    complete[field.name] = standard_of(field);
+    complete.set(field.name, field.standard);
   }
-  for (const auto& [key, value] : given.items()) {
+  for (const auto& [key, value] : given) {
     const std::string name = key == "lr" ? "rate" : key;
     const auto field = std::ranges::find(table, name, &OptionField::name);
     if (names.empty()) throw UsageError(fmt::format("{} has no options, got {}", component, key));
     if (field == table.end())
       throw UsageError(component + ": " + unknown_name("option", name, names));
-    complete[name] = std::visit(FieldParser(component, *field, value), field->standard);
+    complete.set(name, std::visit(FieldParser(component, *field, value), field->standard));
   }
   return complete;
 }
 
-Json describe_options(const OptionTable& table) {
-  static const char* const kTypes[] = {"number", "integer", "boolean", "text"};
-  Json list = Json::array();
-  for (const OptionField& field : table) {
-    Json entry{{"name", field.name},
-               {"type", kTypes[field.standard.index()]},
-               {"default", standard_of(field)},
-               {"doc", field.doc}};
-    if (field.standard.index() < 2) entry["range"] = text_of(field.range);
-    if (!field.choices.empty()) entry["choices"] = field.choices;
-    list.push_back(entry);
-  }
-  return list;
-}
-
-std::string short_spec(const OptionTable& table, const std::string& name, const Json& options) {
+std::string short_spec(const OptionTable& table, const std::string& name,
+                       const OptionValues& options) {
   std::vector<std::string> given;
   for (const OptionField& field : table) {
-    const Json& value = options.at(field.name);
-    if (value != standard_of(field)) given.push_back(field.name + "=" + text_of(value));
+    const OptionValue& value = options.at(field.name);
+    if (value != field.standard) given.push_back(field.name + "=" + text_of(value));
   }
   return given.empty() ? name : fmt::format("{}[{}]", name, fmt::join(given, ","));
-}
-
-void OptionReader::operator()(const char* name, Real& value, const Range&, const char*) {
-  value = real_of(json_.at(name));
-}
-void OptionReader::operator()(const char* name, Index& value, const Range&, const char*) {
-  value = json_.at(name).get<Index>();
-}
-void OptionReader::operator()(const char* name, bool& value, const char*) {
-  value = json_.at(name).get<bool>();
-}
-void OptionReader::operator()(const char* name, std::string& value, const Choices&, const char*) {
-  value = json_.at(name).get<std::string>();
 }
 
 }  // namespace isoline

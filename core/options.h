@@ -6,18 +6,17 @@
 // Parsing, validation, `describe`, JSON, report columns and sweeps all come from it.
 #pragma once
 
+#include <initializer_list>
 #include <limits>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
-#include "core/array.h"
 #include "core/errors.h"
+#include "core/real.h"
 
 namespace isoline {
-
-using Json = nlohmann::json;
 
 struct Range {
   Real low = -std::numeric_limits<Real>::infinity();
@@ -34,6 +33,41 @@ std::string text_of(const Range& range);  // "[1, 1000]", "(0, inf)"
 using Choices = std::vector<std::string>;  // empty: any text
 
 using OptionValue = std::variant<Real, Index, bool, std::string>;
+std::string text_of(const OptionValue& value);  // as in a spec: "0.001", "3", "true", "code"
+
+struct NamedOption {
+  std::string name;
+  OptionValue value;
+  bool operator==(const NamedOption&) const = default;
+};
+
+// Values by name, ordered by name: equal lists stand for equal options.
+class OptionValues {
+ public:
+  OptionValues() = default;
+  OptionValues(std::initializer_list<NamedOption> values) {
+    for (const NamedOption& each : values) set(each.name, each.value);
+  }
+
+  void set(std::string_view name, OptionValue value);      // added, or put in place of the old
+  void set_all(const OptionValues& others);                // each of them
+  void erase(std::string_view name);                       // where there is one
+  const OptionValue* find(std::string_view name) const;    // or nullptr
+  const OptionValue& at(std::string_view name) const;      // UsageError where there is none
+  bool contains(std::string_view name) const { return find(name) != nullptr; }
+  // As a number, or as text; what is given where there is none, or one of another type.
+  Real number(std::string_view name, Real otherwise) const;
+  std::string text(std::string_view name, std::string_view otherwise = "") const;
+
+  bool empty() const { return values_.empty(); }
+  std::size_t size() const { return values_.size(); }
+  auto begin() const { return values_.begin(); }
+  auto end() const { return values_.end(); }
+  bool operator==(const OptionValues&) const = default;
+
+ private:
+  std::vector<NamedOption> values_;
+};
 
 struct OptionField {
   std::string name;
@@ -44,15 +78,14 @@ struct OptionField {
 };
 using OptionTable = std::vector<OptionField>;
 
-// Values by name, complete: every field of the table, defaults filled in, in canonical types.
-// `component` opens the error message. Numbers may come as text, as from a command line; `lr` is
-// an alias of `rate`.
-Json complete_options(const OptionTable& table, const std::string& component, const Json& given);
-
-Json describe_options(const OptionTable& table);
+// Every field of the table, defaults filled in, each of its field's type. `component` opens the
+// error message. Numbers may come as text, as from a command line; `lr` is an alias of `rate`.
+OptionValues complete_options(const OptionTable& table, const std::string& component,
+                              const OptionValues& given);
 
 // "name[key=value,…]" with the values that differ from the defaults.
-std::string short_spec(const OptionTable& table, const std::string& name, const Json& options);
+std::string short_spec(const OptionTable& table, const std::string& name,
+                       const OptionValues& options);
 
 // Lists the fields of an options struct.
 class OptionLister {
@@ -76,17 +109,26 @@ class OptionLister {
   OptionTable table_;
 };
 
-// Assigns the members of an options struct from complete JSON.
+// Assigns the members of an options struct from complete values.
 class OptionReader {
  public:
-  explicit OptionReader(const Json& complete) : json_(complete) {}
-  void operator()(const char* name, Real& value, const Range&, const char*);
-  void operator()(const char* name, Index& value, const Range&, const char*);
-  void operator()(const char* name, bool& value, const char*);
-  void operator()(const char* name, std::string& value, const Choices&, const char*);
+  explicit OptionReader(const OptionValues& complete) : values_(complete) {}
+  void operator()(const char* name, Real& value, const Range&, const char*) { read(name, value); }
+  void operator()(const char* name, Index& value, const Range&, const char*) { read(name, value); }
+  void operator()(const char* name, bool& value, const char*) { read(name, value); }
+  void operator()(const char* name, std::string& value, const Choices&, const char*) {
+    read(name, value);
+  }
 
  private:
-  const Json& json_;
+  template <class Value>
+  void read(const char* name, Value& value) const {
+    const Value* complete = std::get_if<Value>(&values_.at(name));
+    require(complete != nullptr, [&] { return std::string(name) + ": not of the option's type"; });
+    value = *complete;
+  }
+
+  const OptionValues& values_;
 };
 
 template <class Options>
@@ -98,7 +140,7 @@ OptionTable option_table() {
 }
 
 template <class Options>
-Options read_options(const Json& complete) {
+Options read_options(const OptionValues& complete) {
   Options options;
   OptionReader reader(complete);
   fields(options, reader);

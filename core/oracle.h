@@ -1,6 +1,7 @@
 // What an optimizer may ask of a problem, by kind; the ledger counts each.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <initializer_list>
@@ -9,28 +10,98 @@
 namespace isoline {
 
 enum class Oracle {
-  forward,          // y = P(N(θ)) and L
-  pullback,         // Jᵀ w
-  pushforward,      // J v
-  jacobian,         // J, (m, n)
-  hessian,          // ∇²L, (n, n)
-  curvature,        // Σ wᵢ ∇²Pᵢ, (k, k) a sample
-  sensitivity,      // ∂y/∂x, (m, k) a sample, through the physics alone
-  hessian_product,  // ∇²L v
-  inverse,          // P⁻¹(y; x)
-  network,          // (∂x/∂θ)ᵀ w, through the network alone
-  layer_factors,    // inputs and cotangents of each dense layer
-  truth,            // the x* that made y*: a privilege
+  forward,
+  pullback,
+  pushforward,
+  jacobian,
+  hessian,
+  curvature,
+  sensitivity,
+  hessian_product,
+  inverse,
+  network,
+  layer_factors,
+  truth
 };
-inline constexpr std::array<std::string_view, 12> kOracleNames = {
-    "forward",     "pullback",        "pushforward", "jacobian", "hessian",       "curvature",
-    "sensitivity", "hessian_product", "inverse",     "network",  "layer_factors", "truth"};
-inline constexpr std::size_t kOracles = kOracleNames.size();
+
+// Of a problem: what prices depend on.
+struct OracleSizes {
+  std::int64_t unknowns, residuals;  // n, and m·B, the rows of J
+  std::int64_t inputs, outputs;      // k, m
+  std::int64_t inverse_price;        // as the physics declares it
+  bool has_network;                  // other than the identity
+};
+
+struct OracleRow {
+  Oracle kind;
+  std::string_view name;
+  std::string_view asks;                     // what is computed
+  std::int64_t (*price)(const OracleSizes&);  // declared, in forwards
+  std::string_view lack;                     // why a problem does not offer it, in words
+  bool is_dense_matrix = false;
+  bool is_in_every_record = true;  // records of older versions lack what was counted later
+};
+
+// All that a kind of oracle is, in its order: a new one is a row here, its computation in
+// problems/problem.cpp, its question in optimizers/linearization.cpp and its call in
+// benchmarks/run/prices.cpp; and the schema of records renewed.
+inline constexpr std::array kOracleTable = {
+    OracleRow{Oracle::forward, "forward", "y = P(N(θ)) and L",
+              [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
+    OracleRow{Oracle::pullback, "pullback", "Jᵀ w",
+              [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
+    OracleRow{Oracle::pushforward, "pushforward", "J v",
+              [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
+    OracleRow{Oracle::jacobian, "jacobian", "J, (m, n)",
+              [](const OracleSizes& of) { return std::min(of.unknowns, of.residuals); },
+              "the Jacobian would be too large to form", true},
+    OracleRow{Oracle::hessian, "hessian", "∇²L, (n, n)",
+              [](const OracleSizes& of) { return of.unknowns; },
+              "the problem offers no second derivatives", true},
+    OracleRow{Oracle::curvature, "curvature", "Σ wᵢ ∇²Pᵢ, (k, k) a sample",
+              [](const OracleSizes& of) { return of.inputs; },
+              "the problem offers no second derivatives", true},
+    OracleRow{Oracle::sensitivity, "sensitivity",
+              "∂y/∂x, (m, k) a sample, through the physics alone",
+              [](const OracleSizes& of) { return std::min(of.inputs, of.outputs); },
+              "the Jacobian would be too large to form", true, false},
+    OracleRow{Oracle::hessian_product, "hessian_product", "∇²L v",
+              // a pushforward, and the pullback's own derivative
+              [](const OracleSizes&) -> std::int64_t { return 2; },
+              "the problem offers no products with the Hessian", false, false},
+    OracleRow{Oracle::inverse, "inverse", "P⁻¹(y; x)",
+              [](const OracleSizes& of) { return of.inverse_price; },
+              "the physics has no local inverse"},
+    OracleRow{Oracle::network, "network", "(∂x/∂θ)ᵀ w, through the network alone",
+              [](const OracleSizes& of) -> std::int64_t { return of.has_network ? 1 : 0; }, ""},
+    OracleRow{Oracle::layer_factors, "layer_factors", "inputs and cotangents of each dense layer",
+              // a pullback that keeps what passes
+              [](const OracleSizes&) -> std::int64_t { return 1; },
+              "there is no network of dense layers", false, false},
+    OracleRow{Oracle::truth, "truth", "the x* that made y*: a privilege",
+              [](const OracleSizes&) -> std::int64_t { return 0; },
+              "the problem knows no true x"}};
+inline constexpr std::size_t kOracles = kOracleTable.size();
+
+inline constexpr auto kOracleNames = [] {
+  std::array<std::string_view, kOracles> names;
+  for (std::size_t kind = 0; kind < kOracles; ++kind) names[kind] = kOracleTable[kind].name;
+  return names;
+}();
+
+constexpr const OracleRow& row_of(Oracle oracle) {
+  return kOracleTable[static_cast<std::size_t>(oracle)];
+}
+static_assert([] {
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (kOracleTable[kind].kind != static_cast<Oracle>(kind)) return false;
+  return true;
+}());
 
 using OracleCounts = std::array<std::int64_t, kOracles>;
 
 inline std::string_view name_of(Oracle oracle) {
-  return kOracleNames[static_cast<std::size_t>(oracle)];
+  return row_of(oracle).name;
 }
 
 // A set of oracles: what a method needs, or what a problem offers.

@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 
@@ -88,15 +87,17 @@ Spec parse_spec(std::string_view text) {
   return specs[0];
 }
 
-Json options_of(const Spec& spec) {
-  Json options = Json::object();
+OptionValues options_of(const Spec& spec) {
+  OptionValues options;
   for (const auto& [key, value] : spec.options) {
     require(!options.contains(key),
             [&] { return fmt::format("{}: {} is given twice", spec.name, key); });
-    options[key] = value;
+    options.set(key, value);
   }
   return options;
 }
+
+std::string name_of_spec(std::string_view spec) { return std::string(spec.substr(0, spec.find('['))); }
 
 std::vector<std::uint64_t> parse_seeds(std::string_view text) {
   constexpr const char* kExpected = "seeds such as 5 (0 to 4), 0..9 or =5";

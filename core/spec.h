@@ -2,14 +2,15 @@
 // a SPEC; commas split only at depth 0; `|` sweeps: sine[xi=1|3|10] is three specs.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-namespace isoline {
+#include "core/options.h"
 
-using Json = nlohmann::json;
+namespace isoline {
 
 struct Spec {
   std::string name;
@@ -20,7 +21,11 @@ struct Spec {
 std::vector<Spec> parse_specs(std::string_view text);
 Spec parse_spec(std::string_view text);  // UsageError unless it is exactly one
 
-Json options_of(const Spec& spec);  // {key: text}
+OptionValues options_of(const Spec& spec);  // as texts; UsageError where a name is given twice
+
+// "sine" of "sine[xi=32]", for labels made of specs that are no component's. Components, records
+// and sheets carry their names.
+std::string name_of_spec(std::string_view spec);
 
 // "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; commas join.
 std::vector<std::uint64_t> parse_seeds(std::string_view text);

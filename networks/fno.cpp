@@ -148,7 +148,7 @@ void fields(Options& o, auto& field) {
   field("width", o.width, between(1, 1024), "C, channels of the Fourier layers");
 }
 
-std::unique_ptr<Network> make_fno(const Json& options, const NetworkShape& shape) {
+std::unique_ptr<Network> make_fno(const OptionValues& options, const NetworkShape& shape) {
   const auto o = read_options<Options>(options);
   const Index N = shape.grid, padded = N + FourierOperator::kPadding;
   require(N >= 2 && shape.input_channels == 1 && shape.output_channels == 1,

@@ -142,7 +142,7 @@ std::unique_ptr<Network> make_as(const Options& o, const NetworkShape& shape) {
                                               o.init == "torch" ? Init::torch : Init::glorot);
 }
 
-std::unique_ptr<Network> make_mlp(const Json& options, const NetworkShape& shape) {
+std::unique_ptr<Network> make_mlp(const OptionValues& options, const NetworkShape& shape) {
   const auto o = read_options<Options>(options);
   return o.precision == "float" ? make_as<float>(o, shape) : make_as<double>(o, shape);
 }

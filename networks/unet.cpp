@@ -3,7 +3,6 @@
 // down by maximum pooling, up by bilinear interpolation beside the skipped level, out by a 1×1
 // convolution. Batch norm always uses the statistics of the batch it is given. Deviations: none in
 // exact arithmetic; a convolution's bias, which batch norm removes, has the gradient 0, not noise.
-#include <nlohmann/json.hpp>
 
 #include "networks/unet/passes.h"
 
@@ -72,7 +71,7 @@ void register_unet(NetworkRegistry& registry) {
                 .source = "Ronneberger, Fischer, Brox 2015, fig. 1; as in PhiFlow 2.2 u_net",
                 .note = "parameters and grids are kept in single precision within",
                 .options = option_table<UnetOptions>(),
-                .make = [](const Json& options, const NetworkShape& shape) {
+                .make = [](const OptionValues& options, const NetworkShape& shape) {
                   return std::make_unique<Unet>(read_options<UnetOptions>(options), shape);
                 }});
 }

@@ -194,7 +194,7 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .needs_same_samples = true,
           .most_unknowns = 4096,
           .most_rank = 2048,  // dense QR
-          .make = [m](const Json&, const OptimizerRegistry&) {
+          .make = [m](const OptionValues&, const OptimizerRegistry&) {
             ceres::Solver::Options o;
             o.linear_solver_type = ceres::DENSE_QR;
             o.trust_region_strategy_type = m.strategy;
@@ -233,7 +233,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
           .needs = {Oracle::forward, Oracle::pullback},
           .needs_same_samples = true,
           .most_unknowns = method.most_unknowns,
-          .make = [direction = method.direction](const Json&, const OptimizerRegistry&) {
+          .make = [direction = method.direction](const OptionValues&, const OptimizerRegistry&) {
             ceres::GradientProblemSolver::Options options;
             options.line_search_direction_type = direction;
             return std::make_unique<Ceres<ceres::GradientProblemSolver::Options>>(options);

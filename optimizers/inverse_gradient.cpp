@@ -33,7 +33,7 @@ void fields(InverseGradient& o, auto& field) {
   field("rate", o.rate, above(0), "step length η in y");
 }
 
-std::string objection(const Json&, const Problem& problem) {
+std::string objection(const OptionValues&, const Problem& problem) {
   if (problem.residuals() == problem.unknowns()) return "";
   return fmt::format("the Jacobian has no inverse: {} residuals, {} unknowns", problem.residuals(),
                      problem.unknowns());

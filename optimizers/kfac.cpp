@@ -121,7 +121,7 @@ void fields(Kfac& o, auto& field) {
   field("decay", o.decay, between(0, 1), "largest share of the running means that is kept");
 }
 
-std::string objection(const Json&, const Problem& problem) {
+std::string objection(const OptionValues&, const Problem& problem) {
   constexpr Index kMostOutputs = 64;
   if (problem.outputs() <= kMostOutputs) return "";
   return fmt::format("a pullback for each of {} outputs, and kfac is limited to {}",

@@ -130,7 +130,7 @@ class Meter {
   RunningMean batch_loss_, batch_x_error_;
   bool has_seen_batch_ = false;  // whether this step's batch is among the means
   OracleCounts counts_{};
-  std::array<std::int64_t, kOracles> prices_;
+  OracleCounts prices_;
   std::int64_t work_ = 0, iteration_ = 0, next_kept_ = 0;
   Real best_loss_, next_target_;  // the loss that meets the next of the 51 targets
   Real target_loss_;

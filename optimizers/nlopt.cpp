@@ -8,7 +8,6 @@
 #include <exception>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "optimizers/lbfgs.h"
 #include "optimizers/optimizer.h"
@@ -179,8 +178,8 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
           .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
           .revision = m.is_luksans() ? 2 : 1,
-          .make = [algorithm = m.algorithm](const Json& options, const OptimizerRegistry&) {
-            return std::make_unique<Nlopt>(algorithm, options.value("memory", kMemory));
+          .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
+            return std::make_unique<Nlopt>(algorithm, static_cast<Index>(options.number("memory", kMemory)));
           }};
 }
 

@@ -4,37 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/spec.h"
 
 namespace isoline::optimizers {
-namespace {
 
-std::string_view reason_of(Oracle missing) {
-  switch (missing) {
-    case Oracle::hessian:
-    case Oracle::curvature:
-      return "the problem offers no second derivatives";
-    case Oracle::inverse:
-      return "the physics has no local inverse";
-    case Oracle::hessian_product:
-      return "the problem offers no products with the Hessian";
-    case Oracle::jacobian:
-    case Oracle::sensitivity:
-      return "the Jacobian would be too large to form";
-    case Oracle::layer_factors:
-      return "there is no network of dense layers";
-    case Oracle::truth:
-      return "the problem knows no true x";
-    default:
-      return "the problem does not offer what the method needs";
-  }
-}
-
-}  // namespace
-
-OracleSet needs_of(const OptimizerEntry& entry, const Json& options, const Problem& problem) {
+OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options, const Problem& problem) {
   return entry.needs_for ? entry.needs_for(options, problem) : entry.needs;
 }
 
@@ -51,12 +26,13 @@ std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse) {
   return words;
 }
 
-std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
+std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& options,
                              const Problem& problem) {
   const OracleSet offered = problem.offers(), needs = needs_of(entry, options, problem);
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     const auto oracle = static_cast<Oracle>(kind);
-    if (needs.contains(oracle) && !offered.contains(oracle)) return std::string(reason_of(oracle));
+    if (needs.contains(oracle) && !offered.contains(oracle))
+      return std::string(row_of(oracle).lack);
   }
   if (entry.needs_same_samples && problem.has_fresh_batches())
     return "it compares losses from step to step, which needs a finite data set (data=N)";

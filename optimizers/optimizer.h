@@ -85,22 +85,22 @@ struct OptimizerEntry {
   OptionTable options = {};
   int revision = 1;  // raised when results change
   // All it needs, where that depends on the options or the problem; `needs` is then the least.
-  std::function<OracleSet(const Json& options, const Problem&)> needs_for = {};
+  std::function<OracleSet(const OptionValues& options, const Problem&)> needs_for = {};
   // Any further reason why this pair makes no sense; empty if it does.
-  std::function<std::string(const Json& options, const Problem&)> objection = {};
-  std::function<std::unique_ptr<Optimizer>(const Json& options, const OptimizerRegistry&)> make =
+  std::function<std::string(const OptionValues& options, const Problem&)> objection = {};
+  std::function<std::unique_ptr<Optimizer>(const OptionValues& options, const OptimizerRegistry&)> make =
       {};
-  std::function<std::unique_ptr<Descent>(const Json& options)> make_descent = {};  // gradient rules
+  std::function<std::unique_ptr<Descent>(const OptionValues& options)> make_descent = {};  // gradient rules
 };
 
 // What this optimizer asks of this problem: what the meter is to grant.
-OracleSet needs_of(const OptimizerEntry& entry, const Json& options, const Problem& problem);
+OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options, const Problem& problem);
 
 // What a method with these oracles sees that others do not, in words.
 std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse);
 
 // Why this optimizer cannot treat this problem, in words; empty if it can.
-std::string why_inapplicable(const OptimizerEntry& entry, const Json& options,
+std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& options,
                              const Problem& problem);
 
 // A gradient rule from "adam[rate=1e-3]".
@@ -158,7 +158,7 @@ class Descending final : public Descent {
 template <Stepper M>
 OptimizerEntry stepper_entry(OptimizerEntry entry) {
   entry.options = option_table<M>();
-  entry.make = [](const Json& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
+  entry.make = [](const OptionValues& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
     return std::make_unique<Stepping<M>>(read_options<M>(options));
   };
   return entry;
@@ -169,10 +169,10 @@ template <GradientRule R>
 OptimizerEntry rule_entry(OptimizerEntry entry) {
   entry.options = option_table<R>();
   entry.needs = {Oracle::forward, Oracle::pullback};
-  entry.make = [](const Json& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
+  entry.make = [](const OptionValues& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
     return std::make_unique<ByGradient<R>>(read_options<R>(options));
   };
-  entry.make_descent = [](const Json& options) -> std::unique_ptr<Descent> {
+  entry.make_descent = [](const OptionValues& options) -> std::unique_ptr<Descent> {
     return std::make_unique<Descending<R>>(read_options<R>(options));
   };
   return entry;

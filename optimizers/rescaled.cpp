@@ -1,7 +1,6 @@
 // Gradients rescaled to unit length in x, Holl, Koltun, Thuerey (2022), Fig. 2: the network is
 // drawn to x̃ = x − sign(∂L/∂x), component by component, by (1/B) Σ ½‖x − x̃‖². The published script
 // takes the sign from the known solution, x̃ = x + sign(x* − x), which for a monotone P is the same.
-#include <nlohmann/json.hpp>
 
 #include "optimizers/network_descent.h"
 
@@ -45,7 +44,7 @@ class Rescaled final : public Optimizer {
   Matrix slope_, found_;  // (k, B) ∂L/∂x, x̃
 };
 
-OracleSet needs_for(const Json& options, const Problem&) {
+OracleSet needs_for(const OptionValues& options, const Problem&) {
   OracleSet needs{Oracle::forward, Oracle::network};
   needs.add(read_options<Options>(options).by == "truth" ? Oracle::truth : Oracle::pullback);
   return needs;
@@ -63,7 +62,7 @@ void register_rescaled(OptimizerRegistry& registry) {
                 .needs = {Oracle::forward, Oracle::network},
                 .options = option_table<Options>(),
                 .needs_for = needs_for,
-                .make = [](const Json& options,
+                .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Rescaled>(read_options<Options>(options), known);
                 }});

@@ -6,7 +6,6 @@
 // 3).
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 
 #include "optimizers/inversion.h"
 #include "optimizers/network_descent.h"
@@ -83,8 +82,8 @@ class Sip final : public Optimizer {
   Matrix found_;  // (k, B) x̃
 };
 
-OracleSet needs_for(const Json& json, const Problem& problem) {
-  const auto options = read_options<Options>(json);
+OracleSet needs_for(const OptionValues& given, const Problem& problem) {
+  const auto options = read_options<Options>(given);
   OracleSet needs{Oracle::forward, Oracle::network};
   if (uses_own_inverse(options, problem.inverse_kind())) {
     needs.add(Oracle::inverse);
@@ -97,9 +96,9 @@ OracleSet needs_for(const Json& json, const Problem& problem) {
   return needs;
 }
 
-std::string objection(const Json& json, const Problem& problem) {
+std::string objection(const OptionValues& given, const Problem& problem) {
   constexpr Index kMostInputs = 8;
-  const std::string inverse = read_options<Options>(json).inverse;
+  const std::string inverse = read_options<Options>(given).inverse;
   if (inverse == "damped" && problem.inverse_kind() != Inverse::damped)
     return "inverse=damped, and the physics has an inverse, but not a damped one";
   if (inverse == "newton" && problem.inputs() > kMostInputs)
@@ -127,7 +126,7 @@ void register_sip(OptimizerRegistry& registry) {
                 .revision = 2,
                 .needs_for = needs_for,
                 .objection = objection,
-                .make = [](const Json& options,
+                .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Sip>(read_options<Options>(options), known);
                 }});

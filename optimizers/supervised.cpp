@@ -1,7 +1,6 @@
 // Two-stage supervised training: the network learns labels alone, (1/B) Σ ½‖x − x*‖², with x* the
 // input that made y*; the physics has made the data and is not asked again. Where several x give
 // the same y* it learns their mean, which solves nothing: Holl, Koltun, Thuerey (2022).
-#include <nlohmann/json.hpp>
 
 #include "optimizers/network_descent.h"
 
@@ -33,7 +32,7 @@ class Supervised final : public Optimizer {
 };
 
 // Without a network its first step would be the answer it was told.
-std::string objection(const Json&, const Problem& problem) {
+std::string objection(const OptionValues&, const Problem& problem) {
   return problem.has_identity_network() ? "it is told x*, and there is no network to learn it" : "";
 }
 
@@ -51,7 +50,7 @@ void register_supervised(OptimizerRegistry& registry) {
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
                 .objection = objection,
-                .make = [](const Json& options,
+                .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Supervised>(read_options<Options>(options), known);
                 }});

@@ -72,23 +72,17 @@ OracleSet Problem::offers() const {
   return offered;
 }
 
-std::array<std::int64_t, kOracles> Problem::prices() const {
-  std::array<std::int64_t, kOracles> price{};
-  const auto set = [&](Oracle oracle, std::int64_t value) {
-    price[static_cast<std::size_t>(oracle)] = value;
-  };
-  set(Oracle::forward, 1);
-  set(Oracle::pullback, 1);
-  set(Oracle::pushforward, 1);
-  set(Oracle::jacobian, std::min(unknowns(), residuals()));
-  set(Oracle::hessian, unknowns());
-  set(Oracle::curvature, inputs());
-  set(Oracle::sensitivity, std::min(inputs(), outputs()));
-  set(Oracle::hessian_product, 2);  // a pushforward, and the pullback's own derivative
-  set(Oracle::layer_factors, 1);    // a pullback that keeps what passes
-  set(Oracle::inverse, parts_.physics->inverse_price());
-  set(Oracle::network, has_identity_network() ? 0 : 1);
-  return price;
+OracleCounts Problem::prices() const {
+  const OracleSizes sizes{.unknowns = unknowns(),
+                          .residuals = residuals(),
+                          .inputs = inputs(),
+                          .outputs = outputs(),
+                          .inverse_price = parts_.physics->inverse_price(),
+                          .has_network = !has_identity_network()};
+  OracleCounts prices{};
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    prices[kind] = kOracleTable[kind].price(sizes);
+  return prices;
 }
 
 void Problem::forward(VectorRef theta, const Batch& batch, Point& at) const {

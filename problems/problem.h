@@ -97,7 +97,7 @@ class Problem {
   void draw_validation(Batch& out) const;
 
   OracleSet offers() const;
-  std::array<std::int64_t, kOracles> prices() const;  // declared, in forwards
+  OracleCounts prices() const;  // declared, in forwards
 
   void forward(VectorRef theta, const Batch& batch, Point& at) const;
   void forward(VectorRef theta, Point& at) const { forward(theta, batch_, at); }
@@ -152,7 +152,7 @@ struct ProblemEntry {
   OptionTable options = {};
   int revision = 1;                // raised when results change
   std::vector<Panel> panels = {};  // figures to draw of its runs
-  std::function<Problem(const Json& complete_options, const Draw&)> make = {};
+  std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};
 };
 using ProblemRegistry = Registry<ProblemEntry>;
 
@@ -160,7 +160,7 @@ using ProblemRegistry = Registry<ProblemEntry>;
 template <class Options>
 ProblemEntry problem_entry(ProblemEntry entry, ProblemParts (*make)(const Options&, const Draw&)) {
   entry.options = option_table<Options>();
-  entry.make = [make](const Json& options, const Draw& draw) {
+  entry.make = [make](const OptionValues& options, const Draw& draw) {
     return Problem(make(read_options<Options>(options), draw));
   };
   return entry;

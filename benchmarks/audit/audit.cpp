@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "benchmarks/audit/audit_problems.h"
@@ -130,11 +131,11 @@ void compare_invariance(bool is_declared, AuditedOptimizer& audited) {
       "declares that rescaled inputs leave its path, and they move it by {:.2g}", found));
 }
 
-Json options_without_floors(const OptimizerEntry& entry) {
-  Json options = Json::object();
+OptionValues options_without_floors(const OptimizerEntry& entry) {
+  OptionValues options;
   for (const OptionField& field : entry.options)
     if ((field.name == "epsilon" || field.name == "cutoff") && contains(field.range, 0))
-      options[field.name] = 0.0;
+      options.set(field.name, 0.0);
   return options;
 }
 

@@ -16,7 +16,7 @@ struct Path {
 
 class Subject {
  public:
-  Subject(const Catalog& catalog, const OptimizerEntry& entry, Json options)
+  Subject(const Catalog& catalog, const OptimizerEntry& entry, OptionValues options)
       : catalog_(catalog), entry_(entry), options_(std::move(options)) {}
 
   std::string why_inapplicable(const Problem& problem) const;
@@ -31,7 +31,7 @@ class Subject {
  private:
   const Catalog& catalog_;
   const OptimizerEntry& entry_;
-  const Json options_;
+  const OptionValues options_;
 };
 
 }  // namespace isoline::benchmarks

@@ -5,16 +5,16 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/verbs.h"
 #include "core/json.h"
-#include "reports/audit/audit.h"
+#include "reports/report.h"
 
 namespace isoline::benchmarks {
 
-using reports::audit_terminal;
-using reports::AuditColumn;
-using reports::kAuditColumns;
+using reports::properties_section;
+using reports::terminal_section;
 namespace {
 
 struct AuditOptions {
@@ -22,14 +22,6 @@ struct AuditOptions {
   std::string out;
   bool as_json = false;
 };
-
-void print_legend() {
-  fmt::print(
-      "At default options, but epsilon and cutoff 0 where they may be, as the names show. A pair "
-      "of\nexponents is of the first step / of the loss change to first order.\n");
-  for (const AuditColumn& column : kAuditColumns)
-    fmt::print("  {}: {}\n", column.heading, column.meaning);
-}
 
 void audit(const AuditOptions& options, Session& session) {
   const Catalog& catalog = session.catalog();
@@ -44,8 +36,7 @@ void audit(const AuditOptions& options, Session& session) {
   if (options.as_json) {
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}\n", audit_terminal(all));
-    print_legend();
+    fmt::print("{}", terminal_section(properties_section(all)));
   }
   for (const AuditedOptimizer& audited : all)
     if (!audited.flags.empty()) session.exit_code = kWorse;

@@ -11,6 +11,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/perturbed_runs.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 
 namespace isoline::benchmarks {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/isolate.h"
@@ -52,10 +53,10 @@ std::vector<Component> chosen(const Catalog& catalog, const std::string& text) {
   std::vector<Component> components;
   if (text.empty()) {
     for (const std::string& name : catalog.problems.names())
-      components.push_back(complete_problem(catalog, name, Json::object()));
+      components.push_back(complete_problem(catalog, name, OptionValues()));
   } else {
     for (const Spec& spec : parse_specs(text))
-      components.push_back(complete_problem(catalog, spec.name, options_of(spec)));
+      components.push_back(complete_problem(catalog, spec));
   }
   return components;
 }

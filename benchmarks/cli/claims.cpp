@@ -1,5 +1,5 @@
 // isoline claims [ID...]: runs what published claims need, and judges them.
-#include "reports/claims/claims.h"
+#include "reports/report.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,16 +13,16 @@
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/sheets.h"
 #include "core/errors.h"
-#include "reports/study.h"
 
 namespace isoline::benchmarks {
 
 using reports::claims_json;
-using reports::claims_terminal;
+using reports::claims_section;
 using reports::judge;
 using reports::Judgement;
 using reports::read_study;
 using reports::Study;
+using reports::terminal_section;
 using reports::Verdict;
 namespace {
 
@@ -39,7 +39,7 @@ void list_claims(const std::vector<Claim>& claims, bool as_json) {
   for (const Claim& claim : claims) {
     if (claim.group != group) fmt::print("{}\n", claim.group);
     group = claim.group;
-    fmt::print("  {:38} {}\n", claim.id(), claim.json.at("sentence").get<std::string>());
+    fmt::print("  {:38} {}\n", claim.id, claim.sentence);
   }
 }
 
@@ -73,7 +73,7 @@ void judge_claims(const ClaimArguments& given, Session& session) {
   const Study study = read_study({given.out});
   const std::vector<Judgement> judgements = judge(json_of(claims), study.runs);
   fmt::print("{}",
-             given.as_json ? claims_json(judgements).dump(2) + "\n" : claims_terminal(judgements));
+             given.as_json ? claims_json(judgements).dump(2) + "\n" : terminal_section(claims_section(judgements)));
   if (session.exit_code == kInterrupted) return;
   session.exit_code = is_sound ? exit_code_of(judgements) : kWorse;
 }

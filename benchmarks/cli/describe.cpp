@@ -3,10 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
+#include "core/option_json.h"
 #include "core/spec.h"
 #include "networks/network.h"
 
@@ -19,9 +21,9 @@ namespace {
 Sheet sheet_of(Session& session, const Spec& spec) {
   const Catalog& catalog = session.catalog();
   if (catalog.problems.contains(spec.name))
-    return problem_sheet(catalog, complete_problem(catalog, spec.name, options_of(spec)));
+    return problem_sheet(catalog, complete_problem(catalog, spec));
   if (catalog.optimizers.contains(spec.name))
-    return optimizer_sheet(catalog, complete_optimizer(catalog, spec.name, options_of(spec)));
+    return optimizer_sheet(catalog, complete_optimizer(catalog, spec));
   std::vector<std::string> known = catalog.problems.names();
   for (const auto& names : {catalog.optimizers.names(), network_registry().names()})
     known.insert(known.end(), names.begin(), names.end());

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/resources.h"

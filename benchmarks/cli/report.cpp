@@ -10,7 +10,8 @@
 namespace isoline::benchmarks {
 
 using reports::compare_optimizers;
-using reports::Comparison;
+using reports::Document;
+using reports::document_of;
 using reports::read_study;
 using reports::Study;
 using reports::terminal_table;
@@ -32,10 +33,10 @@ void add_report(CLI::App& app, Session& session) {
     const std::vector<fs::path> folders(options->folders.begin(), options->folders.end());
     const fs::path out = options->out.empty() ? folders.front() / "report" : fs::path(options->out);
     const Study study = read_study(folders, on_terminal("reading records"));
-    Comparison comparison = compare_optimizers(study);
-    comparison.claims = covered_claims(session, study);
-    write_report(comparison, out);
-    fmt::print("{}\nreport: {}\n", terminal_table(comparison), (out / "index.html").string());
+    const Document document =
+        document_of(compare_optimizers(study), covered_claims(session, study));
+    write_report(document, out);
+    fmt::print("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string());
   });
 }
 

@@ -19,7 +19,8 @@
 namespace isoline::benchmarks {
 
 using reports::compare_optimizers;
-using reports::Comparison;
+using reports::Document;
+using reports::document_of;
 using reports::read_study;
 using reports::Study;
 using reports::terminal_table;
@@ -136,11 +137,10 @@ void report_on(Session& session, const fs::path& out, bool quiet) {
   Study study = read_study({out});
   study.audits = write_audit(session.catalog(), study, out);
   const fs::path folder = out / "report";
-  Comparison comparison = compare_optimizers(study);
-  comparison.claims = covered_claims(session, study);
-  write_report(comparison, folder);
+  const Document document = document_of(compare_optimizers(study), covered_claims(session, study));
+  write_report(document, folder);
   if (quiet) return;
-  fmt::print("\n{}\nreport: {}\n", terminal_table(comparison), (folder / "index.html").string());
+  fmt::print("\n{}\nreport: {}\n", terminal_table(document), (folder / "index.html").string());
 }
 
 void run(const RunArguments& given, Session& session) {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/suite.h"
@@ -25,17 +26,17 @@ struct TrainArguments {
 
 Request request_of(const TrainArguments& given, const Catalog& catalog) {
   const Spec problem_spec = parse_spec(given.problem), spec = parse_spec(given.optimizer);
-  Json options = options_of(problem_spec);
-  if (!options.contains("mode")) options["mode"] = "learn";
+  OptionValues options = options_of(problem_spec);
+  if (!options.contains("mode")) options.set("mode", "learn");
   const Component problem = complete_problem(catalog, problem_spec.name, options);
-  require(problem.options["mode"] == "learn", "train: mode=direct leaves nothing to train");
+  require(problem.is_learned, "train: mode=direct leaves nothing to train");
   const Rates rates = Rates::builtin();
-  return {.problem = problem,
-          .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
-          .seed = given.seed,
-          .budget = {.iterations = given.iterations, .target = 0},
-          .threads = given.threads,
-          .rates = ""};
+  return named({.problem = problem,
+                .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
+                .seed = given.seed,
+                .budget = {.iterations = given.iterations, .target = 0},
+                .threads = given.threads,
+                .rates = ""});
 }
 
 // In the worker: the run, then the network with its statistics.

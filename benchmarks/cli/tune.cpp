@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "benchmarks/cli/verbs.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/spec.h"
 
@@ -27,7 +29,7 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
                   .seeds = parse_seeds(given.seeds),
                   .budget = given.budget};
   for (const Spec& spec : parse_specs(given.problem))
-    plan.problems.push_back(complete_problem(catalog, spec.name, options_of(spec)));
+    plan.problems.push_back(complete_problem(catalog, spec));
   if (given.optimizer.empty()) {
     plan.optimizers = {"sip"};
     for (const auto& [name, entry] : catalog.optimizers)
@@ -77,7 +79,7 @@ void tune_and_write(const TuneArguments& given, Session& session) {
     session.exit_code = kInterrupted;
     return;
   }
-  Json rows = result.rows;
+  Json rows = *result.rows;
   for (const Json& row : rows)
     fmt::print("{:28} {:24} {}; best of 1, 2, …: {}\n", row["problem"].get<std::string>(),
                row["optimizer"].get<std::string>(), row["options"].dump(),

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
 #include "core/json.h"
-#include "core/records/sheet.h"
+#include "core/records/plan.h"
+#include "core/records/record.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -44,13 +46,11 @@ auto rank_of(const Json& record) {
 
 // Sorted; a value as often as in the list that has it most often.
 Json joined_timings(const Json& a, const Json& b) {
-  std::vector<Real> left, right, both;
-  for (const Json& value : a) left.push_back(real_of(value));
-  for (const Json& value : b) right.push_back(real_of(value));
+  std::vector<Real> left = reals_of(a), right = reals_of(b), both;
   std::ranges::sort(left);
   std::ranges::sort(right);
   std::ranges::set_union(left, right, std::back_inserter(both));
-  return json_numbers(both.data(), both.size());
+  return json_numbers(both);
 }
 
 std::string shown(const Json& value) {
@@ -80,12 +80,13 @@ std::string first_differences(const Json& a, const Json& b) {
 JoinedRecord join_records(const Json& a, const Json& b) {
   if (!is_nondeterministic(a) && !is_nondeterministic(b)) {
     const Json left = result_of(a), right = result_of(b);
-    if (left != right) return {Json(), first_differences(left, right), false};
+    if (left != right) return {nullptr, first_differences(left, right), false};
   }
   Json joined = rank_of(a) < rank_of(b) ? b : a;
   joined["repeat_wall_seconds"] =
       joined_timings(a.at("repeat_wall_seconds"), b.at("repeat_wall_seconds"));
-  return {joined, "", build_provenance(a) != build_provenance(b)};
+  return {std::make_shared<const Json>(std::move(joined)), "",
+          build_provenance(a) != build_provenance(b)};
 }
 
 Json join_plans(const Json& a, const Json& b) {

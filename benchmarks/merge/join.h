@@ -1,17 +1,19 @@
 // The join of two records of one cell and build: the arithmetic under `isoline merge`.
 #pragma once
 
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "core/records/record.h"
-
 namespace isoline::benchmarks {
+
+using Json = nlohmann::json;
 
 // Associative, commutative and idempotent. Where the results differ `difference` tells the first
 // places, and what is returned means nothing.
 struct JoinedRecord {
-  Json record;
+  std::shared_ptr<const Json> record;
   std::string difference;
   bool is_provenance_other = false;  // that of the run aside
 };

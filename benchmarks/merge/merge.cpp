@@ -16,11 +16,10 @@
 
 #include "benchmarks/merge/join.h"
 #include "benchmarks/merge/merge_audits.h"
-#include "benchmarks/merge/merge_files.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/record.h"
-#include "core/records/sheet.h"
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
@@ -122,7 +121,7 @@ class Merge {
               name, fmt::format("{} ({}): the results in {} differ at {}", title_of(joined), name,
                                 parents(files), both.difference));
         other_provenance_ += i == 1 && both.is_provenance_other;
-        joined = std::move(both.record);
+        joined = *both.record;
       }
       ++united_;
       keep(name, joined.dump() + "\n", true);
@@ -138,7 +137,7 @@ class Merge {
     const std::vector<std::string> texts = texts_of(files);
     if (texts.empty()) return;
     other_sheets_ += have_other_wordings(texts);
-    save(out_ / "components" / name, *std::ranges::min_element(texts));
+    write_unflushed(out_ / "components" / name, *std::ranges::min_element(texts));
   }
 
   void merge_plans() {
@@ -147,15 +146,15 @@ class Merge {
       if (const fs::path file = folder / "plan.json"; fs::exists(file)) files.push_back(file);
     const std::vector<std::string> texts = texts_of(files);
     if (texts.empty()) return;
-    if (texts.size() == 1) return save(out_ / "plan.json", texts[0]);
+    if (texts.size() == 1) return write_unflushed(out_ / "plan.json", texts[0]);
     Json plan = parse_json(texts[0], "plan.json");
     for (const std::string& text : texts) plan = join_plans(plan, parse_json(text, "plan.json"));
-    save(out_ / "plan.json", plan.dump() + "\n");
+    write_unflushed(out_ / "plan.json", plan.dump() + "\n");
   }
 
   void merge_audits() {
     AuditUnion audits = unite_audits(folders_);
-    if (!audits.json.is_null()) save(out_ / "audit.json", audits.json.dump(1) + "\n");
+    if (audits.json) write_unflushed(out_ / "audit.json", audits.json->dump(1) + "\n");
     disputed_audits_ = std::move(audits.disputed);
     std::ranges::move(audits.conflicts, std::back_inserter(outcome_.conflicts));
     std::ranges::move(audits.unreadable, std::back_inserter(outcome_.unreadable));
@@ -177,11 +176,11 @@ class Merge {
     if (disputed_.empty() && disputed_audits_.empty()) return;
     Json json{{"schema", kConflictsSchema}, {"records", disputed_}};
     if (!disputed_audits_.empty()) json["audits"] = disputed_audits_;
-    save(out_ / "conflicts.json", json.dump(1) + "\n");
+    write_unflushed(out_ / "conflicts.json", json.dump(1) + "\n");
   }
 
   void keep(const std::string& name, const std::string& text, bool is_record) {
-    save(out_ / "runs" / name, text);
+    write_unflushed(out_ / "runs" / name, text);
     const std::lock_guard lock(mutex_);
     outcome_.records += is_record;
   }
@@ -228,7 +227,7 @@ MergeOutcome merge_folders(const std::vector<fs::path>& folders, const fs::path&
   try {
     fs::create_directories(unfinished);
     MergeOutcome outcome = Merge(folders, unfinished, listener).run();
-    flush(unfinished);
+    flush_all(unfinished);
     fs::rename(unfinished, place);
     return outcome;
   } catch (...) {

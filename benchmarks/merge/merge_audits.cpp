@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "core/json.h"
 #include "core/records/audited.h"
@@ -60,9 +61,10 @@ AuditUnion unite_audits(const std::vector<fs::path>& folders) {
     }
   }
   if (!is_any) return out;
-  out.json = audit_to_json({});
+  Json all = audit_to_json({});
   for (const auto& [name, source] : by_name)
-    if (!out.disputed.contains(name)) out.json["optimizers"].push_back(source.audit);
+    if (!out.disputed.contains(name)) all["optimizers"].push_back(source.audit);
+  out.json = std::make_shared<const Json>(std::move(all));
   return out;
 }
 

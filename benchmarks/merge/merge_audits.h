@@ -2,16 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "core/records/record.h"
 
 namespace isoline::benchmarks {
 
+using Json = nlohmann::json;
+
 struct AuditUnion {
-  Json json;                       // the file; null where no folder has one
+  std::shared_ptr<const Json> json;  // the file; null where no folder has one
   std::set<std::string> disputed;  // optimizers left out, by this merge or an earlier one
   std::vector<std::string> conflicts, unreadable;  // sentences
 };

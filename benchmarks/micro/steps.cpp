@@ -1,4 +1,5 @@
 // One step of each method written here over the bare linear algebra that it needs.
+
 #include "benchmarks/micro/bare_steps.h"
 #include "benchmarks/micro/pairs.h"
 #include "benchmarks/micro/trial.h"
@@ -51,7 +52,7 @@ void register_steps() {
   for (const std::string problem_spec : kProblems) {
     const Problem problem = make_problem(problem_spec);
     for (const auto& [name, entry] : catalog().optimizers) {
-      const Json options = complete_optimizer(catalog(), name, Json::object()).options;
+      const OptionValues options = complete_optimizer(catalog(), name, OptionValues()).options;
       if (!is_written_here(entry.family)) continue;
       if (!why_inapplicable(entry, options, problem).empty()) continue;
       const int pairs = factorizes(needs(name, problem)) ? 41 : 401;

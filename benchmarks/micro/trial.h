@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "benchmarks/plan/catalog.h"
@@ -17,8 +16,7 @@ inline const Catalog& catalog() {
 
 inline Problem make_problem(const std::string& text) {
   const Spec spec = parse_spec(text);
-  return benchmarks::make_problem(catalog(),
-                                  complete_problem(catalog(), spec.name, options_of(spec)), 0);
+  return benchmarks::make_problem(catalog(), complete_problem(catalog(), spec), 0);
 }
 
 // Iterations without end, so that nothing but the method decides.
@@ -28,7 +26,7 @@ inline Budget endless() {
 
 inline Component complete_method(const std::string& text) {
   const Spec spec = parse_spec(text);
-  return complete_optimizer(catalog(), spec.name, options_of(spec));
+  return complete_optimizer(catalog(), spec);
 }
 
 inline std::unique_ptr<Optimizer> make_method(const std::string& text) {

@@ -1,7 +1,8 @@
 // The two registries together: what a benchmark can be made of.
 #pragma once
 
-#include "core/records/record.h"
+#include "core/records/request.h"
+#include "core/spec.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 
@@ -26,8 +27,12 @@ struct Catalog {
 Catalog builtin_catalog();  // everything in problems/ and optimizers/
 
 // A component as a request names it, its options complete.
-Component complete_problem(const Catalog& catalog, const std::string& name, const Json& options);
-Component complete_optimizer(const Catalog& catalog, const std::string& name, const Json& options);
+Component complete_problem(const Catalog& catalog, const std::string& name,
+                           const OptionValues& options);
+Component complete_problem(const Catalog& catalog, const Spec& spec);
+Component complete_optimizer(const Catalog& catalog, const std::string& name,
+                             const OptionValues& options);
+Component complete_optimizer(const Catalog& catalog, const Spec& spec);
 
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed);
 

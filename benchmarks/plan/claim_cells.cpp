@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "benchmarks/plan/resources.h"
@@ -43,7 +44,7 @@ Json alternative(const Expansion& from, const std::string& problem, const std::s
   block["optimizers"] = {optimizer};
   Json cells = Json::array();
   for (const Request& request : expanded(from, block)) {
-    cells.push_back(cell_digest(request));
+    cells.push_back(request.cell);
     require(known.contains(cells.back()), [&] {
       return fmt::format("{} × {} is not among the cells of the claim {}", problem, optimizer,
                          from.claim);
@@ -68,13 +69,18 @@ Json terms_of(const Expansion& from, const Json& quantity, const Json& block,
 
 Claim claim_from(const Catalog& catalog, const Rates& rates, const Json& json,
                  const std::string& group) {
-  Claim claim{.group = group, .json = json, .cells = {}};
-  const Expansion from{catalog, rates, claim.id()};
+  const auto own = std::make_shared<Json>(json);
+  Claim claim{.group = group,
+              .id = json.at("id"),
+              .sentence = json.at("sentence"),
+              .json = own,
+              .cells = {}};
+  const Expansion from{catalog, rates, claim.id};
   if (!json.contains("cells")) return claim;
-  for (Json& block : claim.json["cells"]) {
+  for (Json& block : (*own)["cells"]) {
     Claim::Cells cells{block.value("long", false), expanded(from, block)};
     std::set<std::string> known;
-    for (const Request& request : cells.requests) known.insert(cell_digest(request));
+    for (const Request& request : cells.requests) known.insert(request.cell);
     block["iterations"] = cells.requests.at(0).budget.iterations;
     Json bare = block;
     bare.erase("iterations");
@@ -113,14 +119,14 @@ std::vector<Claim> builtin_claims_of(const Catalog& catalog) {
 std::vector<Claim> chosen_claims(std::vector<Claim> claims, const std::vector<std::string>& names) {
   std::vector<std::string> known;
   for (const Claim& claim : claims) {
-    known.push_back(claim.id());
+    known.push_back(claim.id);
     if (std::ranges::find(known, claim.group) == known.end()) known.push_back(claim.group);
   }
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
       throw UsageError(unknown_name("claim", name, known));
   std::erase_if(claims, [&](const Claim& claim) {
-    return !names.empty() && std::ranges::find(names, claim.id()) == names.end() &&
+    return !names.empty() && std::ranges::find(names, claim.id) == names.end() &&
            std::ranges::find(names, claim.group) == names.end();
   });
   return claims;
@@ -133,14 +139,14 @@ std::vector<Request> cells_of(const std::vector<Claim>& claims, bool with_long) 
     for (const Claim::Cells& cells : claim.cells) {
       if (cells.is_long && !with_long) continue;
       for (const Request& request : cells.requests)
-        if (known.insert(cell_digest(request)).second) requests.push_back(request);
+        if (known.insert(request.cell).second) requests.push_back(request);
     }
   return requests;
 }
 
 Json json_of(const std::vector<Claim>& claims) {
   Json list = Json::array();
-  for (const Claim& claim : claims) list.push_back(claim.json);
+  for (const Claim& claim : claims) list.push_back(*claim.json);
   return list;
 }
 

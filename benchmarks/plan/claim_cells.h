@@ -2,6 +2,8 @@
 // be read off these cells. Reports judge them; here they are read and their cells made findable.
 #pragma once
 
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -9,17 +11,18 @@
 
 namespace isoline::benchmarks {
 
+using Json = nlohmann::json;
+
 struct Claim {
   std::string group;  // the file it stands in
-  Json json;          // as reports/claims/claims.h says, its cells by digests
+  std::string id, sentence;
+  std::shared_ptr<const Json> json;  // as reports/sections/judging.h says, its cells by digests
   // One of each set of cells, the longest first.
   struct Cells {
     bool is_long = false;  // hours: run only when asked for
     std::vector<Request> requests;
   };
   std::vector<Cells> cells;
-
-  std::string id() const { return json.at("id"); }
 };
 
 // The claims of one file; UsageError where it is none, or a term is not among its cells.

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/resources.h"
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/option_json.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
@@ -17,20 +20,21 @@ bool is_in(const std::string& table, const std::string& origin) {
   return table.empty() ? !origin.ends_with("-tuned.json") : origin == table + ".json";
 }
 
+bool is_same(const OptionValue& value, const std::string& wanted) {
+  const auto as_number = [&](Real number) {
+    return number == std::strtod(wanted.c_str(), nullptr);
+  };
+  if (const Real* number = std::get_if<Real>(&value)) return as_number(*number);
+  if (const Index* number = std::get_if<Index>(&value)) return as_number(static_cast<Real>(*number));
+  return text_of(value) == wanted;
+}
+
 // Whether a problem's complete options have the values that a row names, as text.
-bool is_for(const Json& row, const Component& problem) {
-  const Json& complete = problem.options;
-  const bool is_other_mode = problem.spec.find("mode=") != std::string::npos;
-  if (!row.contains("mode") && is_other_mode) return false;
-  for (const auto& [key, wanted] : row.items()) {
-    if (!complete.contains(key)) return false;
-    const Json& value = complete[key];
-    const auto text = wanted.get<std::string>();
-    const bool is_same = value.is_number() ? value.get<Real>() == std::strtod(text.c_str(), nullptr)
-                                           : value == Json(text);
-    if (!is_same) return false;
-  }
-  return true;
+bool is_for(const OptionValues& row, const OptionValues& complete) {
+  return std::ranges::all_of(row, [&](const NamedOption& wanted) {
+    const OptionValue* value = complete.find(wanted.name);
+    return value && is_same(*value, text_of(wanted.value));
+  });
 }
 
 }  // namespace
@@ -48,7 +52,7 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
     for (const Json& row : json.at("rows")) {
       const Spec problem = parse_spec(row.at("problem").get<std::string>());
       rates.rows_[{problem.name, row.at("optimizer")}].push_back(
-          {options_of(problem), row.at("options"), origin});
+          {options_of(problem), option_values_from(row.at("options")), origin});
     }
   } catch (const Json::exception& error) {
     throw UsageError(fmt::format("{} is no table of rates: {}", origin, error.what()));
@@ -60,11 +64,14 @@ const Rates::Row* Rates::find(const Component& problem, const std::string& optim
                               const std::string& table) const {
   const auto rows = rows_.find({problem.name, optimizer});
   if (rows == rows_.end()) return nullptr;
+  const bool is_in_other_mode = options_of(parse_spec(problem.spec)).contains("mode");
   const Row* best = nullptr;
-  for (const Row& row : rows->second)
-    if (is_in(table, row.origin) && is_for(row.problem, problem) &&
+  for (const Row& row : rows->second) {
+    if (is_in_other_mode && !row.problem.contains("mode")) continue;
+    if (is_in(table, row.origin) && is_for(row.problem, problem.options) &&
         (!best || row.problem.size() >= best->problem.size()))
       best = &row;
+  }
   return best;
 }
 

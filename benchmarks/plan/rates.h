@@ -3,12 +3,15 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "core/records/record.h"
+#include "core/records/request.h"
 
 namespace isoline::benchmarks {
+
+using Json = nlohmann::json;
 
 class Rates {
  public:
@@ -17,9 +20,9 @@ class Rates {
   static Rates from_json(const Json& json, const std::string& origin);
 
   struct Row {
-    Json problem;        // the options that it is for, as text or numbers
-    Json options;        // to fill in
-    std::string origin;  // file that says so
+    OptionValues problem;  // the options that it is for, as text
+    OptionValues options;  // to fill in
+    std::string origin;    // file that says so
   };
   // The row for a problem and an optimizer's name, or nullptr. A row is for the problems that have
   // the options it names, in their default mode unless it names the mode; the row that names most

@@ -5,16 +5,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "benchmarks/plan/filter.h"
 #include "benchmarks/plan/resources.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
-
-using optimizers::Family;
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,19 +39,6 @@ MatrixBlock block_from(const Json& json) {
           .threads = json.value("threads", 1),
           .hard_seconds = json.value("hard_seconds", 0.0),
           .rates = json.value("rates", "")};
-}
-
-// What a step costs, which decides the grids that a method can be given.
-std::string_view cost_class(const OptimizerEntry& entry) {
-  if (entry.family == Family::nlopt_derivative_free) return "derivative-free";
-  constexpr Index kUnlimited = std::numeric_limits<Index>::max();
-  const bool is_limited = entry.most_unknowns < kUnlimited || entry.most_rank < kUnlimited;
-  return is_limited ? "factorizing" : "matrix-free";
-}
-
-bool is_selected(const OptimizerEntry& entry, const std::string& selector) {
-  return selector == "*" || selector == fmt::format("@{}", name_of(entry.family)) ||
-         selector == fmt::format("@{}", cost_class(entry));
 }
 
 bool is_excepted(const std::string& name, const std::vector<std::string>& excepted) {
@@ -91,16 +78,19 @@ void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates&
                   std::set<std::string>& known, std::vector<Request>& requests) {
   const std::vector<Spec> optimizers = chosen_optimizers(catalog, block);
   for (const Spec& problem_spec : chosen_problems(catalog, block)) {
-    const Component problem =
-        complete_problem(catalog, problem_spec.name, options_of(problem_spec));
+    const Component problem = complete_problem(catalog, problem_spec);
     for (const Spec& spec : optimizers) {
       const Rates::Row* row = rates.find(problem, spec.name, block.rates);
       const Component optimizer = with_rates(catalog, spec, row);
       for (const std::uint64_t seed : block.seeds) {
-        Request request{problem,           optimizer,     seed,
-                        block.budget,      block.threads, row ? row->origin : "",
-                        block.hard_seconds};
-        if (known.insert(cell_digest(request)).second) requests.push_back(std::move(request));
+        Request request = named({.problem = problem,
+                                 .optimizer = optimizer,
+                                 .seed = seed,
+                                 .budget = block.budget,
+                                 .threads = block.threads,
+                                 .rates = row ? row->origin : "",
+                                 .hard_seconds = block.hard_seconds});
+        if (known.insert(request.cell).second) requests.push_back(std::move(request));
       }
     }
   }
@@ -109,9 +99,8 @@ void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates&
 }  // namespace
 
 Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
-  Json options = row ? row->options : Json::object();
-  const Json given = options_of(spec);
-  for (const auto& [key, value] : given.items()) options[key == "lr" ? "rate" : key] = value;
+  OptionValues options = row ? row->options : OptionValues();
+  for (const auto& [key, value] : options_of(spec)) options.set(key == "lr" ? "rate" : key, value);
   return complete_optimizer(catalog, spec.name, options);
 }
 

@@ -2,19 +2,20 @@
 // budget. Expands into requests.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/rates.h"
-#include "core/records/record.h"
+#include "core/records/request.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
 
-// One block of a suite. Problems and optimizers are specs or selectors: "*" for all, "@family" for
-// the optimizers of a family, "@matrix-free", "@factorizing" (a dense factorization of size n) and
-// "@derivative-free" by what a step costs.
+using Json = nlohmann::json;
+
+// One block of a suite. Problems and optimizers are specs or selectors (benchmarks/plan/filter.h).
 struct MatrixBlock {
   std::vector<std::string> problems, optimizers;
   std::vector<std::string> except_problems, except_optimizers;  // names

@@ -71,16 +71,16 @@ std::map<std::string, std::vector<Real>> series_of(const Trace& trace) {
   return series;
 }
 
-Matrix matrix_of(const Trace::Exhibit& shown) {
-  return Eigen::Map<const Matrix>(shown.value, shown.rows, shown.columns);
+Grid grid_of(const Trace::Exhibit& shown) {
+  return {shown.rows, shown.columns, {shown.value, shown.value + shown.rows * shown.columns}};
 }
 
 std::optional<Exhibit> exhibit_of(const Trace& trace) {
   if (trace.shown_x.rows == 0) return std::nullopt;
   return Exhibit{.grid = trace.shown_grid,
-                 .target = matrix_of(trace.shown_target),
-                 .x = matrix_of(trace.shown_x),
-                 .truth = matrix_of(trace.shown_truth)};
+                 .target = grid_of(trace.shown_target),
+                 .x = grid_of(trace.shown_x),
+                 .truth = grid_of(trace.shown_truth)};
 }
 
 Curve curve_of(const Trace& trace) {
@@ -198,7 +198,8 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
 Record record_of(const Request& request, const Trace& trace) {
   Record record;
   record.request = request;
-  record.cell = cell_digest(request);
+  require(!request.cell.empty(), "a request is run without the name of its cell");
+  record.cell = request.cell;
   record.build = build_digest(request.problem.revision, request.optimizer.revision);
   record.status = trace.status;
   record.message = trace.message;
@@ -218,7 +219,7 @@ Record record_of(const Request& request, const Trace& trace) {
                                trace.status == Status::interrupted ||
                                trace.status == Status::memory;
   if (trace.is_finished) record.repeat_wall_seconds = {trace.last.wall_seconds};
-  record.provenance = provenance();
+  record.provenance.build = this_build();
   return record;
 }
 

@@ -4,10 +4,8 @@
 #include "benchmarks/run/prices.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "core/clock.h"
 #include "core/records/provenance.h"
@@ -20,12 +18,8 @@ namespace {
 
 constexpr double kRoundSeconds = 5e-5;  // of forward solves: two hundred readings of the clock
 constexpr double kOracleSeconds = 5e-3, kLongOracleSeconds = 5e-2, kMatrixSeconds = 1e-2;
-// Of one problem: large networks take it up with the first few.
+// Of one problem.
 constexpr double kProblemSeconds = 1, kSlowSeconds = 1e-2;
-constexpr std::array kMostAskedFirst = {
-    Oracle::pullback,        Oracle::network,       Oracle::inverse,  Oracle::pushforward,
-    Oracle::hessian_product, Oracle::layer_factors, Oracle::jacobian, Oracle::sensitivity,
-    Oracle::curvature,       Oracle::hessian};
 constexpr std::size_t kMostRounds = 31, kFewRounds = 3;
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
 
@@ -77,9 +71,17 @@ void ask(Oracle oracle, const Problem& problem, Point& at, Room& room) {
   }
 }
 
-bool is_matrix(Oracle oracle) {
-  return oracle == Oracle::jacobian || oracle == Oracle::hessian || oracle == Oracle::curvature ||
-         oracle == Oracle::sensitivity;
+// All that the problem offers and that is computed: products before the dense matrices, which
+// large networks take up the time with.
+std::vector<Oracle> measured_ones(OracleSet offered) {
+  std::vector<Oracle> products, matrices;
+  for (const OracleRow& row : kOracleTable) {
+    const bool is_computed = row.kind != Oracle::forward && row.kind != Oracle::truth;
+    if (!is_computed || !offered.contains(row.kind)) continue;
+    (row.is_dense_matrix ? matrices : products).push_back(row.kind);
+  }
+  products.insert(products.end(), matrices.begin(), matrices.end());
+  return products;
 }
 
 // Of the processor: what others take of a busy machine does not count.
@@ -123,7 +125,7 @@ MeasuredPrice price_of(Oracle oracle, std::int64_t declared, std::size_t calls,
 
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build) {
   MeasuredPrices measured{
-      .build = build, .processor = provenance().value("processor", std::string()), .oracles = {}};
+      .build = build, .processor = this_build()->processor, .oracles = {}};
   Point at;
   Room room(problem);
   const std::function<void()> forward = [&] { problem.forward(problem.start(), at); };
@@ -139,14 +141,12 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   measured.forward_seconds = at_share(seconds, 0.5);
   measured.oracles.push_back(
       price_of(Oracle::forward, 1, calls, std::vector<Real>(seconds.size(), 1)));
-  const OracleSet offered = problem.offers();
-  const auto declared = problem.prices();
-  for (const Oracle oracle : kMostAskedFirst) {
+  const OracleCounts declared = problem.prices();
+  for (const Oracle oracle : measured_ones(problem.offers())) {
     if (processor_seconds() - begin > kProblemSeconds) break;
     const auto kind = static_cast<std::size_t>(oracle);
     const double expected = measured.forward_seconds * static_cast<double>(declared[kind]);
-    if (!offered.contains(oracle)) continue;
-    if (is_matrix(oracle) && expected > kMatrixSeconds) continue;
+    if (row_of(oracle).is_dense_matrix && expected > kMatrixSeconds) continue;
     const std::function<void()> both = [&] {
       problem.forward(problem.start(), at);
       ask(oracle, problem, at, room);
@@ -162,7 +162,7 @@ std::string prices_build(int problem_revision) { return build_digest(problem_rev
 
 bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build) {
   return prices && prices->build == build &&
-         prices->processor == provenance().value("processor", std::string());
+         prices->processor == this_build()->processor;
 }
 
 }  // namespace isoline::benchmarks

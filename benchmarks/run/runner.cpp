@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/run/execute.h"
 #include "core/records/provenance.h"
@@ -84,7 +85,7 @@ class Runner {
  private:
   struct Task {
     Pending pending;
-    Json run;  // provenance of this very run
+    RunProvenance run;
   };
 
   std::vector<Pending> find_pending(const std::vector<Request>& requests) {
@@ -98,9 +99,9 @@ class Runner {
       if (done && (have >= wanted || is_failure(done->status))) {
         ++outcome_.reused;
         count(*done);
-        const Json& origin = done->provenance;
+        const Build& origin = *done->provenance.build;
         outcome_.reused_from_other_commits +=
-            origin.value("dirty", true) || origin.value("commit", "") != provenance()["commit"];
+            origin.is_dirty.value_or(true) || origin.commit != this_build()->commit;
         continue;
       }
       for (std::size_t i = have; i < wanted; ++i) rounds.push_back({i - have, {&request, done}});
@@ -134,12 +135,12 @@ class Runner {
     return {path, path.stem().string(), options_.checkpoint_seconds};
   }
 
-  Json run_provenance() const {
+  RunProvenance run_provenance() const {
     const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    return {{"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))},
-            {"concurrent_jobs", jobs_},
-            {"exclusive", options_.exclusive},
-            {"command", options_.command}};
+    return {.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
+            .concurrent_jobs = jobs_,
+            .is_exclusive = options_.exclusive,
+            .command = options_.command};
   }
 
   bool idle() const {
@@ -173,7 +174,7 @@ class Runner {
 
   void keep(Task& task, const Trace& trace) {
     Record record = record_of(*task.pending.request, trace);
-    record.provenance["run"] = task.run;
+    record.provenance.run = task.run;
     std::optional<Record> earlier = store_.find(record.request);
     if (options_.force && !repeated(record)) earlier.reset();
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
@@ -190,7 +191,8 @@ class Runner {
 
   static bool same_result(const Record& a, const Record& b) {
     Json left = without_timings(to_json(a)), right = without_timings(to_json(b));
-    left.erase("provenance"), right.erase("provenance");
+    left.erase("provenance");
+    right.erase("provenance");
     return left == right;
   }
 

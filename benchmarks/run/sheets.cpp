@@ -7,7 +7,9 @@
 #include "benchmarks/run/isolate.h"
 #include "benchmarks/run/prices.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
+#include "core/option_json.h"
 
 namespace isoline::benchmarks {
 
@@ -36,7 +38,7 @@ std::vector<Real> small(const Matrix& values) {
 
 // L over the problem's window in x, and over the box in y that the window maps into.
 void draw_landscapes(const Problem& problem, Sheet& sheet) {
-  Landscape in_x{*problem.window(), Matrix(kGrid, kGrid), problem.contour_spacing()};
+  Landscape in_x{*problem.window(), Grid(kGrid, kGrid), problem.contour_spacing()};
   const auto& [x1_low, x1_high, x2_low, x2_high] = in_x.window;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
   Eigen::Vector2d high = -low;
@@ -53,7 +55,7 @@ void draw_landscapes(const Problem& problem, Sheet& sheet) {
   sheet.landscape_x = in_x;
   if (problem.outputs() != 2) return;
   const std::array<Real, 4> image{low[0], high[0], low[1], high[1]};
-  Landscape in_y{problem.y_window().value_or(image), Matrix(kGrid, kGrid),
+  Landscape in_y{problem.y_window().value_or(image), Grid(kGrid, kGrid),
                  problem.contour_spacing()};
   const auto& [y1_low, y1_high, y2_low, y2_high] = in_y.window;
   for (Index j = 0; j < kGrid; ++j)
@@ -75,7 +77,7 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
               .formula = entry.formula,
               .source = entry.source,
               .note = entry.note,
-              .options_text = describe_options(entry.options).dump(),
+              .options_text = json_text(describe_options(entry.options)),
               .oracles = names_of(problem.offers()),
               .inverse = kInverseNames[static_cast<int>(problem.inverse_kind())],
               .unknowns = problem.unknowns(),
@@ -96,7 +98,7 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
           .formula = entry.formula,
           .source = entry.source,
           .note = entry.note,
-          .options_text = describe_options(entry.options).dump(),
+          .options_text = json_text(describe_options(entry.options)),
           .oracles = names_of(entry.needs),
           .privileges = privileges_of(entry.needs, Inverse::none),
           .family = std::string(name_of(entry.family))};
@@ -109,7 +111,7 @@ constexpr double kSheetSeconds = 30;
 std::optional<MeasuredPrices> stored_prices(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
-    return sheet_from_json(read_json(file)).prices;
+    return sheet_from_text(read_text(file), file.string()).prices;
   } catch (const UsageError&) {
     return std::nullopt;  // damaged: it is written anew
   }
@@ -128,11 +130,11 @@ std::optional<MeasuredPrices> prices_of(const Catalog& catalog, const Component&
         Sheet measured;
         measured.options_text = "[]";
         measured.prices = measure_prices(make_problem(catalog, component, 0), build);
-        return to_json(measured).dump();
+        return json_text(to_json(measured));
       },
       kSheetSeconds);
   if (!text) return std::nullopt;
-  return sheet_from_json(parse_json(*text, "prices of " + component.spec)).prices;
+  return sheet_from_text(*text, "prices of " + component.spec).prices;
 }
 
 }  // namespace
@@ -141,9 +143,9 @@ void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, 
   std::set<std::string> known;
   const auto made = [&](const std::string& spec, const auto& make) -> std::optional<Sheet> {
     if (!known.insert(spec).second) return std::nullopt;
-    const auto text = isolated_text([&] { return to_json(make()).dump(); }, kSheetSeconds);
+    const auto text = isolated_text([&] { return json_text(to_json(make())); }, kSheetSeconds);
     if (!text) return std::nullopt;
-    return sheet_from_json(parse_json(*text, spec));
+    return sheet_from_text(*text, spec);
   };
   for (const Request& request : requests) {
     if (auto sheet = made("problem " + request.problem.spec,
@@ -162,7 +164,7 @@ std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
   std::vector<PlannedCell> cells;
   for (const Request& request : requests)
     cells.push_back(
-        {cell_digest(request), request.problem.spec, request.optimizer.spec, request.seed});
+        {request.cell, request.problem.spec, request.optimizer.spec, request.seed});
   return cells;
 }
 

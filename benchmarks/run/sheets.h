@@ -5,6 +5,7 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/store.h"
+#include "core/records/plan.h"
 #include "core/records/sheet.h"
 
 namespace isoline::benchmarks {

@@ -13,7 +13,7 @@ std::string complaint_about(const Catalog& catalog, const Request& request) {
   try {
     const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
     entry.make(request.optimizer.options, catalog.optimizers);
-    if (request.problem.options.value("mode", "direct") == "learn")
+    if (request.problem.is_learned)
       make_problem(catalog, request.problem, request.seed);
   } catch (const UsageError& error) {
     return error.what();

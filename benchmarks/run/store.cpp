@@ -12,6 +12,7 @@
 #include <cstdlib>
 
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/provenance.h"
 
@@ -25,7 +26,7 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
 }
 
 std::string file_name_of(const Request& request) {
-  return record_file_name(cell_digest(request),
+  return record_file_name(request.cell,
                           build_digest(request.problem.revision, request.optimizer.revision));
 }
 
@@ -70,7 +71,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
   const FolderLock lock(folder_);
   Plan plan;
   const fs::path path = folder_ / "plan.json";
-  if (fs::exists(path)) plan = plan_from_json(read_json(path));
+  if (fs::exists(path)) plan = plan_from_text(read_text(path), path.string());
   if (std::ranges::find(plan.suites, suite) == plan.suites.end()) plan.suites.push_back(suite);
   std::set<std::string> known;
   for (const PlannedCell& cell : plan.cells) known.insert(cell.cell);

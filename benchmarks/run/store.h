@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/records/plan.h"
 #include "core/records/record.h"
 #include "core/records/sheet.h"
 

@@ -6,10 +6,13 @@
 
 #include <cstring>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
+#include "core/option_json.h"
 
 namespace isoline::benchmarks {
 
@@ -19,11 +22,15 @@ namespace {
 constexpr const char* kSchema = "isoline.network/1";
 
 Json component_json(const Component& component) {
-  return {{"name", component.name}, {"options", component.options}, {"spec", component.spec}};
+  return {{"name", component.name},
+          {"options", to_json(component.options)},
+          {"spec", component.spec}};
 }
 
 Component component_from(const Json& json) {
-  return {.name = json.at("name"), .options = json.at("options"), .spec = json.at("spec")};
+  return {.name = json.at("name"),
+          .options = option_values_from(json.at("options")),
+          .spec = json.at("spec")};
 }
 
 Json header_of(const TrainedNetwork& network) {
@@ -53,7 +60,7 @@ TrainedNetwork from_header(const Json& json) {
 }
 
 Json values_of(const Vector& vector) {
-  return json_numbers(vector.data(), static_cast<std::size_t>(vector.size()));
+  return json_numbers({vector.data(), static_cast<std::size_t>(vector.size())});
 }
 
 void fill(Vector& vector, const Json& values) {

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/rates.h"
 #include "core/json.h"
+#include "core/option_json.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
@@ -33,30 +35,31 @@ Real cauchy_step(const Problem& problem) {
 constexpr const char* kNested = "network-optimizer";
 
 // The pair's options in the tables, the tuned one set: by itself or in the network's optimizer.
-Json with_value(const OptimizerEntry& entry, Json options, const std::string& option, Real value) {
+OptionValues with_value(const OptimizerEntry& entry, OptionValues options,
+                        const std::string& option, Real value) {
   const bool has_own = std::ranges::any_of(
       entry.options, [&](const OptionField& field) { return field.name == option; });
   const bool can_nest = std::ranges::any_of(
       entry.options, [](const OptionField& field) { return field.name == kNested; });
   if (has_own || !can_nest) {
-    options[option] = value;
+    options.set(option, value);
     return options;
   }
-  const std::string inner = parse_spec(options.value(kNested, "adam")).name;
-  options[kNested] = fmt::format("{}[{}={}]", inner == "auto" ? "adam" : inner, option, value);
+  const std::string inner = parse_spec(options.text(kNested, "adam")).name;
+  options.set(kNested, fmt::format("{}[{}={}]", inner == "auto" ? "adam" : inner, option, value));
   return options;
 }
 
-Real published_value(const Json& options, const std::string& option) {
-  if (options.contains(option)) return options[option];
+Real published_value(const OptionValues& options, const std::string& option) {
+  if (options.contains(option)) return options.number(option, 1);
   if (!options.contains(kNested)) return 1;
-  const Json inner = options_of(parse_spec(options[kNested].get<std::string>()));
-  return inner.contains(option) ? std::stod(inner[option].get<std::string>()) : 1;
+  const OptionValues inner = options_of(parse_spec(options.text(kNested)));
+  return inner.contains(option) ? std::stod(inner.text(option)) : 1;
 }
 
 // The unit in a process of its own; 1 where it cannot be had.
 Real unit_of(const Catalog& catalog, const TuningGrid& grid, const Component& problem,
-             const Json& published) {
+             const OptionValues& published) {
   if (grid.unit == "one") return 1;
   if (grid.unit == "published") return published_value(published, grid.option);
   const auto text = isolated_text(
@@ -106,7 +109,7 @@ Score score_of(const Store& store, const std::vector<Request>& runs) {
 struct Candidate {
   std::string problem, optimizer;
   std::vector<Real> values;
-  std::vector<Json> options;
+  std::vector<OptionValues> options;
   std::vector<std::vector<Request>> runs;
   bool is_learned = false;
 };
@@ -117,19 +120,21 @@ std::vector<Candidate> candidates_of(const Catalog& catalog, const TuningPlan& p
   for (const Component& problem : plan.problems) {
     for (const std::string& name : plan.optimizers) {
       const Rates::Row* row = rates.find(problem, name);
-      const Json published = row ? row->options : Json::object();
+      const OptionValues published = row ? row->options : OptionValues();
       const Real unit = unit_of(catalog, plan.grid, problem, published);
       Candidate candidate{.problem = problem.spec, .optimizer = name};
-      candidate.is_learned = problem.options.value("mode", "direct") == "learn";
+      candidate.is_learned = problem.is_learned;
       for (const Real value : plan.grid.values) {
         candidate.values.push_back(rounded(unit * value));
-        const Json given = with_value(catalog.optimizers.at(name), published, plan.grid.option,
-                                      candidate.values.back());
+        const OptionValues given = with_value(catalog.optimizers.at(name), published,
+                                              plan.grid.option, candidate.values.back());
         candidate.options.push_back(given);
         std::vector<Request> runs;
         for (const std::uint64_t seed : plan.seeds)
-          runs.push_back(
-              {problem, complete_optimizer(catalog, name, given), seed, plan.budget, 1, ""});
+          runs.push_back(named({.problem = problem,
+                                .optimizer = complete_optimizer(catalog, name, given),
+                                .seed = seed,
+                                .budget = plan.budget}));
         candidate.runs.push_back(std::move(runs));
       }
       candidates.push_back(std::move(candidate));
@@ -164,7 +169,7 @@ Json row_of(const Candidate& candidate, const Store& store, const std::string& o
   if (std::isinf(least.loss)) return nullptr;
   return {{"problem", candidate.problem},
           {"optimizer", candidate.optimizer},
-          {"options", candidate.options[best]},
+          {"options", to_json(candidate.options[best])},
           {"source",
            {{"grid", {{option, values}}},
             {"score", scores},
@@ -215,12 +220,15 @@ TuningResult tune(const Catalog& catalog, const TuningPlan& plan, Store& store,
   for (const Candidate& candidate : candidates)
     for (const std::vector<Request>& runs : candidate.runs)
       requests.insert(requests.end(), runs.begin(), runs.end());
-  TuningResult result{.rows = Json::array(), .outcome = run_all(catalog, requests, store, options)};
+  TuningResult result{.rows = std::make_shared<Json>(Json::array()),
+                      .outcome = run_all(catalog, requests, store, options)};
   if (result.outcome.is_interrupted) return result;
+  Json rows = Json::array();
   for (const Candidate& candidate : candidates) {
     const Json row = row_of(candidate, store, plan.grid.option);
-    if (!row.is_null()) result.rows.push_back(row);
+    if (!row.is_null()) rows.push_back(row);
   }
+  result.rows = std::make_shared<const Json>(std::move(rows));
   return result;
 }
 

@@ -2,12 +2,16 @@
 // all and on seeds of their own, and keeps the whole grid beside the winner.
 #pragma once
 
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "benchmarks/run/runner.h"
 
 namespace isoline::benchmarks {
+
+using Json = nlohmann::json;
 
 struct TuningGrid {
   std::string option = "rate";
@@ -31,7 +35,7 @@ struct TuningPlan {
 };
 
 struct TuningResult {
-  Json rows;  // of a table isoline.rates/1
+  std::shared_ptr<const Json> rows;  // of a table isoline.rates/1
   Outcome outcome;
 };
 

@@ -13,23 +13,15 @@ namespace {
 
 constexpr const char* kSchema = "isoline.audit/1";
 
-Json numbers(const std::vector<Real>& values) { return json_numbers(values.data(), values.size()); }
-
-std::vector<Real> reals(const Json& list) {
-  std::vector<Real> values;
-  for (const Json& value : list) values.push_back(real_of(value));
-  return values;
-}
-
 Json to_json(const PowerLaw& law) {
-  return {{"values", numbers(law.values)},
+  return {{"values", json_numbers(law.values)},
           {"exponent", json_number(law.exponent)},
           {"residual", json_number(law.residual)},
           {"holds", law.holds()}};
 }
 
 PowerLaw power_law_from(const Json& json) {
-  return {reals(json.at("values")), real_of(json.at("exponent")), real_of(json.at("residual"))};
+  return {reals_of(json.at("values")), real_of(json.at("exponent")), real_of(json.at("residual"))};
 }
 
 Json to_json(const Approach& approach) {
@@ -52,7 +44,7 @@ void read_measurements(const Json& json, AuditedOptimizer& audited) {
   audited.network = json.value("network", "");
   for (std::size_t i = 0; i < kScalingNames.size(); ++i) {
     const Json& law = json.at("scalings").at(std::string(kScalingNames[i]));
-    audited.scalings[i] = {reals(law.at("scales")), power_law_from(law.at("step")),
+    audited.scalings[i] = {reals_of(law.at("scales")), power_law_from(law.at("step")),
                            power_law_from(law.at("loss_change"))};
   }
   for (std::size_t i = 0; i < kChangeNames.size(); ++i)
@@ -79,7 +71,7 @@ Json to_json(const AuditedOptimizer& audited) {
   if (!audited.network.empty()) json["network"] = audited.network;
   for (std::size_t i = 0; i < kScalingNames.size(); ++i) {
     const ScalingLaw& law = audited.scalings[i];
-    json["scalings"][std::string(kScalingNames[i])] = {{"scales", numbers(law.scales)},
+    json["scalings"][std::string(kScalingNames[i])] = {{"scales", json_numbers(law.scales)},
                                                        {"step", to_json(law.step)},
                                                        {"loss_change", to_json(law.loss_change)}};
   }

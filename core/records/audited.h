@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/array.h"
+#include "core/real.h"
 
 namespace isoline {
 

@@ -3,21 +3,17 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 
-#include "core/array.h"
+#include "core/grid.h"
 
 namespace isoline {
 
 struct Exhibit {
   Index grid = 0;           // N, or 0
-  Matrix target, x, truth;  // one sample a column; empty where they are read from the file beside
+  Grid target, x, truth;    // one sample a column; empty where they are read from the file beside
 
   bool is_picture() const { return grid > 0; }
 };
-
-nlohmann::json to_json(const Exhibit& exhibit);  // without the pictures
-Exhibit exhibit_from_json(const nlohmann::json& json);
 
 void write_pictures(const Exhibit& exhibit, const std::filesystem::path& path);
 void read_pictures(Exhibit& exhibit, const std::filesystem::path& path);

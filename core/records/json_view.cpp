@@ -2,7 +2,9 @@
 #include "core/records/json_view.h"
 
 #include <fmt/format.h>
+#include <simdjson.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,6 +17,10 @@ namespace {
 
 using simdjson::dom::element;
 using simdjson::dom::element_type;
+
+static_assert(sizeof(element) == sizeof(JsonView::Place));
+element element_at(JsonView::Place place) { return std::bit_cast<element>(place); }
+JsonView view_of(const element& value) { return JsonView(std::bit_cast<JsonView::Place>(value)); }
 
 [[noreturn]] void fail(const char* expected, const element& value) {
   throw UsageError(fmt::format("expected {}, got {}", expected, simdjson::minify(value)));
@@ -97,56 +103,63 @@ Json copy_of(const element& value) {
 
 JsonView JsonView::at(std::string_view key) const {
   element found;
-  if (element_[key].get(found) != simdjson::SUCCESS)
+  if (element_at(place_)[key].get(found) != simdjson::SUCCESS)
     throw UsageError(fmt::format("it has no \"{}\"", key));
-  return JsonView(found);
+  return view_of(found);
 }
 
 bool JsonView::contains(std::string_view key) const {
-  return element_[key].error() == simdjson::SUCCESS;
+  return element_at(place_)[key].error() == simdjson::SUCCESS;
 }
 
 std::vector<JsonView> JsonView::values() const {
   std::vector<JsonView> all;
-  for (const element value : array(element_)) all.emplace_back(value);
+  for (const element value : array(element_at(place_))) all.push_back(view_of(value));
   return all;
 }
 
 std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
   std::vector<std::pair<std::string, JsonView>> all;
-  for (const auto& field : checked(element_.get_object(), "an object", element_))
-    all.emplace_back(field.key, field.value);
+  const element here = element_at(place_);
+  for (const auto& field : checked(here.get_object(), "an object", here))
+    all.emplace_back(field.key, view_of(field.value));
   return all;
 }
 
-std::string JsonView::text() const { return simdjson::minify(element_); }
+std::string JsonView::text() const { return simdjson::minify(element_at(place_)); }
 
-Json JsonView::json() const { return copy_of(element_); }
+Json JsonView::json() const { return copy_of(element_at(place_)); }
 
-void JsonView::get_to(bool& out) const { out = checked(element_.get_bool(), "a truth", element_); }
-void JsonView::get_to(std::int64_t& out) const { out = integer(element_); }
+bool JsonView::is_null() const { return element_at(place_).is_null(); }
+
+void JsonView::get_to(bool& out) const {
+  const element here = element_at(place_);
+  out = checked(here.get_bool(), "a truth", here);
+}
+void JsonView::get_to(std::int64_t& out) const { out = integer(element_at(place_)); }
+void JsonView::get_to(std::uint64_t& out) const {
+  const element here = element_at(place_);
+  out = checked(here.get_uint64(), "an integer of no sign", here);
+}
 void JsonView::get_to(int& out) const {
-  const std::int64_t number = integer(element_);
-  if (number != static_cast<int>(number)) fail("a small integer", element_);
+  const element here = element_at(place_);
+  const std::int64_t number = integer(here);
+  if (number != static_cast<int>(number)) fail("a small integer", here);
   out = static_cast<int>(number);
 }
 void JsonView::get_to(std::string& out) const {
-  out = checked(element_.get_string(), "a text", element_);
+  const element here = element_at(place_);
+  out = checked(here.get_string(), "a text", here);
 }
-void JsonView::get_to(std::vector<std::int64_t>& out) const { read_all(element_, out, integer); }
+void JsonView::get_to(std::vector<std::int64_t>& out) const { read_all(element_at(place_), out, integer); }
 void JsonView::get_to(std::vector<std::string>& out) const {
-  read_all(element_, out, [](const element& value) { return JsonView(value).get<std::string>(); });
+  read_all(element_at(place_), out, [](const element& value) { return view_of(value).get<std::string>(); });
 }
-void JsonView::get_to(std::map<std::string, std::vector<std::int64_t>>& out) const {
-  out.clear();
-  for (const auto& [name, list] : items()) list.get_to(out[name]);
-}
-
-Real real_of(const JsonView& value) { return real(value.element_); }
+Real real_of(const JsonView& value) { return real(element_at(value.place_)); }
 
 std::vector<Real> reals_of(const JsonView& list) {
   std::vector<Real> values;
-  read_all(list.element_, values, real);
+  read_all(element_at(list.place_), values, real);
   return values;
 }
 
@@ -161,7 +174,7 @@ JsonReader::~JsonReader() = default;
 JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
   element root;
   const simdjson::error_code error = parser_->parser.parse(text).get(root);
-  if (error == simdjson::SUCCESS) return JsonView(root);
+  if (error == simdjson::SUCCESS) return view_of(root);
   parse_json(text, origin);
   throw UsageError(fmt::format("{} is no JSON: {}", origin, simdjson::error_message(error)));
 }

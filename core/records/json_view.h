@@ -3,10 +3,7 @@
 // What is missing or of another type than asked for is a UsageError.
 #pragma once
 
-#include <simdjson.h>
-
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -14,19 +11,24 @@
 #include <utility>
 #include <vector>
 
-#include "core/array.h"
+#include "core/real.h"
 
 namespace isoline {
 
-// Valid until its reader parses the next text. Reads as `const nlohmann::json&` would.
+// Valid until its reader parses the next text. Reads as `const nlohmann::json&` would. Two words,
+// which json_view.cpp alone knows to be simdjson's place on its tape: its header is large.
 class JsonView {
  public:
-  explicit JsonView(simdjson::dom::element element) : element_(element) {}
+  struct Place {
+    const void* document;
+    std::size_t index;
+  };
+  explicit JsonView(Place place) : place_(place) {}
 
   JsonView at(std::string_view key) const;
   JsonView operator[](std::string_view key) const { return at(key); }
   bool contains(std::string_view key) const;
-  bool is_null() const { return element_.is_null(); }
+  bool is_null() const;
   std::vector<JsonView> values() const;                         // of an array
   std::vector<std::pair<std::string, JsonView>> items() const;  // of an object
   std::string text() const;                                     // as JSON, without spaces
@@ -35,10 +37,10 @@ class JsonView {
   void get_to(bool& out) const;
   void get_to(int& out) const;
   void get_to(std::int64_t& out) const;
+  void get_to(std::uint64_t& out) const;
   void get_to(std::string& out) const;
   void get_to(std::vector<std::int64_t>& out) const;
   void get_to(std::vector<std::string>& out) const;
-  void get_to(std::map<std::string, std::vector<std::int64_t>>& out) const;
 
   template <class Value>
   Value get() const {
@@ -51,7 +53,7 @@ class JsonView {
   operator Value() const { return get<Value>(); }
 
  private:
-  simdjson::dom::element element_;
+  Place place_;
 
   friend Real real_of(const JsonView& value);
   friend std::vector<Real> reals_of(const JsonView& list);

@@ -12,7 +12,7 @@
 #include <regex>
 
 #include "core/errors.h"
-#include "core/json.h"
+#include "core/files.h"
 
 namespace isoline {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/array.h"
+#include "core/real.h"
 
 namespace isoline {
 

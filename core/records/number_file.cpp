@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "core/errors.h"
-#include "core/json.h"
+#include "core/files.h"
 
 namespace isoline {
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace isoline {
@@ -18,8 +17,5 @@ struct Panel {
   std::string over = {}, divided_by = {};
   std::string quantity = {};
 };
-
-nlohmann::json to_json(const Panel& panel);
-Panel panel_from_json(const nlohmann::json& json);
 
 }  // namespace isoline

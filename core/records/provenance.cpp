@@ -5,12 +5,13 @@
 #include <sys/utsname.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
+#include <unordered_map>
 
 #include "core/decompose.h"
-#include "core/json.h"
+#include "core/digest.h"
+#include "core/records/provenance_fields.h"
 #include "isoline_build_flags.h"
 #include "isoline_build_info.h"
 
@@ -18,6 +19,16 @@ namespace isoline {
 namespace {
 
 constexpr int kHarnessRevision = 1;  // raised when the run loop or the meter changes results
+
+// Set by a program built elsewhere, before its build is read.
+struct Tree {
+  std::string commit;
+  bool is_dirty = false;
+};
+std::optional<Tree>& program_tree() {
+  static std::optional<Tree> tree;
+  return tree;
+}
 
 // The value of `key` in a file of "key<separator>value" lines, or "unknown".
 std::string value_in(const char* path, const std::string& key, char separator) {
@@ -45,8 +56,8 @@ std::string instruction_set() {
   return set;
 }
 
-Json libraries() {
-  Json versions = Json::object();
+std::map<std::string, std::string> libraries() {
+  std::map<std::string, std::string> versions;
   std::istringstream list(ISOLINE_LIBRARIES);  // "Name version;Name version"
   for (std::string library; std::getline(list, library, ';');)
     versions[library.substr(0, library.find(' '))] = library.substr(library.find(' ') + 1);
@@ -61,34 +72,73 @@ std::string system_name() {
                      kernel.release);
 }
 
-Json read_provenance() {
-  return {{"version", version()},
-          {"commit", kCommit},
-          {"dirty", kDirty},
-          {"compiler", "g++ " __VERSION__},
-          {"build_type", ISOLINE_BUILD_TYPE},
-          {"flags", ISOLINE_FLAGS},
-          {"instruction_set", instruction_set()},
-          {"processor", value_in("/proc/cpuinfo", "model name", ':')},
-          {"cores", std::thread::hardware_concurrency()},
-          {"system", system_name()},
-          {"libraries", libraries()}};
+std::shared_ptr<const Build> read_build() {
+  const auto build = std::make_shared<Build>();
+  build->version = version();
+  build->commit = kCommit;
+  build->is_dirty = kDirty;
+  if (const std::optional<Tree>& tree = program_tree()) {
+    build->isoline_commit = std::exchange(build->commit, tree->commit);
+    build->is_dirty = tree->is_dirty;
+  }
+  build->compiler = "g++ " __VERSION__;
+  build->build_type = ISOLINE_BUILD_TYPE;
+  build->flags = ISOLINE_FLAGS;
+  build->instruction_set = instruction_set();
+  build->processor = value_in("/proc/cpuinfo", "model name", ':');
+  build->cores = std::thread::hardware_concurrency();
+  build->system = system_name();
+  build->libraries = libraries();
+  return build;
 }
 
 }  // namespace
 
+Provenance::Provenance() {
+  static const auto unknown = std::make_shared<const Build>();
+  build = unknown;
+}
+
+Json to_json(const Provenance& provenance) { return Form<Provenance>::write(provenance); }
+
+// One copy of each build's part for all records that a thread reads.
+Provenance provenance_from(const JsonView& json) {
+  constexpr std::size_t kMostBuilds = 1000;
+  static thread_local std::unordered_map<std::string, std::shared_ptr<const Build>> builds;
+  std::string text;
+  Provenance provenance;
+  for (const auto& [key, value] : json.items())
+    if (key == kRunKey)
+      Form<RunProvenance>::read(value, provenance.run);
+    else
+      text += fmt::format("{}:{},", key, value.text());
+  if (builds.size() > kMostBuilds) builds.clear();
+  std::shared_ptr<const Build>& build = builds[text];
+  if (build == nullptr) {
+    const auto read = std::make_shared<Build>();
+    Form<Build>::read(json, *read);
+    build = read;
+  }
+  provenance.build = build;
+  return provenance;
+}
+
 std::string version() { return ISOLINE_VERSION; }
 
-const Json& provenance() {
-  static const Json read = read_provenance();
+const std::shared_ptr<const Build>& this_build() {
+  static const std::shared_ptr<const Build> read = read_build();
   return read;
 }
 
+void set_program_tree(std::string commit, bool is_dirty) {
+  program_tree() = {std::move(commit), is_dirty};
+}
+
 std::string build_digest(int problem_revision, int optimizer_revision) {
-  const Json& all = provenance();
+  const Build& build = *this_build();
+  const Json libraries = Form<std::map<std::string, std::string>>::write(build.libraries);
   return digest(fmt::format("{} {} {} {} {}", kHarnessRevision, problem_revision,
-                            optimizer_revision, all.at("libraries").dump(),
-                            all.at("instruction_set").get<std::string>()));
+                            optimizer_revision, libraries.dump(), build.instruction_set));
 }
 
 }  // namespace isoline

@@ -1,18 +1,69 @@
-// Where a number comes from: the program, its build and the machine.
+// Where a record comes from: the program, its build and the machine, kept once for all records of
+// one build; and the run, which is each one's own.
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace isoline {
 
 using Json = nlohmann::json;
+class JsonView;
+
+// Empty, or 0, where a record does not say. `other` holds what an older or newer version says
+// besides, a JSON object as text: it is written again as it was read.
+struct Build {
+  std::string version, commit;
+  std::optional<bool> is_dirty;
+  std::string isoline_commit;  // of Isoline itself, where the program was built elsewhere
+  std::string compiler, build_type, flags, instruction_set;
+  std::string processor;                        // its brand, by CPUID
+  std::vector<std::string> processor_features;  // by CPUID
+  std::string kernel, kernel_chosen_by;         // OpenBLAS'
+  std::map<std::string, std::int64_t> cache_bytes;  // that Eigen blocks its products by
+  std::int64_t cores = 0;
+  std::string system;
+  std::map<std::string, std::string> libraries;
+  std::string other;
+};
+
+struct RunProvenance {
+  std::string started;  // "2026-11-21T06:45:42Z"
+  std::int64_t concurrent_jobs = 0;
+  std::optional<bool> is_exclusive;
+  std::string command;
+  std::string other;
+
+  // Nothing else ran beside it, as far as it is known.
+  bool is_timed_alone() const { return is_exclusive.value_or(false) || concurrent_jobs <= 1; }
+};
+
+struct Provenance {
+  Provenance();
+  Provenance(std::shared_ptr<const Build> of, RunProvenance at)
+      : build(std::move(of)), run(std::move(at)) {}
+  explicit Provenance(Build of) : build(std::make_shared<const Build>(std::move(of))) {}
+
+  std::shared_ptr<const Build> build;  // never null; one object for all that a thread reads
+  RunProvenance run;
+};
+
+Json to_json(const Provenance& provenance);
+Provenance provenance_from(const JsonView& json);
 
 std::string version();  // "0.1.0"
 
-// Version, commit, dirty or not, compiler, flags, instruction set, processor, cores, system,
-// libraries. Read once.
-const Json& provenance();
+// Of this very program, read once.
+const std::shared_ptr<const Build>& this_build();
+
+// Of a program built elsewhere, before it reads its build: its own tree's commit is the record's,
+// and Isoline's stands beside it.
+void set_program_tree(std::string commit, bool is_dirty);
 
 // Digest of all that may change a result besides the request: the revisions of the harness and of
 // the two components, the versions of the libraries, the instruction set.

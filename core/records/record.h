@@ -9,32 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "core/array.h"
-#include "core/budget.h"
 #include "core/oracle.h"
+#include "core/real.h"
 #include "core/records/exhibit.h"
-#include "core/records/origin.h"
+#include "core/records/provenance.h"
+#include "core/records/request.h"
 #include "core/status.h"
 
 namespace isoline {
-
-// A component as asked for: its name and all its options, defaults filled in.
-struct Component {
-  std::string name;
-  Json options = Json::object();
-  std::string spec;  // "sine[xi=32]": the name and what differs from the defaults
-  int revision = 1;
-};
-
-// What was asked. Its digest is the cell.
-struct Request {
-  Component problem, optimizer;
-  std::uint64_t seed = 0;
-  Budget budget;
-  int threads = 1;
-  std::string rates;  // the file under benchmarks/rates that set options, or empty; not in the cell
-  double hard_seconds = 0;  // when it is killed; 0: the runner's own limit; not in the record
-};
 
 // The curve as columns of equal length.
 struct Curve {
@@ -94,16 +76,13 @@ struct Record {
   std::string file_name() const { return record_file_name(cell, build); }
 };
 
-std::string cell_digest(const Request& request);
-
 Json to_json(const Record& record);
 // UsageError where it is no such record; the origin is named where it is no JSON.
 Record record_from_json(const Json& json);
 Record record_from_text(const std::string& text, const std::string& origin);
 Record read_record(const std::filesystem::path& path);
 
-Json to_json(const Request& request);
-Request request_from_json(const Json& json);
+Json run_schema();  // what benchmarks/schemas/run.json holds
 
 // The record without what may differ between two runs of one build: times, memory, concurrency.
 Json without_timings(Json record);

@@ -1,67 +1,36 @@
 // Requests to JSON and back, and the digest that names a cell.
-#include "core/json.h"
-#include "core/records/record.h"
+#include "core/records/request.h"
+
+#include "core/digest.h"
+#include "core/records/request_fields.h"
 
 namespace isoline {
-namespace {
 
-Json to_json(const Component& component) {
-  return {{"name", component.name},
-          {"options", component.options},
-          {"spec", component.spec},
-          {"revision", component.revision}};
-}
-
-Component component_from(const Json& json) {
-  return {json.at("name"), json.at("options"), json.at("spec"), json.at("revision")};
-}
-
-Json to_json(const Budget& budget) {
-  Json json{{"iterations", budget.iterations},
-            {"target", json_number(budget.target)},
-            {"seconds", json_number(budget.seconds)}};
-  const bool is_bounded = budget.work < std::numeric_limits<std::int64_t>::max();
-  json["work"] = is_bounded ? Json(budget.work) : Json(nullptr);
-  return json;
-}
-
-Budget budget_from(const Json& json) {
-  Budget budget{.iterations = json.at("iterations"),
-                .seconds = real_of(json.at("seconds")),
-                .target = real_of(json.at("target"))};
-  if (!json.at("work").is_null()) budget.work = json.at("work");
-  return budget;
-}
-
-}  // namespace
-
-Json to_json(const Request& request) {
-  return {{"problem", to_json(request.problem)},
-          {"optimizer", to_json(request.optimizer)},
-          {"seed", request.seed},
-          {"budget", to_json(request.budget)},
-          {"threads", request.threads},
-          {"rates", request.rates}};
-}
-
-Request request_from_json(const Json& json) {
-  return {.problem = component_from(json.at("problem")),
-          .optimizer = component_from(json.at("optimizer")),
-          .seed = json.at("seed"),
-          .budget = budget_from(json.at("budget")),
-          .threads = json.at("threads"),
-          .rates = json.at("rates")};
-}
+bool asks_to_learn(const OptionValues& options) { return options.text("mode") == "learn"; }
 
 std::string cell_digest(const Request& request) {
   const Json asked{{"problem", request.problem.name},
-                   {"problem_options", request.problem.options},
+                   {"problem_options", to_json(request.problem.options)},
                    {"optimizer", request.optimizer.name},
-                   {"optimizer_options", request.optimizer.options},
+                   {"optimizer_options", to_json(request.optimizer.options)},
                    {"seed", request.seed},
-                   {"budget", to_json(request.budget)},
+                   {"budget", Form<Budget>::write(request.budget)},
                    {"threads", request.threads}};
   return digest(asked.dump());
+}
+
+Request named(Request request) {
+  request.cell = cell_digest(request);
+  return request;
+}
+
+Json to_json(const Request& request) { return Form<Request>::write(request); }
+
+Request request_from_json(const Json& json) {
+  JsonReader reader;
+  Request request;
+  Form<Request>::read(reader.parse(json.dump(), "a request"), request);
+  return named(std::move(request));
 }
 
 }  // namespace isoline

@@ -1,154 +1,111 @@
-// Sheets and plans to JSON and back.
+// Sheets to JSON and back.
 #include "core/records/sheet.h"
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
-#include "core/errors.h"
-#include "core/json.h"
+#include "core/digest.h"
+#include "core/records/forms.h"
 
 namespace isoline {
-namespace {
 
-constexpr const char* kSheetSchema = "isoline.component/1";
-constexpr const char* kPlanSchema = "isoline.plan/1";
-
-Json numbers(const std::vector<Real>& values) { return json_numbers(values.data(), values.size()); }
-
-std::vector<Real> reals(const Json& list) {
-  std::vector<Real> values;
-  for (const Json& value : list) values.push_back(real_of(value));
-  return values;
+void fields(Like<Panel> auto& panel, auto& field) {
+  field("title", panel.title);
+  field("kind", panel.kind,
+        R"({"enum": ["curve", "sweep", "scatter", "decades", "pictures", "series", "path"]})");
+  field("where", panel.where);
+  field("over", panel.over);
+  field("divided_by", panel.divided_by);
+  field("quantity", panel.quantity);
 }
 
-Json to_json(const Landscape& landscape) {
-  const auto size = static_cast<std::size_t>(landscape.loss.size());
-  return {{"window", landscape.window},
-          {"rows", landscape.loss.rows()},
-          {"columns", landscape.loss.cols()},
-          {"spacing", landscape.spacing},
-          {"loss", json_numbers(landscape.loss.data(), size)}};  // column major
+void fields(Like<Landscape> auto& landscape, auto& field) {
+  Index rows = landscape.loss.rows(), columns = landscape.loss.columns();
+  std::vector<Real> loss = landscape.loss.values();
+  field("window", landscape.window);
+  field("rows", rows);
+  field("columns", columns);
+  field("spacing", landscape.spacing,
+        R"({"enum": ["logarithm", "fifth root", "powers of two"]})");
+  field("loss", loss);
+  if constexpr (std::remove_cvref_t<decltype(field)>::kReads) {
+    require(rows >= 0 && columns >= 0 && static_cast<Index>(loss.size()) == rows * columns,
+            "a landscape has the wrong size");
+    landscape.loss = Grid(rows, columns, std::move(loss));
+  }
 }
 
-Landscape landscape_from(const Json& json) {
-  const std::vector<Real> values = reals(json.at("loss"));
-  const Index rows = json.at("rows"), columns = json.at("columns");
-  require(static_cast<Index>(values.size()) == rows * columns, "a landscape has the wrong size");
-  return {json.at("window"), Eigen::Map<const Matrix>(values.data(), rows, columns),
-          json.at("spacing")};
+void fields(Like<MeasuredPrice> auto& price, auto& field) {
+  constexpr const char* kPositive = R"({"minimum": 1})";
+  constexpr const char* kNotNegative = R"({"type": "number", "minimum": 0})";
+  field("oracle", price.oracle);
+  field("declared", price.declared, R"({"minimum": 0})");
+  field("price", price.price, kNotNegative);
+  field("low", price.low, kNotNegative);
+  field("high", price.high, kNotNegative);
+  field("rounds", price.rounds, kPositive);
+  field("calls", price.calls, kPositive);
 }
 
-Json to_json(const MeasuredPrices& prices) {
-  Json oracles = Json::array();
-  for (const MeasuredPrice& each : prices.oracles)
-    oracles.push_back({{"oracle", each.oracle},
-                       {"declared", each.declared},
-                       {"price", each.price},
-                       {"low", each.low},
-                       {"high", each.high},
-                       {"rounds", each.rounds},
-                       {"calls", each.calls}});
-  return {{"build", prices.build},
-          {"processor", prices.processor},
-          {"forward_seconds", prices.forward_seconds},
-          {"oracles", oracles}};
+void fields(Like<MeasuredPrices> auto& prices, auto& field) {
+  field("build", prices.build);
+  field("processor", prices.processor);
+  field("forward_seconds", prices.forward_seconds,
+        R"({"type": "number", "exclusiveMinimum": 0})");
+  field("oracles", prices.oracles);
 }
 
-MeasuredPrices prices_from(const Json& json) {
-  MeasuredPrices prices{.build = json.at("build"),
-                        .processor = json.at("processor"),
-                        .forward_seconds = json.at("forward_seconds"),
-                        .oracles = {}};
-  for (const Json& each : json.at("oracles"))
-    prices.oracles.push_back({each.at("oracle"), each.at("declared"), each.at("price"),
-                              each.at("low"), each.at("high"), each.at("rounds"),
-                              each.at("calls")});
-  return prices;
+void fields(Like<Sheet> auto& sheet, auto& field) {
+  field.constant("schema", kSheetSchema);
+  field("kind", sheet.kind, R"({"enum": ["problem", "optimizer"]})");
+  field("name", sheet.name);
+  field("spec", sheet.spec);
+  field("title", sheet.title);
+  field("formula", sheet.formula);
+  field("source", sheet.source);
+  field("note", sheet.note);
+  field("options", JsonAsText{sheet.options_text}, R"({"type": "array", "items":
+        {"type": "object", "required": ["name", "type", "default", "doc"]}})");
+  field("oracles", sheet.oracles);
+  field("privileges", sheet.privileges);
+  field("family", sheet.family);
+  field("inverse", sheet.inverse);
+  field("unknowns", sheet.unknowns);
+  field("residuals", sheet.residuals);
+  field("target", sheet.target);
+  field("truth", sheet.truth);
+  field.optional("panels", sheet.panels);
+  field.optional("landscape_x", sheet.landscape_x);
+  field.optional("landscape_y", sheet.landscape_y);
+  field.optional("prices", sheet.prices);
 }
-
-}  // namespace
 
 std::string Sheet::file_name() const {
   return fmt::format("{}-{}-{}.json", kind, name, digest(spec));
 }
 
-Json to_json(const Sheet& sheet) {
-  Json json{{"schema", kSheetSchema},
-            {"kind", sheet.kind},
-            {"name", sheet.name},
-            {"spec", sheet.spec},
-            {"title", sheet.title},
-            {"formula", sheet.formula},
-            {"source", sheet.source},
-            {"note", sheet.note},
-            {"options", Json::parse(sheet.options_text)},
-            {"oracles", sheet.oracles},
-            {"privileges", sheet.privileges},
-            {"family", sheet.family},
-            {"inverse", sheet.inverse},
-            {"unknowns", sheet.unknowns},
-            {"residuals", sheet.residuals},
-            {"target", numbers(sheet.target)},
-            {"truth", numbers(sheet.truth)}};
-  for (const Panel& panel : sheet.panels) json["panels"].push_back(to_json(panel));
-  if (sheet.landscape_x) json["landscape_x"] = to_json(*sheet.landscape_x);
-  if (sheet.landscape_y) json["landscape_y"] = to_json(*sheet.landscape_y);
-  if (sheet.prices) json["prices"] = to_json(*sheet.prices);
-  return json;
-}
+Json to_json(const Sheet& sheet) { return Form<Sheet>::write(sheet); }
 
-Sheet sheet_from_json(const Json& json) {
+Sheet sheet_from_text(const std::string& text, const std::string& origin) {
+  JsonReader reader;
+  const JsonView json = reader.parse(text, origin);
   try {
-    require(json.at("schema") == kSheetSchema, "the schema is not isoline.component/1");
-    Sheet sheet{.kind = json.at("kind"),
-                .name = json.at("name"),
-                .spec = json.at("spec"),
-                .title = json.at("title"),
-                .formula = json.at("formula"),
-                .source = json.at("source"),
-                .note = json.at("note"),
-                .options_text = json.at("options").dump(),
-                .oracles = json.at("oracles"),
-                .privileges = json.at("privileges"),
-                .family = json.at("family"),
-                .inverse = json.at("inverse"),
-                .unknowns = json.at("unknowns"),
-                .residuals = json.at("residuals"),
-                .target = reals(json.at("target")),
-                .truth = reals(json.at("truth"))};
-    for (const Json& panel : json.value("panels", Json::array()))
-      sheet.panels.push_back(panel_from_json(panel));
-    if (json.contains("landscape_x")) sheet.landscape_x = landscape_from(json["landscape_x"]);
-    if (json.contains("landscape_y")) sheet.landscape_y = landscape_from(json["landscape_y"]);
-    if (json.contains("prices")) sheet.prices = prices_from(json["prices"]);
+    Sheet sheet;
+    Form<Sheet>::read(json, sheet);
     return sheet;
-  } catch (const Json::exception& error) {
+  } catch (const UsageError& error) {
     throw UsageError(fmt::format("no {} sheet: {}", kSheetSchema, error.what()));
   }
 }
 
-Json to_json(const Plan& plan) {
-  Json cells = Json::array();
-  for (const PlannedCell& cell : plan.cells)
-    cells.push_back({{"cell", cell.cell},
-                     {"problem", cell.problem},
-                     {"optimizer", cell.optimizer},
-                     {"seed", cell.seed}});
-  return {{"schema", kPlanSchema}, {"suites", plan.suites}, {"cells", cells}};
-}
+Sheet sheet_from_json(const Json& json) { return sheet_from_text(json.dump(), "it"); }
 
-Plan plan_from_json(const Json& json) {
-  try {
-    require(json.at("schema") == kPlanSchema, "the schema is not isoline.plan/1");
-    Plan plan{.suites = json.at("suites"), .cells = {}};
-    for (const Json& cell : json.at("cells"))
-      plan.cells.push_back(
-          {cell.at("cell"), cell.at("problem"), cell.at("optimizer"), cell.at("seed")});
-    return plan;
-  } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("no {} plan: {}", kPlanSchema, error.what()));
-  }
+Json sheet_schema() {
+  Json schema = Form<Sheet>::law();
+  schema["$schema"] = kSchemaDialect;
+  schema["title"] =
+      "isoline.component/1: what a reader needs to know of a problem or an optimizer";
+  schema["definitions"]["number"] = number_definition();
+  return schema;
 }
 
 }  // namespace isoline

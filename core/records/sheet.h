@@ -1,4 +1,4 @@
-// What stands beside the records in a result folder: a sheet for each component used, and the plan.
+// What stands beside the records in a result folder: a sheet for each component used.
 //
 //   OUT/plan.json              the planned matrix, stored before the first run
 //   OUT/runs/CELL-BUILD.json   the records
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/array.h"
+#include "core/grid.h"
 #include "core/records/panel.h"
 
 namespace isoline {
@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 // The loss of a two-dimensional problem on a grid: value(i, j) at the i-th x1 and the j-th x2.
 struct Landscape {
   std::array<Real, 4> window{};  // x1 low, x1 high, x2 low, x2 high; both ends are grid points
-  Matrix loss;                   // (n1, n2)
+  Grid loss;                     // (n1, n2)
   // How its contours are spaced: "logarithm", "fifth root" or "powers of two", 2⁻⁵ to 2⁷.
   std::string spacing = "logarithm";
 };
@@ -61,20 +61,12 @@ struct Sheet {
   std::string file_name() const;
 };
 
+inline constexpr const char* kSheetSchema = "isoline.component/1";
+
 Json to_json(const Sheet& sheet);
-Sheet sheet_from_json(const Json& json);
+Sheet sheet_from_json(const Json& json);  // UsageError where it is none
+Sheet sheet_from_text(const std::string& text, const std::string& origin);
 
-// Schema isoline.plan/1: every cell ever planned in the folder, in order.
-struct PlannedCell {
-  std::string cell, problem, optimizer;  // digest and specs
-  std::uint64_t seed = 0;
-};
-struct Plan {
-  std::vector<std::string> suites;
-  std::vector<PlannedCell> cells;
-};
-
-Json to_json(const Plan& plan);
-Plan plan_from_json(const Json& json);
+Json sheet_schema();  // what benchmarks/schemas/component.json holds
 
 }  // namespace isoline

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "reports/text.h"
+#include "reports/formats/escape.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {

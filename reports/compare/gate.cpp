@@ -9,7 +9,8 @@
 
 #include "core/errors.h"
 #include "reports/compare/chaos.h"
-#include "reports/text.h"
+#include "reports/formats/escape.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {

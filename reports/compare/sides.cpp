@@ -1,6 +1,8 @@
 // Reads the two sides of a comparison: result folders, a baseline, reports.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/errors.h"
 #include "core/json.h"
 #include "reports/compare/baseline.h"
@@ -45,7 +47,7 @@ GateResult compare_reports(const Side& before, const Side& after, const GateOpti
     if (!side.is_folder()) return subjects_of_report(side.file);
     const Study study = read_study({side.path});
     return subjects_of_report(
-        parse_json(json_report(compare_optimizers(study)), side.path.string()));
+        parse_json(json_report(document_of(compare_optimizers(study))), side.path.string()));
   };
   GateResult result = compare_subjects(subjects_in(before), subjects_in(after), options);
   result.remarks.push_back("reports hold no repetitions: time is judged on record folders only");

@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "core/digest.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/threads.h"
 #include "reports/report.h"
-#include "reports/text.h"
+#include "reports/formats/escape.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
@@ -48,8 +51,7 @@ Subject subject_of(const Record& record, const BestKnown& reference) {
   subject.builds = {record.build};
   subject.seconds = record.repeat_wall_seconds;
   subject.is_nondeterministic = record.is_nondeterministic;
-  if (record.provenance.is_object() && record.provenance.contains("processor"))
-    subject.processor = record.provenance["processor"].dump();
+  subject.processor = record.provenance.build->processor;
   if (record.status == Status::inapplicable) return subject;
   subject.trace = trace_of(record);
   subject.quantities = {loss_quantity("loss", summary.loss, summary.start_loss),

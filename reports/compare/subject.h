@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/records/record.h"
-#include "reports/reached.h"
+#include "reports/read/reached.h"
 
 namespace isoline::reports {
 

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 
 namespace isoline::reports {
 namespace {
 
 // Fisher and Yates.
-void shuffle(std::vector<Real>& values, RandomStream& random) {
+void shuffle(std::vector<Real>& values, Draws& random) {
   for (std::size_t i = values.size(); i > 1; --i)
     std::swap(values[i - 1], values[static_cast<std::size_t>(random.uniform(0, Real(i)))]);
 }
@@ -48,7 +48,7 @@ void add_shifts(const std::vector<Real>& seconds, Real sides, const std::string&
   if (half == 0) return;
   const Real halves = 1 / Real(half) + 1 / Real(used - half);
   for (std::size_t split = 0; split < kSplits; ++split) {
-    RandomStream random(fnv1a(key), "report", "halves", split);
+    Draws random(fnv1a(key), "report", "halves", split);
     shuffle(logs, random);
     const auto middle = logs.begin() + static_cast<std::ptrdiff_t>(half);
     const auto end = logs.begin() + static_cast<std::ptrdiff_t>(used);

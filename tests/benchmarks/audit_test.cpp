@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/audit/audit_problems.h"
 #include "benchmarks/plan/resources.h"

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "tests/temporary_folder.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/execute.h"
@@ -31,13 +32,14 @@ Real target_of(const Problem& problem) {
 // Candidates until the problem was solved; infinite where it was not.
 Real candidates(const std::string& name, const std::string& optimizer, std::int64_t most = 20000) {
   const Catalog catalog = builtin_catalog();
-  const Component problem = complete_problem(catalog, name, Json::object());
+  const Component problem = complete_problem(catalog, name, OptionValues());
   constexpr std::int64_t kAnyWork = 10000000;  // counted in candidates here, not in work
-  const Request request{.problem = problem,
-                        .optimizer = complete_optimizer(catalog, optimizer, Json::object()),
-                        .budget = {.iterations = most,
-                                   .work = kAnyWork,
-                                   .target = target_of(make_problem(catalog, problem, 0))}};
+  const Request request =
+      named({.problem = problem,
+             .optimizer = complete_optimizer(catalog, optimizer, OptionValues()),
+             .budget = {.iterations = most,
+                        .work = kAnyWork,
+                        .target = target_of(make_problem(catalog, problem, 0))}});
   const auto trace = std::make_unique<Trace>();
   execute(catalog, request, *trace);
   const auto forwards = static_cast<Real>(trace->last.counts[static_cast<int>(Oracle::forward)]);

@@ -91,11 +91,11 @@ inline Catalog hostile_catalog() {
 }
 
 inline Request request_for(const Catalog& catalog, const std::string& problem,
-                           const Json& problem_options, const std::string& optimizer,
-                           const Json& options) {
-  return {.problem = complete_problem(catalog, problem, problem_options),
-          .optimizer = complete_optimizer(catalog, optimizer, options),
-          .budget = {.iterations = 50}};
+                           const OptionValues& problem_options, const std::string& optimizer,
+                           const OptionValues& options) {
+  return named({.problem = complete_problem(catalog, problem, problem_options),
+                .optimizer = complete_optimizer(catalog, optimizer, options),
+                .budget = {.iterations = 50}});
 }
 
 }  // namespace isoline::benchmarks

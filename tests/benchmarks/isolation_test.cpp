@@ -1,6 +1,8 @@
 // A cell that misbehaves costs that cell alone, and its record says what happened.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "benchmarks/run/runner.h"
 #include "core/clock.h"
 #include "tests/benchmarks/hostile.h"

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/resources.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/random.h"
 #include "core/records/audited.h"
@@ -69,8 +71,9 @@ void fill(const ResultFolder& folder, std::uint64_t number) {
   for (std::uint64_t cell = 0; cell < 12; ++cell) {
     if (random.uniform() < 0.4) continue;
     Record record = record_of({.seed = cell});
-    record.provenance["run"]["started"] = std::to_string(random.uniform());
-    record.provenance["processor"] = random.uniform() < 0.5 ? "one" : "another";
+    const std::string started = std::to_string(random.uniform());
+    record.provenance = Provenance(Build{.processor = random.uniform() < 0.5 ? "one" : "another"});
+    record.provenance.run.started = started;
     record.summary.wall_seconds = random.uniform();
     for (int i = 0; i < 3; ++i)  // of ten values, so that some are in several lists
       record.repeat_wall_seconds.push_back(std::floor(10 * random.uniform()) / 10);
@@ -94,7 +97,9 @@ TEST(Merge, IsAssociativeCommutativeAndIdempotentConflictsIncluded) {
   std::size_t conflicts = 0, united = 0;
   for (std::uint64_t trial = 0; trial < 8; ++trial) {
     const ResultFolder a, b, c;
-    fill(a, 3 * trial), fill(b, 3 * trial + 1), fill(c, 3 * trial + 2);
+    fill(a, 3 * trial);
+    fill(b, 3 * trial + 1);
+    fill(c, 3 * trial + 2);
     Merger merged;
     const Contents all = contents_of(merged({a.path(), b.path(), c.path()}));
     conflicts += merged.last.conflicts.size();

@@ -23,8 +23,8 @@ Record record_of(const std::string& optimizer, const std::string& option, Real v
   for (const Record& record : notebook().records) {
     const Component& used = record.request.optimizer;
     if (record.request.problem.name != "square" || used.name != optimizer) continue;
-    if (std::abs(used.options.at(option).get<Real>() - value) > 1e-15) continue;
-    if (inverse.empty() || used.options.at("inverse") == inverse) return record;
+    if (std::abs(used.options.number(option, NAN) - value) > 1e-15) continue;
+    if (inverse.empty() || used.options.text("inverse") == inverse) return record;
   }
   ADD_FAILURE() << "the suite has no " << optimizer << "[" << option << "=" << value << "]";
   return {};

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
@@ -21,14 +23,14 @@ const Catalog& catalog() {
   return all;
 }
 
-Request request_of(const std::string& problem, const Json& options) {
-  return {.problem = complete_problem(catalog(), problem, options),
-          .optimizer = complete_optimizer(catalog(), "gd", Json::object())};
+Request request_of(const std::string& problem, const OptionValues& options) {
+  return named({.problem = complete_problem(catalog(), problem, options),
+                .optimizer = complete_optimizer(catalog(), "gd", OptionValues())});
 }
 
 TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
   for (const auto& [name, options] :
-       std::vector<std::pair<std::string, Json>>{{"rosenbrock", Json::object()},
+       std::vector<std::pair<std::string, OptionValues>>{{"rosenbrock", {}},
                                                  {"poisson", {{"N", 8}}},
                                                  {"sine", {{"mode", "learn"}, {"batch", 4}}}}) {
     const Problem problem = make_problem(catalog(), request_of(name, options).problem, 0);
@@ -53,7 +55,7 @@ TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
 }
 
 TEST(Prices, OfMatricesAreLeftOutWhereOneWouldTakeTooLong) {
-  const Json grid{{"N", 64}};  // 4096 unknowns: a Jacobian of 128 MiB
+  const OptionValues grid{{"N", 64}};  // 4096 unknowns: a Jacobian of 128 MiB
   const Problem problem = make_problem(catalog(), request_of("poisson", grid).problem, 0);
   const MeasuredPrices measured = measure_prices(problem, "b");
   const auto has = [&](const char* oracle) {
@@ -97,7 +99,7 @@ TEST(Prices, AreInForwardSolves) {
 TEST(Prices, StandInTheSheetAndAreKeptByLaterRuns) {
   const TemporaryFolder folder;
   Store store(folder.path());
-  const Request request = request_of("rosenbrock", Json::object());
+  const Request request = request_of("rosenbrock", {});
   const auto written = [&] {
     write_sheets(catalog(), {request}, store);
     const Sheet sheet = problem_sheet(catalog(), request.problem);

@@ -1,5 +1,6 @@
 // What every record must hold, over every problem with every optimizer.
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "benchmarks/plan/resources.h"
@@ -25,7 +26,7 @@ const FinishedMatrix& matrix() {
   static const FinishedMatrix all = [] {
     std::vector<std::string> problems;
     for (const auto& [name, entry] : catalog().problems)
-      problems.push_back(complete_problem(catalog(), name, Json::object()).options.contains("N")
+      problems.push_back(complete_problem(catalog(), name, OptionValues()).options.contains("N")
                              ? name + "[N=8]"
                              : name);
     const Suite suite{.name = "all",

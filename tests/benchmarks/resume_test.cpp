@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/runner.h"

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "benchmarks/plan/resources.h"
 #include "core/json.h"
+#include "core/option_json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
 
@@ -79,7 +81,7 @@ TEST(Quick, GivesEachMethodAGridThatItCanTreat) {
   for (const Request& cell : cells_of("quick")) {
     if (cell.seed != 0 || !cell.problem.options.contains("N")) continue;
     const OptimizerEntry& entry = catalog().optimizers.at(cell.optimizer.name);
-    const auto side = cell.problem.options.at("N").get<Index>();
+    const auto side = std::get<Index>(cell.problem.options.at("N"));
     if (entry.family == Family::nlopt_derivative_free)
       EXPECT_EQ(side, 8) << entry.name;
     else
@@ -114,8 +116,9 @@ void expect_row_is_sound(const Json& row) {
   const std::string text =
       row.at("problem").get<std::string>() + " × " + row.at("optimizer").get<std::string>();
   const Spec problem = parse_spec(row.at("problem").get<std::string>());
-  EXPECT_NO_THROW(complete_problem(catalog(), problem.name, options_of(problem))) << text;
-  EXPECT_NO_THROW(complete_optimizer(catalog(), row.at("optimizer"), row.at("options"))) << text;
+  EXPECT_NO_THROW(complete_problem(catalog(), problem)) << text;
+  EXPECT_NO_THROW(complete_optimizer(catalog(), row.at("optimizer"),
+                                     option_values_from(row.at("options")))) << text;
   const Json& source = row.at("source");
   EXPECT_TRUE(source.contains("paper") || source.contains("grid")) << text;
   if (!source.contains("grid")) return;
@@ -155,8 +158,8 @@ TEST(Rates, GiveWayToExplicitOptions) {
                     .blocks = {{.problems = {"beale"}, .optimizers = {"gd", "gd[lr=0.5]"}}}};
   const std::vector<Request> cells = expand(catalog(), suite, Rates::builtin());
   ASSERT_EQ(cells.size(), 2U);
-  EXPECT_NE(cells[0].optimizer.options.at("rate"), 0.5);
-  EXPECT_EQ(cells[1].optimizer.options.at("rate"), 0.5);
+  EXPECT_NE(cells[0].optimizer.options.at("rate"), OptionValue(0.5));
+  EXPECT_EQ(cells[1].optimizer.options.at("rate"), OptionValue(0.5));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // A problem and an optimizer that somebody else wrote, added to the catalog and nothing else: they
 // are covered everywhere by being there.
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/run/preview.h"
@@ -85,7 +86,7 @@ TEST(ThirdParty, ComponentsArePlannedRunAndReportedLikeAllOthers) {
   }
   EXPECT_EQ(theirs, 3U);
   matrix.store.plan("extended", cells);
-  const std::string page = markdown_report(compare_optimizers(read_study({matrix.folder.path()})));
+  const std::string page = markdown_report(document_of(compare_optimizers(read_study({matrix.folder.path()}))));
   for (const char* name : {"twist", "sign-descent"})
     EXPECT_NE(page.find(name), std::string::npos) << name;
 }
@@ -107,9 +108,9 @@ TEST(ThirdParty, SheetsOfEveryComponentConformToTheSchema) {
     EXPECT_EQ(to_json(sheet_from_json(json)), json) << sheet.name;
   };
   for (const std::string& name : catalog.problems.names())
-    expect_sound(problem_sheet(catalog, complete_problem(catalog, name, Json::object())));
+    expect_sound(problem_sheet(catalog, complete_problem(catalog, name, OptionValues())));
   for (const std::string& name : catalog.optimizers.names())
-    expect_sound(optimizer_sheet(catalog, complete_optimizer(catalog, name, Json::object())));
+    expect_sound(optimizer_sheet(catalog, complete_optimizer(catalog, name, OptionValues())));
 }
 
 TEST(ThirdParty, APlanConformsToTheSchemaAndKeepsEarlierCells) {

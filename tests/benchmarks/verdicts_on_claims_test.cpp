@@ -3,11 +3,12 @@
 // labels permuted, which a claim that names an optimizer must not survive.
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <ranges>
 
 #include "benchmarks/plan/claim_cells.h"
 #include "core/random.h"
-#include "reports/claims/claims.h"
+#include "reports/report.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {
@@ -41,7 +42,7 @@ std::vector<Record> run_learned() {
   std::erase_if(requests, [&](const Request& request) {
     return request.budget.iterations < 2000 || request.rates == "learn-tuned.json" ||
            request.problem.spec.find("phi") != std::string::npos ||
-           request.problem.options.value("xi", 1.0) > 32;
+           request.problem.options.number("xi", 1) > 32;
   });
   return run_of(requests);
 }

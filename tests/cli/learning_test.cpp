@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/files.h"
 #include "core/records/number_file.h"
 #include "tests/cli/shell.h"
 

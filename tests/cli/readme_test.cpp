@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "core/files.h"
 #include "problems/conformance.h"
 #include "tests/benchmarks/matrix.h"
 #include "tests/cli/readme_examples.h"
@@ -123,7 +124,7 @@ TEST(ReadmeExamples, TheProblemHoldsWhatEveryProblemMust) {
   const Catalog catalog = catalog_with_readme_examples();
   for (const std::string& name : readme_problems()) {
     const Problem problem =
-        make_problem(catalog, complete_problem(catalog, name, Json::object()), 0);
+        make_problem(catalog, complete_problem(catalog, name, OptionValues()), 0);
     RandomStream stream(0, name, "check");
     for (const Finding& finding : examine(problem, stream))
       EXPECT_TRUE(finding.holds()) << name << ": " << finding.property << " " << finding.figure;

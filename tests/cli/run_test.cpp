@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/files.h"
 #include "tests/cli/shell.h"
 
 namespace isoline::benchmarks {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/record.h"
 #include "tests/temporary_folder.h"

@@ -1,6 +1,8 @@
 // Help, versions, and what the command line says to a user who is wrong.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/cli/shell.h"
 
 namespace isoline::benchmarks {

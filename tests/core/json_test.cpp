@@ -8,7 +8,9 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "core/digest.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {

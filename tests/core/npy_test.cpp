@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/number_file.h"
 #include "tests/temporary_folder.h"

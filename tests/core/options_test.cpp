@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "core/option_json.h"
 
 namespace isoline {
 namespace {
@@ -21,11 +24,11 @@ void fields(Sample& o, auto& field) {
   field("form", o.form, Choices{"code", "paper"}, "a choice");
 }
 
-Json complete(const Json& given) {
+OptionValues complete(const OptionValues& given) {
   return complete_options(option_table<Sample>(), "sample", given);
 }
 
-std::string complaint(const Json& given) {
+std::string complaint(const OptionValues& given) {
   try {
     complete(given);
   } catch (const UsageError& error) {
@@ -35,8 +38,8 @@ std::string complaint(const Json& given) {
 }
 
 TEST(Options, DefaultsAreFilledIn) {
-  EXPECT_EQ(complete(Json::object()),
-            Json({{"rate", 0.5}, {"count", 3}, {"bold", false}, {"form", "code"}}));
+  EXPECT_EQ(complete({}),
+            OptionValues({{"rate", 0.5}, {"count", 3}, {"bold", false}, {"form", "code"}}));
 }
 
 TEST(Options, TextAndNumbersMeanTheSame) {
@@ -44,7 +47,7 @@ TEST(Options, TextAndNumbersMeanTheSame) {
             complete({{"rate", 1e-3}, {"count", 7}, {"bold", true}}));
 }
 
-TEST(Options, LearningRateIsAnAliasOfRate) { EXPECT_EQ(complete({{"lr", 0.25}}).at("rate"), 0.25); }
+TEST(Options, LearningRateIsAnAliasOfRate) { EXPECT_EQ(complete({{"lr", 0.25}}).number("rate", 0), 0.25); }
 
 TEST(Options, TheStructIsReadBack) {
   const auto sample = read_options<Sample>(complete({{"rate", 2}, {"form", "paper"}}));
@@ -65,9 +68,32 @@ TEST(Options, TheLawAndWhatWasGivenAreNamed) {
   EXPECT_EQ(complaint({{"rte", 1}}), "sample: unknown option 'rte'; did you mean 'rate'?");
 }
 
+TEST(Options, AreEqualInWhateverOrderTheyWereGiven) {
+  OptionValues one{{"b", 2}, {"a", 1.5}};
+  EXPECT_EQ(one, OptionValues({{"a", 1.5}, {"b", 2}}));
+  EXPECT_NE(one, OptionValues({{"a", 1.5}, {"b", 2.0}}));  // a type is part of the value
+  one.set("b", 3);
+  one.erase("a");
+  EXPECT_EQ(one, OptionValues({{"b", 3}}));
+}
+
+TEST(Options, SurviveTheRoundTripThroughJson) {
+  const OptionValues all{{"rate", 1e-3},
+                         {"whole", 2.0},
+                         {"count", 7},
+                         {"bold", true},
+                         {"form", "paper"},
+                         {"least", -INFINITY}};
+  const Json json = to_json(all);
+  EXPECT_EQ(json.dump(),
+            R"({"bold":true,"count":7,"form":"paper","least":"-inf","rate":0.001,"whole":2.0})");
+  EXPECT_EQ(to_json(option_values_from(Json::parse(json.dump()))), json);
+  EXPECT_THROW(option_values_from(Json::parse(R"({"a": [1]})")), UsageError);
+}
+
 TEST(Options, ShortSpecsShowWhatDiffers) {
   const OptionTable table = option_table<Sample>();
-  EXPECT_EQ(short_spec(table, "sample", complete(Json::object())), "sample");
+  EXPECT_EQ(short_spec(table, "sample", complete({})), "sample");
   EXPECT_EQ(short_spec(table, "sample", complete({{"rate", 1e-3}, {"bold", true}})),
             "sample[rate=0.001,bold=true]");
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 Record sample() {
   Record record{.cell = "0123456789abcdef", .build = "fedcba9876543210"};
-  record.request = {.problem = {"square", Json::object(), "square", 1},
+  record.request = {.problem = {"square", {}, "square", 1},
                     .optimizer = {"gd", {{"rate", 0.1}}, "gd[rate=0.1]", 2},
                     .seed = 7};
   record.status = Status::diverged;
@@ -34,7 +35,8 @@ Record sample() {
   record.hits = Hits{{1, 0.1}, {0, -1}, {0, -1}, {0, -1}, {{"forward", {0, -1}}}, {0, NAN}};
   record.trajectory = Trajectory{{{1, 2}, {3, 4}}, {{1}, {-INFINITY}}};
   record.repeat_wall_seconds = {0.5};
-  record.provenance = {{"version", "0"}, {"run", {{"concurrent_jobs", 2}}}};
+  record.provenance = Provenance(Build{.version = "0"});
+  record.provenance.run.concurrent_jobs = 2;
   return record;
 }
 
@@ -61,17 +63,43 @@ TEST(Record, WhatIsNoRecordIsAUsageError) {
   EXPECT_THROW(record_from_json(json), UsageError);
 }
 
-TEST(Provenance, IsSharedInMemoryByTheRecordsOfOneBuildUntilOneIsChanged) {
-  Record first = record_from_json(to_json(sample()));
-  Json other = to_json(sample());
-  other["provenance"]["run"]["concurrent_jobs"] = 5;
-  const Record second = record_from_json(other);
-  EXPECT_EQ(first.provenance.find("version"), second.provenance.find("version"));
-  EXPECT_EQ(second.provenance["run"]["concurrent_jobs"], 5);
-  first.provenance["version"] = "1";
-  EXPECT_EQ(first.provenance["version"], "1");
-  EXPECT_EQ(second.provenance["version"], "0");
-  EXPECT_EQ(first.provenance["run"]["concurrent_jobs"], 2);
+TEST(Provenance, IsSharedInMemoryByTheRecordsOfOneBuild) {
+  Json json = to_json(sample());
+  const Record first = record_from_json(json);
+  json["provenance"]["run"]["concurrent_jobs"] = 5;
+  const Record second = record_from_json(json);
+  json["provenance"]["commit"] = "abc";
+  const Record third = record_from_json(json);
+  EXPECT_EQ(first.provenance.build, second.provenance.build);
+  EXPECT_NE(first.provenance.build, third.provenance.build);
+  EXPECT_EQ(third.provenance.build->commit, "abc");
+  EXPECT_EQ(first.provenance.run.concurrent_jobs, 2);
+  EXPECT_EQ(second.provenance.run.concurrent_jobs, 5);
+}
+
+TEST(Provenance, WhatAnotherVersionSaysBesidesSurvives) {
+  Json json = to_json(sample());
+  json["provenance"]["host"] = {{"load", 1.25}};
+  json["provenance"]["run"]["queue"] = "night";
+  EXPECT_EQ(to_json(record_from_json(json)), json);
+}
+
+TEST(Provenance, OfAProgramThatSaysNothingIsEmpty) {
+  Json json = to_json(sample());
+  json["provenance"] = Json::object();
+  const Record record = record_from_json(json);
+  EXPECT_EQ(record.provenance.build->version, "");
+  EXPECT_FALSE(record.provenance.build->is_dirty.has_value());
+  EXPECT_EQ(to_json(record), json);
+}
+
+TEST(Provenance, ARunIsTimedAloneWhereNothingRanBesideIt) {
+  RunProvenance run;
+  EXPECT_TRUE(run.is_timed_alone());  // as far as it is known
+  run.concurrent_jobs = 4;
+  EXPECT_FALSE(run.is_timed_alone());
+  run.is_exclusive = true;
+  EXPECT_TRUE(run.is_timed_alone());
 }
 
 TEST(Record, TimesAreLeftOutOfComparisons) {
@@ -81,7 +109,7 @@ TEST(Record, TimesAreLeftOutOfComparisons) {
   other.curve.wall_seconds = {0, 9};
   other.hits->wall_seconds = {1, NAN};
   other.repeat_wall_seconds = {9, 10};
-  other.provenance["run"]["concurrent_jobs"] = 1;
+  other.provenance.run.concurrent_jobs = 1;
   EXPECT_EQ(without_timings(to_json(other)), without_timings(to_json(sample())));
   other.curve.loss[0] = std::nextafter(1, 2);
   EXPECT_NE(without_timings(to_json(other)), without_timings(to_json(sample())));
@@ -96,8 +124,8 @@ TEST(Cell, DependsOnAllThatIsAskedAndNothingElse) {
   for (const auto& change : std::vector<std::function<void(Request&)>>{
            [](Request& r) { r.seed = 8; }, [](Request& r) { r.threads = 2; },
            [](Request& r) { r.budget.work = 5; }, [](Request& r) { r.budget.target = 0; },
-           [](Request& r) { r.problem.options["n"] = 1; },
-           [](Request& r) { r.optimizer.options["rate"] = 0.2; }}) {
+           [](Request& r) { r.problem.options.set("n", Index{1}); },
+           [](Request& r) { r.optimizer.options.set("rate", 0.2); }}) {
     Request changed = asked;
     change(changed);
     EXPECT_NE(cell_digest(changed), cell_digest(asked));

@@ -36,7 +36,7 @@ bool transforms(const std::string& problem) { return problem == "poisson" || pro
 
 std::int64_t allocations_of_steps(const Problem& problem, const std::string& spec) {
   const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
-  const Json options = options_of_spec(entry, spec);
+  const OptionValues options = options_of_spec(entry, spec);
   const auto method = entry.make(options, optimizers());
   const auto trace = std::make_unique<Trace>();
   Meter meter(problem, iterations(1000), needs_of(entry, options, problem), *trace);
@@ -55,7 +55,7 @@ TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
   register_problems(problems);
   for (const auto& [problem_name, problem_entry] : problems) {
     if (transforms(problem_name)) continue;
-    const Json options = complete_options(problem_entry.options, problem_name, Json::object());
+    const OptionValues options = complete_options(problem_entry.options, problem_name, OptionValues());
     const Problem problem = problem_entry.make(options, Draw(0, problem_name));
     for (const auto& [name, entry] : optimizers()) {
       if (entry.family != Family::first_order) continue;

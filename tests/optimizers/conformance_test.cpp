@@ -1,6 +1,7 @@
 // What every optimizer must hold, over the registry.
 #include <gtest/gtest.h>
 
+
 #include "run.h"
 #include "trial_problems.h"
 
@@ -117,7 +118,7 @@ OracleSet without(OracleSet needs, std::size_t kind) {
 }
 
 void expect_refusals(const Problem& problem, const OptimizerEntry& entry) {
-  const Json options = options_of_spec(entry, entry.name);
+  const OptionValues options = options_of_spec(entry, entry.name);
   const OracleSet needs = needs_of(entry, options, problem);
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     if (!needs.contains(static_cast<Oracle>(kind))) continue;

@@ -2,6 +2,7 @@
 // bit.
 #include <gtest/gtest.h>
 
+
 #include "run.h"
 #include "trial_problems.h"
 
@@ -13,7 +14,7 @@ namespace {
 struct Ongoing {
   const Problem& problem;
   const OptimizerEntry& entry;
-  Json options = options_of_spec(entry, entry.name);
+  OptionValues options = options_of_spec(entry, entry.name);
   std::unique_ptr<Trace> trace = std::make_unique<Trace>();
   std::unique_ptr<Optimizer> method = entry.make(options, optimizers());
   Meter meter{problem, iterations(1000), needs_of(entry, options, problem), *trace};
@@ -56,7 +57,7 @@ void expect_same_after_restoring(const Problem& problem, const OptimizerEntry& e
 
 void expect_same_for_every_method(const Problem& problem) {
   for (const auto& [name, entry] : optimizers()) {
-    const Json options = options_of_spec(entry, name);
+    const OptionValues options = options_of_spec(entry, name);
     if (!why_inapplicable(entry, options, problem).empty()) continue;
     // A library keeps its loop, and with it its state: what is stopped there starts anew.
     if (entry.make(options, optimizers())->reports_iterations()) continue;

@@ -1,6 +1,7 @@
 // First steps of the gradient rules, worked by hand from their formulas, ∇L = (4, −0.5) throughout.
 #include <gtest/gtest.h>
 
+
 #include "run.h"
 
 namespace isoline::optimizers {
@@ -66,8 +67,8 @@ TEST(Rules, FirstStepOfAdadeltaIsMadeByEpsilon) {
 
 TEST(Rules, DefaultsAreThoseOfPyTorch) {
   const auto standard = [](const std::string& name, const char* option) {
-    const Json options = complete_options(optimizers().at(name).options, name, Json::object());
-    return options.at(option).get<Real>();
+    const OptionValues options = complete_options(optimizers().at(name).options, name, OptionValues());
+    return std::get<Real>(options.at(option));
   };
   EXPECT_EQ(standard("adam", "epsilon"), 1e-8);
   EXPECT_EQ(standard("adam", "beta2"), 0.999);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -46,13 +45,13 @@ struct Outcome {
   Status status = Status::running;
 };
 
-inline Json options_of_spec(const OptimizerEntry& entry, const std::string& text) {
+inline OptionValues options_of_spec(const OptimizerEntry& entry, const std::string& text) {
   return complete_options(entry.options, entry.name, options_of(parse_spec(text)));
 }
 
 inline Outcome run(const Problem& problem, const std::string& spec, const Budget& budget) {
   const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
-  const Json options = options_of_spec(entry, spec);
+  const OptionValues options = options_of_spec(entry, spec);
   const auto method = entry.make(options, optimizers());
   Outcome result;
   result.theta = problem.start();

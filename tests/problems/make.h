@@ -1,8 +1,6 @@
 // A problem from its spec, as the command line makes it.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "core/spec.h"
 #include "problems/problem.h"
 

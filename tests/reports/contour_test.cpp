@@ -1,5 +1,5 @@
 // Marching squares on shapes whose isolines are known.
-#include "reports/html/contour.h"
+#include "reports/page/contour.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace isoline::reports {
 namespace {
 
 Landscape sampled(int n, const std::function<Real(Real, Real)>& loss) {
-  Landscape landscape{{-2, 2, -2, 2}, Matrix(n, n)};
+  Landscape landscape{{-2, 2, -2, 2}, Grid(n, n)};
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
       landscape.loss(i, j) = loss(-2 + 4.0 * i / (n - 1), -2 + 4.0 * j / (n - 1));
@@ -82,10 +82,10 @@ TEST(Contour, LevelsAreThoseOfTheFigures) {
 // The isoline L = 2⁻⁵ of x1² + x2² is a circle of radius 0.1768, a tenth of the grid's spacing from
 // a corner of it; cubic refinement is exact for quadratics, its chords are not: hence 2 %.
 TEST(Contours, ASmallCircleOfACoarseGridIsRound) {
-  Landscape landscape{{-2, 2, -2, 2}, Matrix(33, 33), "powers of two"};
-  const Vector at = Vector::LinSpaced(33, -2, 2);
+  Landscape landscape{{-2, 2, -2, 2}, Grid(33, 33), "powers of two"};
+  const auto at = [](Index i) { return -2 + static_cast<Real>(i) / 8; };
   for (Index j = 0; j < 33; ++j)
-    for (Index i = 0; i < 33; ++i) landscape.loss(i, j) = at[i] * at[i] + at[j] * at[j];
+    for (Index i = 0; i < 33; ++i) landscape.loss(i, j) = at(i) * at(i) + at(j) * at(j);
   const Contour smallest = contours(landscape).front();
   ASSERT_EQ(smallest.lines.size(), 1U);
   for (const Point& p : smallest.lines[0])

@@ -1,12 +1,13 @@
 // The papers' figures and the tables of learned problems, from records made by hand.
-#include "reports/figures/figures.h"
+#include "reports/sections/figures.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
+#include "core/digest.h"
 #include "core/json.h"
-#include "reports/learned.h"
+#include "reports/report.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -25,6 +26,7 @@ Record learned(const Learned& given) {
   Record record = record_of({.problem = spec, .optimizer = given.optimizer, .seed = given.seed});
   record.request.problem.name = "sine";
   record.request.problem.options = {{"mode", "learn"}, {"xi", given.xi}, {"phi", 45}};
+  record.request.problem.is_learned = true;
   record.curve.x_error.assign(record.curve.iteration.size(), given.x_error);
   record.summary.x_error = given.x_error;
   record.summary.loss = given.loss;
@@ -89,9 +91,9 @@ TEST_F(Figures, CurveTakesOnlyTheProblemsThatItsPanelWants) {
 TEST_F(Figures, ScatterAndDecadesReadTheSamples) {
   Record record = learned({.optimizer = "sip"});
   record.exhibit = Exhibit{.grid = 0, .target = {}, .x = {}, .truth = {}};
-  record.exhibit->target = Matrix::Constant(1, 6, 0.02);
-  record.exhibit->truth = Vector::LinSpaced(6, -5, 0).transpose();
-  record.exhibit->x = record.exhibit->truth.array() + 0.5;
+  record.exhibit->target = Grid(1, 6, std::vector<Real>(6, 0.02));
+  record.exhibit->truth = Grid(1, 6, {-5, -4, -3, -2, -1, 0});
+  record.exhibit->x = Grid(1, 6, {-4.5, -3.5, -2.5, -1.5, -0.5, 0.5});
   const auto scatter = drawn({record}, {.title = "2", .kind = "scatter"});
   ASSERT_EQ(scatter.size(), 1U);
   EXPECT_EQ(scatter[0].lines[0].x.size(), 6U);
@@ -103,9 +105,9 @@ TEST_F(Figures, ScatterAndDecadesReadTheSamples) {
 TEST_F(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   Record record = learned({.optimizer = "sip"});
   Exhibit exhibit{.grid = 2, .target = {}, .x = {}, .truth = {}};
-  exhibit.target = Eigen::Vector4d(1, 2, 3, 4);  // columns of the grid
-  exhibit.x = Eigen::Vector4d(5, 6, 7, 8);
-  exhibit.truth = Eigen::Vector4d(9, 10, 11, 12);
+  exhibit.target = Grid(4, 1, {1, 2, 3, 4});  // columns of the grid
+  exhibit.x = Grid(4, 1, {5, 6, 7, 8});
+  exhibit.truth = Grid(4, 1, {9, 10, 11, 12});
   record.exhibit = exhibit;
   folder.add(record);
   write_pictures(exhibit, (folder.path() / "runs" / record.file_name()).replace_extension(".npy"));
@@ -124,12 +126,12 @@ TEST_F(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
       learned({.xi = 32, .optimizer = "sip", .x_error = 1, .loss = 5}),
       learned({.xi = 32, .optimizer = "adam", .x_error = 2, .loss = 3})};
   drawn(records, {.title = "5b", .kind = "curve"});
-  const auto all = learned_problems(comparison);
+  const std::vector<Table> all = learned_section(comparison).tables;
   ASSERT_EQ(all.size(), 2U);
-  EXPECT_FALSE(all[0].ranks_differ) << all[0].reading;
-  EXPECT_TRUE(all[1].ranks_differ) << all[1].reading;
-  EXPECT_NE(learned_markdown(comparison).find("rank methods differently"), std::string::npos);
-  EXPECT_NE(learned_html(comparison).find("rank methods differently"), std::string::npos);
+  EXPECT_NE(all[0].reading.find("sip has both the least error"), std::string::npos);
+  EXPECT_NE(all[1].reading.find("rank methods differently"), std::string::npos);
+  EXPECT_NE(markdown_report(document_of(comparison)).find(all[1].reading.substr(0, 40)),
+            std::string::npos);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/files.h"
 #include "core/json.h"
 #include "core/ladder.h"
 
@@ -75,8 +76,8 @@ Record record_of(const PlainRun& run) {
   Record record;
   record.request.problem = {.name = name_in(run.problem), .spec = run.problem};
   record.request.optimizer = {.name = name_in(run.optimizer), .spec = run.optimizer};
-  record.request.problem.options["spec"] = run.problem;  // tells the cells apart
-  record.request.optimizer.options["spec"] = run.optimizer;
+  record.request.problem.options.set("spec", run.problem);  // tells the cells apart
+  record.request.optimizer.options.set("spec", run.optimizer);
   record.request.seed = run.seed;
   record.cell = cell_digest(record.request);
   record.build = run.build;
@@ -93,7 +94,8 @@ Record record_of(const PlainRun& run) {
                     .best_loss = has_curve ? record.curve.loss.back() : NAN,
                     .start_x_error = 1,
                     .x_error = has_curve ? record.curve.x_error.back() : NAN};
-  record.provenance = {{"commit", "abc"}, {"run", {{"started", run.started}}}};
+  record.provenance = Provenance(Build{.commit = "abc"});
+  record.provenance.run.started = run.started;
   return record;
 }
 

@@ -1,5 +1,5 @@
 // Who is ahead and by how much, against counts by hand.
-#include "reports/statistics/lead.h"
+#include "reports/read/leaders.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "core/digest.h"
 #include "core/json.h"
 #include "core/ladder.h"
 #include "tests/reports/fixture.h"
@@ -132,25 +134,27 @@ void fail_some(Record& r, const Kind& kind) {
   if (kind.is_privileged) r.privileges = {name == "newton" ? "exact Hessian" : "exact inverse"};
 }
 
-Json provenance() {
-  return {{"version", "0.1.0"},
-          {"commit", "2963533f00dbabe"},
-          {"dirty", true},
-          {"compiler", "GNU 12.2.0"},
-          {"flags", "-O3 -DNDEBUG -march=native"},
-          {"build_type", "Release"},
-          {"march", "native"},
-          {"processor", "Intel(R) Xeon(R) Processor @ 2.70GHz"},
-          {"cores", 2},
-          {"system", "Linux 6.1.0 x86_64"},
-          {"libraries",
-           {{"Eigen", "3.4.0"}, {"Ceres", "2.1.0"}, {"NLopt", "2.7.1"}, {"OpenBLAS", "0.3.21"}}},
-          {"run",
-           {{"started", "2026-11-21T06:45:42Z"},
-            {"concurrent_jobs", 2},
-            {"exclusive", false},
-            {"command", "./isoline run --suite inverse --seeds 5 --jobs 2"},
-            {"host_load", 1.25}}}};
+Provenance provenance() {
+  Provenance all(Build{.version = "0.1.0",
+                       .commit = "2963533f00dbabe",
+                       .is_dirty = true,
+                       .compiler = "GNU 12.2.0",
+                       .build_type = "Release",
+                       .flags = "-O3 -DNDEBUG -march=native",
+                       .processor = "Intel(R) Xeon(R) Processor @ 2.70GHz",
+                       .cores = 2,
+                       .system = "Linux 6.1.0 x86_64",
+                       .libraries = {{"Eigen", "3.4.0"},
+                                     {"Ceres", "2.1.0"},
+                                     {"NLopt", "2.7.1"},
+                                     {"OpenBLAS", "0.3.21"}},
+                       .other = R"({"march": "native"})"});
+  all.run = {.started = "2026-11-21T06:45:42Z",
+             .concurrent_jobs = 2,
+             .is_exclusive = false,
+             .command = "./isoline run --suite inverse --seeds 5 --jobs 2",
+             .other = R"({"host_load": 1.25})"};
+  return all;
 }
 
 Sheet sheet_of(const std::string& kind, const std::string& spec) {

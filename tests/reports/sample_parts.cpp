@@ -10,7 +10,7 @@ namespace {
 
 Landscape grid(std::array<Real, 4> window, const std::function<Real(Real, Real)>& loss) {
   constexpr int kGrid = 97;
-  Landscape landscape{window, Matrix(kGrid, kGrid)};
+  Landscape landscape{window, Grid(kGrid, kGrid)};
   for (int j = 0; j < kGrid; ++j)
     for (int i = 0; i < kGrid; ++i)
       landscape.loss(i, j) = loss(window[0] + (window[1] - window[0]) * i / (kGrid - 1),

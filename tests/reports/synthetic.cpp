@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/ladder.h"
 #include "core/random.h"
@@ -32,7 +33,9 @@ Place place_of(const SyntheticSize& size, std::size_t index) {
 
 Component component(const char* name, const char* option, std::size_t value) {
   return {.name = name,
-          .options = {{option, value}, {"mode", "direct"}, {"network", "mlp[layers=32-64-32]"}},
+          .options = {{option, static_cast<Index>(value)},
+                      {"mode", "direct"},
+                      {"network", "mlp[layers=32-64-32]"}},
           .spec = fmt::format("{}[{}={}]", name, option, value)};
 }
 
@@ -159,31 +162,31 @@ void fail_some(Record& record, const SyntheticSize& size, std::size_t index) {
   record.is_nondeterministic = fate.status == Status::timeout;
 }
 
-Json provenance_of(std::size_t index) {
-  return {{"version", "0.1.0"},
-          {"commit", "50abae804b9a"},
-          {"dirty", false},
-          {"compiler", "g++ 12.2.0"},
-          {"build_type", "Release"},
-          {"flags", "-O3 -DNDEBUG -march=native"},
-          {"instruction_set", "native avx2 fma avx512f"},
-          {"processor", "Intel(R) Xeon(R) Processor @ 2.70GHz"},
-          {"cores", 16},
-          {"system", "Debian GNU/Linux 12 (bookworm), Linux 6.1.0-28-amd64"},
-          {"libraries",
-           {{"Ceres", "2.1.0"},
-            {"Eigen", "3.4.0"},
-            {"NLopt", "2.7.1"},
-            {"OpenBLAS", "0.3.21 Cooperlake"},
-            {"fmt", "9.1.0"},
-            {"nlohmann-json", "3.11.2"},
-            {"oneDNN", "2.6.3"}}},
-          {"run",
-           {{"command", "isoline run synthetic --jobs 16 --shard 3/8 --out results/synthetic"},
-            {"concurrent_jobs", 16},
-            {"exclusive", false},
-            {"started", fmt::format("2026-01-{:02}T{:02}:{:02}:{:02}Z", 1 + index / 86400 % 28,
-                                    index / 3600 % 24, index / 60 % 60, index % 60)}}}};
+Provenance provenance_of(std::size_t index) {
+  static const auto build = std::make_shared<const Build>(
+      Build{.version = "0.1.0",
+            .commit = "50abae804b9a",
+            .is_dirty = false,
+            .compiler = "g++ 12.2.0",
+            .build_type = "Release",
+            .flags = "-O3 -DNDEBUG -march=native",
+            .instruction_set = "native avx2 fma avx512f",
+            .processor = "Intel(R) Xeon(R) Processor @ 2.70GHz",
+            .cores = 16,
+            .system = "Debian GNU/Linux 12 (bookworm), Linux 6.1.0-28-amd64",
+            .libraries = {{"Ceres", "2.1.0"},
+                          {"Eigen", "3.4.0"},
+                          {"NLopt", "2.7.1"},
+                          {"OpenBLAS", "0.3.21 Cooperlake"},
+                          {"fmt", "9.1.0"},
+                          {"nlohmann-json", "3.11.2"},
+                          {"oneDNN", "2.6.3"}}});
+  return {build,
+          {.started = fmt::format("2026-01-{:02}T{:02}:{:02}:{:02}Z", 1 + index / 86400 % 28,
+                                  index / 3600 % 24, index / 60 % 60, index % 60),
+           .concurrent_jobs = 16,
+           .is_exclusive = false,
+           .command = "isoline run synthetic --jobs 16 --shard 3/8 --out results/synthetic"}};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -77,9 +78,9 @@ TEST(Components, HaveATitleAFormulaASourceAndDocumentedOptions) {
 
 TEST(Components, DefaultsAreWithinTheirOwnRanges) {
   for (const auto& [name, entry] : catalog().problems)
-    EXPECT_NO_THROW(complete_problem(catalog(), name, Json::object())) << name;
+    EXPECT_NO_THROW(complete_problem(catalog(), name, OptionValues())) << name;
   for (const auto& [name, entry] : catalog().optimizers) {
-    const Json defaults = complete_optimizer(catalog(), name, Json::object()).options;
+    const OptionValues defaults = complete_optimizer(catalog(), name, OptionValues()).options;
     EXPECT_NO_THROW(complete_optimizer(catalog(), name, defaults)) << name;
   }
 }

@@ -1,0 +1,46 @@
+// Plans to JSON and back.
+#include "core/records/plan.h"
+
+#include <fmt/format.h>
+
+#include "core/records/forms.h"
+
+namespace isoline {
+
+void fields(Like<PlannedCell> auto& cell, auto& field) {
+  field("cell", cell.cell, R"({"pattern": "^[0-9a-f]{16}$"})");
+  field("problem", cell.problem);
+  field("optimizer", cell.optimizer);
+  field("seed", cell.seed);
+}
+
+void fields(Like<Plan> auto& plan, auto& field) {
+  field.constant("schema", kPlanSchema);
+  field("suites", plan.suites);
+  field("cells", plan.cells);
+}
+
+Json to_json(const Plan& plan) { return Form<Plan>::write(plan); }
+
+Plan plan_from_text(const std::string& text, const std::string& origin) {
+  JsonReader reader;
+  const JsonView json = reader.parse(text, origin);
+  try {
+    Plan plan;
+    Form<Plan>::read(json, plan);
+    return plan;
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("no {} plan: {}", kPlanSchema, error.what()));
+  }
+}
+
+Plan plan_from_json(const Json& json) { return plan_from_text(json.dump(), "it"); }
+
+Json plan_schema() {
+  Json schema = Form<Plan>::law();
+  schema["$schema"] = kSchemaDialect;
+  schema["title"] = "isoline.plan/1: every cell ever planned in a result folder";
+  return schema;
+}
+
+}  // namespace isoline

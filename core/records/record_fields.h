@@ -1,0 +1,90 @@
+// The members of a record, as they stand in its file: a new one costs its line in record.h, its
+// line here, the place that fills it, and the schema renewed (tests/core/run_schema_test.cpp).
+#pragma once
+
+#include "core/records/provenance_fields.h"
+#include "core/records/record.h"
+#include "core/records/request_fields.h"
+
+namespace isoline {
+
+inline constexpr const char* kDigestLaw = R"({"pattern": "^[0-9a-f]{16}$"})";
+
+void fields(Like<Curve> auto& curve, auto& field) {
+  field("iteration", curve.iteration);
+  field("work", curve.work);
+  field("counts", curve.counts);
+  field("wall_seconds", curve.wall_seconds);
+  field("processor_seconds", curve.processor_seconds);
+  field("loss", curve.loss);
+  field("x_error", curve.x_error);
+  field("gradient_norm", curve.gradient_norm);
+  field("step_norm", curve.step_norm);
+  field.optional("batch_loss", curve.batch_loss);
+  field.optional("batch_x_error", curve.batch_x_error);
+}
+
+void fields(Like<Hits> auto& hits, auto& field) {
+  field("target", hits.target);
+  field("iteration", hits.iteration);
+  field("work", hits.work);
+  field("forwards", hits.forwards);
+  field.optional("counts", hits.counts,
+                 R"({"description": "By oracle, -1 where never reached; older records lack it"})");
+  field("wall_seconds", hits.wall_seconds);
+}
+
+void fields(Like<Trajectory> auto& path, auto& field) {
+  field("x", path.x);
+  field("y", path.y);
+}
+
+void fields(Like<Summary> auto& summary, auto& field) {
+  field("iterations", summary.iterations);
+  field("work", summary.work);
+  field("rejected_steps", summary.rejected_steps);
+  field("start_loss", summary.start_loss);
+  field("loss", summary.loss);
+  field("best_loss", summary.best_loss);
+  field("start_x_error", summary.start_x_error);
+  field("x_error", summary.x_error);
+  field("gradient_norm", summary.gradient_norm);
+  field("wall_seconds", summary.wall_seconds);
+  field("processor_seconds", summary.processor_seconds);
+  field("peak_memory_bytes", summary.peak_memory_bytes);
+}
+
+// Pictures stand in the file beside.
+void fields(Like<Exhibit> auto& exhibit, auto& field) {
+  field("grid", exhibit.grid, R"({"minimum": 0})");
+  field.when(!exhibit.is_picture(), "target", exhibit.target);
+  field.when(!exhibit.is_picture(), "x", exhibit.x);
+  field.when(!exhibit.is_picture(), "truth", exhibit.truth);
+}
+
+void fields(Like<Record> auto& record, auto& field) {
+  field.constant("schema", kRunSchema);
+  field("cell", record.cell, kDigestLaw);
+  field("build", record.build, kDigestLaw);
+  field("request", record.request);
+  field("status", record.status);
+  field("message", record.message);
+  field("claimed", record.claimed);
+  field("minimum", record.minimum);
+  field("verified", record.verified, R"({"required": ["1e-1", "1e-3", "1e-6"]})");
+  field("counts", record.counts);
+  field("prices", record.prices);
+  field("summary", record.summary);
+  field("curve", record.curve);
+  field.optional("hits", record.hits);
+  field.optional("trajectory", record.trajectory);
+  field.optional("series", record.series);
+  field.optional("exhibit", record.exhibit);
+  field("privileges", record.privileges);
+  field("nondeterministic", record.is_nondeterministic);
+  field("repeat_wall_seconds", record.repeat_wall_seconds);
+  field("provenance", record.provenance);
+  if constexpr (std::remove_cvref_t<decltype(field)>::kReads) record.request.cell = record.cell;
+}
+
+}  // namespace isoline

@@ -1,0 +1,44 @@
+// What is asked of one run: a problem, an optimizer, a seed and a budget.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/budget.h"
+#include "core/options.h"
+
+namespace isoline {
+
+using Json = nlohmann::json;
+
+// A component as asked for, made once, where a command line, a suite or a record is read: its name
+// and all its options, defaults filled in.
+struct Component {
+  std::string name;
+  OptionValues options;
+  std::string spec;  // "sine[xi=32]": the name and what differs from the defaults
+  int revision = 1;
+  bool is_learned = false;  // a problem over a distribution of y*, solved by a network
+};
+
+// Whether complete options ask for the learning problem. The one place that says how.
+bool asks_to_learn(const OptionValues& options);
+
+struct Request {
+  Component problem, optimizer;
+  std::uint64_t seed = 0;
+  Budget budget;
+  int threads = 1;
+  std::string rates;  // the file under benchmarks/rates that set options, or empty; not in the cell
+  double hard_seconds = 0;  // when it is killed; 0: the runner's own limit; not in the record
+  std::string cell;         // the digest of what is asked; `named` fills it in
+};
+
+std::string cell_digest(const Request& request);
+Request named(Request request);  // with its cell
+
+Json to_json(const Request& request);
+Request request_from_json(const Json& json);
+
+}  // namespace isoline
