@@ -1,43 +1,103 @@
-// Threads of the libraries: one before main, more where a request says so.
+// Threads of the libraries: one before main, more where a request says so. Their kernels and
+// caches.
 #include "core/threads.h"
 
 #include <omp.h>
+#include <strings.h>
 #include <unistd.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <mutex>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "core/processor.h"
+
 extern "C" void openblas_set_num_threads(int threads);
+extern "C" char* openblas_get_corename();
 
 namespace isoline {
 namespace {
 
-constexpr std::pair<const char*, const char*> kEnvironment[] = {
-    {"OPENBLAS_NUM_THREADS", "1"},
-    {"OMP_NUM_THREADS", "1"},
-#ifdef ISOLINE_PORTABLE  // the same kernels on every machine
-    {"OPENBLAS_CORETYPE", "Haswell"},
-    {"ONEDNN_MAX_CPU_ISA", "AVX2"},
+#ifdef ISOLINE_PORTABLE
+constexpr bool kIsPortable = true;
+#else
+constexpr bool kIsPortable = false;
 #endif
-};
+
+constexpr CacheSizes kCacheSizes{ISOLINE_CACHE_SIZES};  // by the build: core/CMakeLists.txt
+
+constexpr const char* kKernel = "OPENBLAS_CORETYPE";
+// Beside it: what we chose there ourselves, so that what a user chose is told apart.
+constexpr const char* kOurKernel = "ISOLINE_KERNEL";
+
+using Setting = std::pair<const char*, std::string>;
+
+std::string setting(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value == nullptr ? "" : value;
+}
+
+std::vector<Setting> wanted_environment() {
+  std::vector<Setting> wanted{{"OPENBLAS_NUM_THREADS", "1"}, {"OMP_NUM_THREADS", "1"}};
+  if (kIsPortable) {  // the same kernels on every machine
+    wanted.emplace_back(kKernel, "Haswell");
+    wanted.emplace_back("ONEDNN_MAX_CPU_ISA", "AVX2");
+  } else if (setting(kKernel).empty()) {
+    if (const std::string better = better_kernel(processor(), openblas_get_corename());
+        !better.empty()) {
+      wanted.emplace_back(kKernel, better);
+      wanted.emplace_back(kOurKernel, better);
+    }
+  }
+  return wanted;
+}
 
 }  // namespace
 
-void start_single_threaded(char** arguments) {
+void prepare_libraries(char** arguments) {
+  Eigen::setCpuCacheSizes(kCacheSizes.l1, kCacheSizes.l2, kCacheSizes.l3);
   bool is_set = true;
-  for (const auto& [variable, wanted] : kEnvironment) {
-    const char* value = std::getenv(variable);
-    is_set = is_set && value != nullptr && std::strcmp(value, wanted) == 0;
-    setenv(variable, wanted, 1);
+  for (const auto& [variable, value] : wanted_environment()) {
+    is_set = is_set && setting(variable) == value;
+    setenv(variable, value.c_str(), 1);
   }
   if (!is_set) execv("/proc/self/exe", arguments);  // on failure we go on, with idle threads
+}
+
+LibraryKernel library_kernel() {
+  const std::string name = openblas_get_corename(), asked = setting(kKernel);
+  const bool is_granted = strcasecmp(name.c_str(), asked.c_str()) == 0;  // an unknown one is not
+  if (!is_granted) return {name, "OpenBLAS"};
+  if (kIsPortable) return {name, "portable"};
+  return {name, setting(kOurKernel) == asked ? "isoline" : "user"};
+}
+
+std::string better_kernel(const Processor& processor, const std::string& own) {
+  constexpr std::array<std::string_view, 3> kAvx512{"SkylakeX", "Cooperlake", "SapphireRapids"};
+  constexpr std::array<std::string_view, 3> kAvx2{"Haswell", "Zen", "Excavator"};
+  const auto is_among = [&](const auto& names) {
+    return std::find(names.begin(), names.end(), own) != names.end();
+  };
+  const auto has = [&](const auto&... features) { return (processor.has(features) && ...); };
+  if (is_among(kAvx512)) return "";
+  if (has("avx512f", "avx512bw", "avx512dq", "avx512vl")) return "SkylakeX";
+  if (is_among(kAvx2)) return "";
+  return has("avx2", "fma") ? "Haswell" : "";
+}
+
+CacheSizes cache_sizes() {
+  CacheSizes sizes{};
+  Eigen::internal::manage_caching_sizes(Eigen::GetAction, &sizes.l1, &sizes.l2, &sizes.l3);
+  return sizes;
 }
 
 void set_library_threads(int threads) {

@@ -1,16 +1,38 @@
-// How many threads the libraries use. OpenBLAS starts its own before main() when merely linked, so
-// the program sets the environment and starts itself again, once, before anything else.
+// How the libraries compute: on how many threads, with which kernels, for which caches. OpenBLAS
+// starts its threads and chooses its kernels before main() when merely linked, so the program sets
+// the environment and starts itself again, once, before anything else.
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <string>
 
 #include "core/real.h"
 
 namespace isoline {
 
-// Returns at once where the environment already asks for one thread; else replaces this process.
-void start_single_threaded(char** arguments);
+struct Processor;
+
+// The first line of every main(): one thread, the kernels that the processor has, the sizes of
+// caches that this was built for. Replaces the process where the environment has to change.
+void prepare_libraries(char** arguments);
+
+// What OpenBLAS computes with, and by whose choice: "OpenBLAS", "isoline", "user" or "portable".
+struct LibraryKernel {
+  std::string name, chosen_by;
+};
+LibraryKernel library_kernel();
+
+// The kernel to ask OpenBLAS for: "SkylakeX" or "Haswell", where `own`, its choice, is below what
+// the processor has; else empty.
+std::string better_kernel(const Processor& processor, const std::string& own);
+
+// Bytes of the caches that Eigen blocks its products by. Left to itself it asks the processor, and
+// gives other bits on another one.
+struct CacheSizes {
+  std::ptrdiff_t l1, l2, l3;
+};
+CacheSizes cache_sizes();
 
 // Raises the libraries' threads in a worker, from the request.
 void set_library_threads(int threads);

@@ -20,6 +20,7 @@ struct Workspace {
   std::vector<Matrix> saved;      // whatever else the component keeps; its own business
   bool saved_is_current = false;  // whether `saved` belongs to x; false after each forward
   std::unique_ptr<Scratch> own;   // as `saved`, of the component's own type
+  Matrix unit, product, dense;    // of Jacobians and curvatures made from other products
 
   template <class Own>
   Own& as() {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <type_traits>
 
-#include "core/array.h"
+#include "core/product.h"
 
 namespace isoline::networks {
 
@@ -21,13 +21,6 @@ template <class Scalar>
 using FlatRef = const Eigen::Ref<const Flat<Scalar>>&;
 template <class Scalar>
 using FlatOut = Eigen::Ref<Flat<Scalar>>;
-
-// Numbers that fill one vector register, or the Index n rounded up to whole ones.
-template <class Scalar>
-Index whole_registers(Index n) {
-  constexpr Index kLanes = Eigen::internal::packet_traits<Scalar>::size;
-  return (n + kLanes - 1) / kLanes * kLanes;
-}
 
 // φ(z) = e^(−z²/2)/√2π
 template <class Scalar>

@@ -28,7 +28,7 @@ void gelu(Field& z, Field& a) {
 void multiply_by_gelu_slope(Field& z, Field& g, Flat<float>& room) {
   room.resize(std::max<Index>(room.size(), 4096));
   in_chunks(z.size(), [&](Index begin, Index count) {
-    const auto at = z.numbers().segment(begin, count);
+    const Eigen::Ref<const Flat<float>> at = z.numbers().segment(begin, count);
     multiply_by_slope<float>(kGelu, at, at, g.numbers().segment(begin, count), room.head(count));
   });
 }
@@ -36,8 +36,8 @@ void multiply_by_gelu_slope(Field& z, Field& g, Flat<float>& room) {
 // out = gelu''(z) dz h
 void bend(Field& z, Field& dz, Field& h, Field& out) {
   in_chunks(z.size(), [&](Index begin, Index count) {
-    const auto at = z.numbers().segment(begin, count);
-    auto made = out.numbers().segment(begin, count);
+    const Eigen::Ref<const Flat<float>> at = z.numbers().segment(begin, count);
+    FlatOut<float> made = out.numbers().segment(begin, count);
     made = dz.numbers().segment(begin, count) * h.numbers().segment(begin, count);
     multiply_by_bend<float>(kGelu, at, at, made);
   });

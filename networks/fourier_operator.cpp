@@ -34,10 +34,10 @@ FourierOperator::FourierOperator(Index grid, Index modes, Index width)
 std::vector<Block> FourierOperator::layout() const {
   std::vector<Block> blocks;
   for (const Layer& layer : layers_) {
-    const Index columns = layer.out * fourier_.modes() / 2, size = 2 * layer.in * columns;
+    const Index pairs = layer.in * layer.out, modes = fourier_.modes() / 2;
     for (Index corner = 0; layer.has_modes && corner < 2; ++corner)
       blocks.push_back(
-          {layer.modes + corner * size, 2 * layer.in, columns, Block::Kind::convolution});
+          {layer.modes + corner * 2 * pairs * modes, 2 * pairs, modes, Block::Kind::spectrum});
     blocks.push_back({layer.weights, layer.out, layer.in, Block::Kind::weight});
     blocks.push_back({layer.weights + layer.out * layer.in, layer.out, 1, Block::Kind::bias});
   }

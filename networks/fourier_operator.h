@@ -21,7 +21,8 @@ class Field {
 
   void resize(Index rows, Index columns) {
     if (rows == rows_ && columns == columns_) return;
-    rows_ = rows, columns_ = columns;
+    rows_ = rows;
+    columns_ = columns;
     numbers_.setZero(whole_registers<float>(rows * (columns + 1)));
     set_ones();
   }

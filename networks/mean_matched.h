@@ -48,7 +48,7 @@ class MeanMatched final : public Network {
     auto& own = w.as<Own>();
     own.dy_dx = dy_dx;
     for (Index b = 0; b < dy_dx.cols() / outputs(); ++b) {
-      auto sample = own.dy_dx.middleCols(b * outputs(), outputs());
+      BatchOut sample = own.dy_dx.middleCols(b * outputs(), outputs());
       for (Index i = 0; i < sample.rows(); ++i) sample.row(i).array() -= sample.row(i).mean();
     }
     network_->jacobian(own.dy_dx, J, own.inner);

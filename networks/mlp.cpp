@@ -20,14 +20,13 @@ void Perceptron<Scalar>::curvature(VectorRef, BatchRef u, BatchRef du, VectorOut
   own.layers.back().dg.topRows(B) = du.transpose().template cast<Scalar>();
   for (Index l = layers() - 1; l >= 0; --l) {
     Layer* at = &own.layers[static_cast<std::size_t>(l)];
-    const auto g = at->g.topRows(B), dg = at->dg.topRows(B);
-    product(Form::AH_B, dg, at->a.topRows(B), with_bias(own.gradient, l));
+    product(Form::AH_B, at->dg.topRows(B), at->a.topRows(B), with_bias(own.gradient, l));
     if (l == 0) break;
-    product(Form::AH_B, g, at->da.topRows(B), weights(own.gradient, l), 1);
+    product(Form::AH_B, at->g.topRows(B), at->da.topRows(B), weights(own.gradient, l), 1);
     Layer& below = at[-1];
-    product(Form::A_B, g, weights(own.theta, l), below.g.topRows(B));
-    product(Form::A_B, g, weights(own.v, l), below.dg.topRows(B));
-    product(Form::A_B, dg, weights(own.theta, l), below.dg.topRows(B), 1);
+    product_by_rows(Form::A_B, at->g, weights(own.theta, l), below.g);
+    product_by_rows(Form::A_B, at->g, weights(own.v, l), below.dg);
+    product_by_rows(Form::A_B, at->dg, weights(own.theta, l), below.dg, 1);
     slope(below, at->a, below.dg, below.room);
     below.room = below.g.cwiseProduct(below.dz);
     const Index k = width(l);
@@ -59,12 +58,12 @@ void Perceptron<Scalar>::jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) cons
     Layer* at = &own.layers[static_cast<std::size_t>(l)];
     const Index k = width(l + 1);
     at->row_g.resize(whole_registers<Scalar>(rows), k);
+    at->row_g.bottomRows(at->row_g.rows() - rows).setZero();
     if (l + 1 == layers()) {
       for (Index b = 0; b < B; ++b)
         at->row_g.middleRows(b * m, m) = dy_dx.middleCols(b * k, k).template cast<Scalar>();
     } else {
-      product(Form::A_B, at[1].row_g.topRows(rows), weights(own.theta, l + 1),
-              at->row_g.topRows(rows));
+      product_by_rows(Form::A_B, at[1].row_g, weights(own.theta, l + 1), at->row_g);
       at->dg.setOnes();
       slope(*at, at[1].a, at->dg, at->room);
       repeat_rows(at->dg, B, m, at->row_slope);

@@ -14,15 +14,15 @@ void Network::curvature(VectorRef, BatchRef, BatchRef, VectorOut, Workspace&) co
 
 void Network::jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) const {
   const Index k = outputs(), m = dy_dx.rows(), samples = dy_dx.cols() / k;
-  Matrix u = Matrix::Zero(k, samples);
-  Vector row(parameters());
+  w.unit.setZero(k, samples);
+  w.product.resize(parameters(), 1);
   for (Index b = 0; b < samples; ++b) {
     for (Index i = 0; i < m; ++i) {
-      u.col(b) = dy_dx.row(i).segment(b * k, k);
-      pullback(u, row, w);
-      J.row(b * m + i) = row;
+      w.unit.col(b) = dy_dx.row(i).segment(b * k, k);
+      pullback(w.unit, w.product.col(0), w);
+      J.row(b * m + i) = w.product.col(0);
     }
-    u.col(b).setZero();
+    w.unit.col(b).setZero();
   }
 }
 

@@ -16,9 +16,11 @@
 
 namespace isoline::networks {
 
-// One array of parameters within θ: `rows` by `columns`, column major, from `offset`.
+// One array of parameters within θ: `rows` by `columns`, column major, from `offset`. A convolution
+// has the taps of one pair of channels in each column; a spectrum has one mode in each column, in
+// which two rows are the real and imaginary part of one pair of channels.
 struct Block {
-  enum class Kind { input, weight, bias, convolution, norm };
+  enum class Kind { input, weight, bias, convolution, spectrum, norm };
   Index offset, rows, columns;
   Kind kind;
 };

@@ -2,7 +2,8 @@
 //   a₀ = input,  z_l = W_l a_{l−1} + b_l,  a_l = s(z_l),  x = z_L,  θ = (W₁, b₁, …, W_L, b_L)
 // Rumelhart, Hinton, Williams (1986). Arrays are transposed, one sample a row, and the inputs of a
 // layer end in a column of ones: in θ b_l follows W_l, so that each pass is one product with
-// [W b] a layer.
+// [W b] a layer. What belongs to one sample is summed in a fixed order: equal samples get equal
+// bits in x, in pushforwards and in rows of the Jacobian, in any batch and at any place in it.
 #pragma once
 
 #include <algorithm>
@@ -43,8 +44,8 @@ class Perceptron final : public Network {
   using Array = typename Gemm<Scalar>::Array;
   using Parameters = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-  // What layer l sees and makes, (B, ·), its rows padded to whole registers. Padding is finite and
-  // no product reads it.
+  // What layer l sees and makes, (B, ·), its rows padded to whole registers as if by samples of
+  // zeros, which no sum over samples reads.
   struct Layer {
     Array a, z;                     // (B, w_{l−1} + 1) inputs and ones, (B, w_l)
     Array da, dz;                   // their change along the last v
@@ -143,7 +144,7 @@ void Perceptron<Scalar>::forward(VectorRef theta, BatchRef in, BatchOut x, Works
   own.layers[0].a.topLeftCorner(B, inputs()) = in.transpose().template cast<Scalar>();
   for (Index l = 0; l < layers(); ++l) {
     Layer* at = &own.layers[static_cast<std::size_t>(l)];
-    product(Form::A_BH, at->a.topRows(B), with_bias(own.theta, l), at->z.topRows(B));
+    product_by_rows(Form::A_BH, at->a, with_bias(own.theta, l), at->z);
     const Index k = width(l + 1);
     if (l + 1 < layers()) activate<Scalar>(activation_, flat(at->z, k), flat(at[1].a, k));
   }
@@ -158,8 +159,8 @@ void Perceptron<Scalar>::pushforward(VectorRef v, BatchOut Jv, Workspace& w) con
   own.v = v.cast<Scalar>();
   for (Index l = 0; l < layers(); ++l) {
     Layer* at = &own.layers[static_cast<std::size_t>(l)];
-    product(Form::A_BH, at->a.topRows(B), with_bias(own.v, l), at->dz.topRows(B));
-    if (l > 0) product(Form::A_BH, at->da.topRows(B), weights(own.theta, l), at->dz.topRows(B), 1);
+    product_by_rows(Form::A_BH, at->a, with_bias(own.v, l), at->dz);
+    if (l > 0) product_by_rows(Form::A_BH, at->da, weights(own.theta, l), at->dz, 1);
     if (l + 1 == layers()) break;
     at[1].da = at->dz;
     slope(*at, at[1].a, at[1].da, at->room);
@@ -174,7 +175,7 @@ void Perceptron<Scalar>::backward(BatchRef u, Passes& own) const {
   own.layers.back().g.topRows(B) = u.transpose().template cast<Scalar>();
   for (Index l = layers() - 1; l > 0; --l) {
     Layer* at = &own.layers[static_cast<std::size_t>(l)];
-    product(Form::A_B, at->g.topRows(B), weights(own.theta, l), at[-1].g.topRows(B));
+    product_by_rows(Form::A_B, at->g, weights(own.theta, l), at[-1].g);
     slope(at[-1], at->a, at[-1].g, at[-1].room);
   }
 }

@@ -30,8 +30,10 @@ TruncatedFourier::TruncatedFourier(Index size, Index modes)
     for (Index k = 0; k < modes; ++k) {
       const Real weight = (k == 0 ? 1 : 2) / Real(size * size);
       const Real cosine = std::cos(angle(i, k)), sine = -std::sin(angle(i, k));
-      plain_(2 * k, i) = float(cosine), plain_(2 * k + 1, i) = float(sine);
-      weighted_(2 * k, i) = float(weight * cosine), weighted_(2 * k + 1, i) = float(weight * sine);
+      plain_(2 * k, i) = float(cosine);
+      plain_(2 * k + 1, i) = float(sine);
+      weighted_(2 * k, i) = float(weight * cosine);
+      weighted_(2 * k + 1, i) = float(weight * sine);
       const Index negative = modes - k;  // the frequency −M + k, of the second half
       along_columns_(i, k) = {float(cosine), float(sine)};
       along_columns_(i, modes + k) = {float(std::cos(angle(i, negative))),

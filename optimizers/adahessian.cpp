@@ -1,7 +1,8 @@
 // AdaHessian, Yao et al. (2021): Adam with the diagonal of the Hessian in place of the gradient in
 // v. D = z ⊙ ∇²L z, z of random signs (Hutchinson), one probe a step; m ← β₁ m + (1 − β₁) ∇L, v ←
 // β₂ v + (1 − β₂) D², θ ← θ − η m̂/(√v̂ᵖ + ε). As in torch_optimizer, the absolute values |D| of a
-// convolution's taps are averaged for each pair of channels, and p is ½ where the paper has 1.
+// convolution's taps are averaged for each pair of channels, so also those of the modes of a
+// Fourier layer, and p is ½ where the paper has 1.
 #include <cmath>
 
 #include "optimizers/optimizer.h"
@@ -11,10 +12,10 @@ namespace {
 
 struct AdaHessian {
   Real rate = 0.15, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-4, power = 0.5;
-  bool average = true;
+  bool averages = true;
 
   struct State {
-    std::vector<Block> convolutions;
+    std::vector<Block> kernels;
     Vector m, v;                  // (n)
     Real power1 = 1, power2 = 1;  // β₁ᵗ, β₂ᵗ
     std::uint64_t steps = 0;
@@ -29,7 +30,9 @@ struct AdaHessian {
     State s;
     s.m = s.v = s.probe = s.diagonal = Vector::Zero(theta.size());
     for (const Block& block : f.layout())
-      if (average && block.kind == Block::Kind::convolution) s.convolutions.push_back(block);
+      if (averages &&
+          (block.kind == Block::Kind::convolution || block.kind == Block::Kind::spectrum))
+        s.kernels.push_back(block);
     return s;
   }
 
@@ -40,26 +43,28 @@ struct AdaHessian {
     RandomStream(0, "adahessian", "probe", s.steps++).signs(s.probe);
     s.at.hessian_product(s.probe, s.diagonal);
     s.diagonal.array() *= s.probe.array();
-    average_taps(s);
+    for (const Block& kernel : s.kernels) average(kernel, s.diagonal);
     s.m = beta1 * s.m + (1 - beta1) * s.gradient;
     s.v = beta2 * s.v + (1 - beta2) * s.diagonal.cwiseAbs2();
     s.power1 *= beta1;
     s.power2 *= beta2;
-    const auto curvature = (s.v.array() / (1 - s.power2)).sqrt();
+    s.diagonal = (s.v / (1 - s.power2)).cwiseSqrt();
     const Real eta = rate / (1 - s.power1);
     if (power == 0.5)  // two roots cost a tenth of a power
-      theta.array() -= eta * s.m.array() / (curvature.sqrt() + epsilon);
+      theta.array() -= eta * s.m.array() / (s.diagonal.array().sqrt() + epsilon);
     else
-      theta.array() -= eta * s.m.array() / (curvature.pow(power) + epsilon);
+      theta.array() -= eta * s.m.array() / (s.diagonal.array().pow(power) + epsilon);
     return Status::running;
   }
 
-  // One column a pair of channels, its rows the taps.
-  static void average_taps(State& s) {
-    for (const Block& block : s.convolutions) {
-      Eigen::Map<Matrix> D(s.diagonal.data() + block.offset, block.rows, block.columns);
+  // All that belongs to one pair of channels: a column of taps, or two rows of modes.
+  static void average(const Block& kernel, Vector& diagonal) {
+    Eigen::Map<Matrix> D(diagonal.data() + kernel.offset, kernel.rows, kernel.columns);
+    if (kernel.kind == Block::Kind::convolution)
       for (Index j = 0; j < D.cols(); ++j) D.col(j).setConstant(D.col(j).cwiseAbs().mean());
-    }
+    else
+      for (Index i = 0; i < D.rows(); i += 2)
+        D.middleRows(i, 2).setConstant(D.middleRows(i, 2).cwiseAbs().mean());
   }
 };
 
@@ -69,7 +74,8 @@ void fields(AdaHessian& o, auto& field) {
   field("beta2", o.beta2, between(0, 1), "decay β₂ of the mean squared diagonal");
   field("epsilon", o.epsilon, at_least(0), "floor ε of the scale");
   field("power", o.power, between(0, 1), "power p of the diagonal; the paper's Hessian power");
-  field("average", o.average, "whether |D| is averaged over the taps of a convolution");
+  field("average", o.averages,
+        "whether |D| is averaged over the taps or modes of a pair of channels");
 }
 
 }  // namespace

@@ -149,6 +149,7 @@ class Ceres final : public Optimizer {
 };
 
 constexpr const char* kRadiusNote = "Invariant while its Gauss-Newton steps lie within the radius.";
+constexpr const char* kRejectsNote = "Steps that raise the loss are still rejected, then damped.";
 
 struct TrustRegion {
   ceres::TrustRegionStrategyType strategy;
@@ -159,20 +160,11 @@ struct TrustRegion {
 };
 
 const TrustRegion kTrustRegions[] = {
-    {ceres::LEVENBERG_MARQUARDT,
-     {},
-     "ceres-gauss-newton",
-     "Gauss-Newton, safeguarded (Ceres)",
-     "θ ← θ − J⁺ (y − y*)",
-     "Ceres 2.1, Levenberg-Marquardt from the trust radius 1e16",
-     "Steps that raise the loss are still rejected, then damped.",
-     true,
-     true},
-    {ceres::LEVENBERG_MARQUARDT,
-     {},
-     "ceres-lm",
-     "Levenberg-Marquardt (Ceres)",
-     "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
+    {ceres::LEVENBERG_MARQUARDT, ceres::TRADITIONAL_DOGLEG, "ceres-gauss-newton",
+     "Gauss-Newton, safeguarded (Ceres)", "θ ← θ − J⁺ (y − y*)",
+     "Ceres 2.1, Levenberg-Marquardt from the trust radius 1e16", kRejectsNote, true, true},
+    {ceres::LEVENBERG_MARQUARDT, ceres::TRADITIONAL_DOGLEG, "ceres-lm",
+     "Levenberg-Marquardt (Ceres)", "θ ← θ − (JᵀJ + D²/Δ)⁻¹ Jᵀ r,  D² = diag(JᵀJ)",
      "Ceres 2.1; Marquardt (1963), Nielsen (1999)"},
     {ceres::DOGLEG, ceres::TRADITIONAL_DOGLEG, "ceres-dogleg", "Powell's dogleg (Ceres)",
      "min ‖r + J d‖² along the path to steepest descent, then to Gauss-Newton",
@@ -197,6 +189,11 @@ OptimizerEntry entry_of(const TrustRegion& m) {
           .make = [m](const OptionValues&, const OptimizerRegistry&) {
             ceres::Solver::Options o;
             o.linear_solver_type = ceres::DENSE_QR;
+#ifdef ISOLINE_PORTABLE
+            // The Eigen inside Ceres blocks its products by caches that it asks the processor for,
+            // which can't be fixed from outside; LAPACK, of our OpenBLAS, has its kernel alone.
+            o.dense_linear_algebra_library_type = ceres::LAPACK;
+#endif
             o.trust_region_strategy_type = m.strategy;
             o.dogleg_type = m.dogleg;
             if (m.is_wide_open) o.initial_trust_region_radius = o.max_trust_region_radius;

@@ -54,13 +54,16 @@ struct HessianFree {
     Real loss = 0;
     const Index best = backtrack(f, theta, s, loss);
     adapt(best, loss, s);
-    const auto d = s.kept.col(best);
+    const Eigen::Map<const Vector> d(s.kept.col(best).data(), s.kept.rows());
     constexpr Real kSufficient = 1e-2, kShorter = 0.8;
     constexpr int kTrials = 20;
     const Real slope = s.gradient.dot(d);
     Real alpha = 1;
     for (int trial = 0; !(loss <= s.at.loss() + kSufficient * alpha * slope); ++trial) {
-      if (trial == kTrials || f.is_spent()) return f.reject_step(), Status::running;
+      if (trial == kTrials || f.is_spent()) {
+        f.reject_step();
+        return Status::running;
+      }
       alpha *= kShorter;
       s.candidate = theta + alpha * d;
       loss = f.loss(s.candidate);

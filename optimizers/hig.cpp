@@ -45,11 +45,10 @@ struct HalfInverse {
     s.gram.resize(r, r);
     product(is_wide ? Form::A_BH : Form::AH_B, J, J, s.gram);
     if (!symmetric_eigen(s.gram, s.eigen)) return false;
-    const auto g = s.g.reshaped();
     if (is_wide)
-      s.right = g;
+      s.right = s.g.reshaped();
     else
-      s.right.noalias() = J.transpose() * g;
+      s.right.noalias() = J.transpose() * s.g.reshaped();
     s.along.noalias() = s.eigen.V.transpose() * s.right;
     const Real largest = std::sqrt(std::max(s.eigen.lambda[r - 1], Real(0)));
     for (Index i = 0; i < r; ++i)

@@ -50,7 +50,10 @@ struct Pair {
 struct Single {
   Eigen::Matrix<Real, 1, 1> V{1}, S{0};
 
-  bool decompose(const Eigen::Matrix<Real, 1, 1>& H) { return S = H, true; }
+  bool decompose(const Eigen::Matrix<Real, 1, 1>& H) {
+    S = H;
+    return true;
+  }
 };
 struct General {
   SymmetricEigen eigen;

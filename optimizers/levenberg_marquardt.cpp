@@ -38,9 +38,10 @@ struct LevenbergMarquardt {
     State s;
     s.scale = Vector::Zero(n);
     if (rows < n)
-      s.augmented.setZero(rows, n + rows), s.right.setZero(rows);
+      s.augmented.setZero(rows, n + rows);
     else
-      s.augmented.setZero(rows + n, n), s.right.setZero(rows + n);
+      s.augmented.setZero(rows + n, n);
+    s.right.setZero(s.augmented.rows());
     s.damping = initial_damping;
     return s;
   }

@@ -209,7 +209,10 @@ struct Minimization {
     if (length == 0) {
       unit = value;
       length = value / gradient.norm();
-      if (!std::isfinite(length)) return nlopt_force_stop(handle), kWall;
+      if (!std::isfinite(length)) {
+        nlopt_force_stop(handle);
+        return kWall;
+      }
     }
     if (out) Map<Vector>(out, gradient.size()) = (length / unit) * gradient;
     return value / unit;

@@ -1,6 +1,7 @@
 // Gradients rescaled to unit length in x, Holl, Koltun, Thuerey (2022), Fig. 2: the network is
-// drawn to x̃ = x − sign(∂L/∂x), component by component, by (1/B) Σ ½‖x − x̃‖². The published script
-// takes the sign from the known solution, x̃ = x + sign(x* − x), which for a monotone P is the same.
+// drawn to x̃ = x − d/‖d‖, d = ∂L/∂x, sample by sample, by (1/B) Σ ½‖x − x̃‖². The published script
+// has one x and takes its sign from the known solution, x̃ = x + sign(x* − x), which for a monotone
+// P is the same.
 
 #include "optimizers/network_descent.h"
 
@@ -12,7 +13,7 @@ struct Options {
 };
 void fields(Options& o, auto& field) {
   field("by", o.by, Choices{"gradient", "truth"},
-        "where the sign comes from: −∂L/∂x, or x* − x, a privilege");
+        "where the direction comes from: −∂L/∂x, or x* − x, a privilege");
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
 }
 
@@ -30,7 +31,13 @@ class Rescaled final : public Optimizer {
       slope_.resizeLike(at_.x());
       at_.physics_pullback(g_, slope_);
     }
-    found_ = at_.x() - slope_.cwiseSign();
+    found_ = at_.x();
+    for (Index b = 0; b < found_.cols(); ++b) {
+      const Real largest = slope_.col(b).cwiseAbs().maxCoeff();
+      if (largest == 0) continue;
+      slope_.col(b) /= largest;  // squares of 1e-200 would vanish
+      found_.col(b) -= slope_.col(b) / slope_.col(b).norm();
+    }
     descent_.approach(found_, Proxy::l2, at_, theta);
     return Status::running;
   }
@@ -56,9 +63,9 @@ void register_rescaled(OptimizerRegistry& registry) {
   registry.add({.name = "rescaled",
                 .title = "Rescaled gradients",
                 .family = Family::inversion,
-                .formula = "x̃ = x − sign(∂L/∂x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
+                .formula = "x̃ = x − d/‖d‖,  d = ∂L/∂x;  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
                 .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
-                .note = "by=truth takes the sign from x* − x, as the published script does.",
+                .note = "by=truth has d = x − x*, as the published script does.",
                 .needs = {Oracle::forward, Oracle::network},
                 .options = option_table<Options>(),
                 .needs_for = needs_for,

@@ -15,9 +15,8 @@ namespace isoline::optimizers {
 template <class Curvatures>
 Real geometric_mean(const Curvatures& S) {
   if (S.size() == 2) return std::sqrt(std::abs(S[0] * S[1]));
-  const auto size = S.array().abs();
-  const Real mean = std::exp(size.log().mean());  // 0 if any S is
-  return std::clamp(mean, Real(size.minCoeff()), Real(size.maxCoeff()));
+  const Real mean = std::exp(S.array().abs().log().mean());  // 0 if any S is
+  return std::clamp(mean, Real(S.cwiseAbs().minCoeff()), Real(S.cwiseAbs().maxCoeff()));
 }
 
 // The way against the gradient is this, with the sign of the slope g̃ᵢ; no curvature, no step.

@@ -151,13 +151,15 @@ class Examination {
     Point start;
     problem_.forward(problem_.start(), start);
     if (problem_.minimum()) {
-      const Real minimum = *problem_.minimum();
+      const Real minimum = *problem_.minimum(), error = problem_.minimum_error();
       add("the loss is above the declared minimum around the start",
-          std::max(minimum - at_.loss, minimum - start.loss), 0, "it is the least attainable");
+          std::max(minimum - at_.loss, minimum - start.loss), error,
+          "it is the least attainable, but for its declared error");
       if (problem_.truth() && problem_.has_identity_network())
         add("the truth attains the declared minimum",
-            relative(std::abs(loss(problem_.truth()->reshaped()) - minimum), start.loss), 1e-13,
-            "squares of residuals that are zero but for rounding");
+            relative(std::abs(loss(problem_.truth()->reshaped()) - minimum), start.loss),
+            1e-13 + error / start.loss,
+            "squares of residuals that are zero but for rounding, and the declared error");
     }
     if (problem_.truth() && !std::isnan(problem_.x_error(*problem_.truth())))
       add("the error in x of the truth is zero",
@@ -178,10 +180,7 @@ class Examination {
     return stream_.normal_vector(problem_.residuals())
         .reshaped(problem_.outputs(), problem_.samples());
   }
-  Vector near_start() {
-    const Vector noise = stream_.normal_vector(problem_.unknowns());
-    return problem_.start().array() + 0.1 * problem_.start().array().abs().max(1) * noise.array();
-  }
+  Vector near_start() { return near(problem_.start(), problem_.start_scale(), stream_); }
 
   Matrix push(VectorRef v) {
     Matrix Jv(problem_.outputs(), problem_.samples());

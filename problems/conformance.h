@@ -17,7 +17,7 @@ struct Finding {
   bool holds() const { return figure <= limit; }  // false for nan
 };
 
-// Measured at a random point around the start, θ = start + 0.1 max(1, |start|) N(0, 1). What a
+// Measured at a random point around the start, as near as seeds draw theirs. What a
 // problem does not offer is not examined; dense matrices only up to some millions of entries.
 std::vector<Finding> examine(const Problem& problem, RandomStream& stream);
 

@@ -50,11 +50,11 @@ Vector curve(Real t) { return Eigen::Vector2d(std::sin(6 * t), std::cos(9 * t));
 void watch(const Network& network, Point& at, VectorOut values) {
   std::vector<LayerFactor> layers;
   network.layer_factors(Matrix::Zero(2, at.y.cols()), layers, at.network);
-  const auto hidden = layers.back().inputs.array();
+  const Matrix& hidden = layers.back().inputs;
   const Real mean = hidden.mean();
   Index nearest = 0;
   (at.batch->input.row(0).array() - std::numbers::pi / 9).abs().minCoeff(&nearest);
-  values << mean, std::sqrt((hidden - mean).square().mean()), at.y.col(nearest);
+  values << mean, std::sqrt((hidden.array() - mean).square().mean()), at.y.col(nearest);
 }
 
 ProblemParts make_hig_toy(const Options& o, const Draw& draw) {

@@ -6,16 +6,17 @@ namespace isoline::problems {
 void Physics::jacobian(BatchOut J, Workspace& w) const {
   const Index k = inputs(), m = outputs(), samples = J.cols() / k;
   const bool by_column = k <= m;
-  Matrix unit = Matrix::Zero(by_column ? k : m, samples), product(by_column ? m : k, samples);
-  for (Index i = 0; i < unit.rows(); ++i) {
-    unit.row(i).setOnes();
-    by_column ? pushforward(unit, product, w) : pullback(unit, product, w);
-    unit.row(i).setZero();
+  w.unit.setZero(by_column ? k : m, samples);
+  w.product.resize(by_column ? m : k, samples);
+  for (Index i = 0; i < w.unit.rows(); ++i) {
+    w.unit.row(i).setOnes();
+    by_column ? pushforward(w.unit, w.product, w) : pullback(w.unit, w.product, w);
+    w.unit.row(i).setZero();
     for (Index b = 0; b < samples; ++b)
       if (by_column)
-        J.col(b * k + i) = product.col(b);
+        J.col(b * k + i) = w.product.col(b);
       else
-        J.block(i, b * k, 1, k) = product.col(b).transpose();
+        J.block(i, b * k, 1, k) = w.product.col(b).transpose();
   }
 }
 
@@ -25,9 +26,10 @@ void Physics::curvature(BatchRef, BatchOut, Workspace&) const {
 
 void Physics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const {
   const Index k = inputs();
-  Matrix H(k, k * u.cols());
-  curvature(u, H, w);
-  for (Index b = 0; b < u.cols(); ++b) out.col(b).noalias() = H.middleCols(b * k, k) * v.col(b);
+  w.dense.resize(k, k * u.cols());
+  curvature(u, w.dense, w);
+  for (Index b = 0; b < u.cols(); ++b)
+    out.col(b).noalias() = w.dense.middleCols(b * k, k) * v.col(b);
 }
 
 Success Physics::local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut) const {

@@ -53,8 +53,8 @@ class Poisson final : public Physics {
   Inverse inverse_kind() const override { return Inverse::exact; }
   Success local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut x) const override {  // x = ∇²y
     for (Index b = 0; b < y.cols(); ++b) {
-      const auto Y = y.col(b).reshaped(N_, N_);
-      auto X = x.col(b).reshaped(N_, N_);
+      const Eigen::Map<const Matrix> Y(y.col(b).data(), N_, N_);
+      Eigen::Map<Matrix> X(x.col(b).data(), N_, N_);
       X = -4 * Y;
       X.topRows(N_ - 1) += Y.bottomRows(N_ - 1);
       X.bottomRows(N_ - 1) += Y.topRows(N_ - 1);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/product.h"
 #include "networks/identity.h"
 
 namespace isoline::problems {
@@ -156,9 +157,8 @@ void Problem::network_pullback(BatchRef w, VectorOut out, Point& at) const {
 void Problem::jacobian(Matrix& J, Point& at) const {
   J.resize(at.y.size(), unknowns());
   if (has_identity_network()) return parts_.physics->jacobian(J, at.physics);
-  Matrix dy_dx;
-  sensitivity(dy_dx, at);
-  parts_.network->jacobian(dy_dx, J, at.network);
+  sensitivity(at.dy_dx, at);
+  parts_.network->jacobian(at.dy_dx, J, at.network);
 }
 
 void Problem::sensitivity(Matrix& dy_dx, Point& at) const {
@@ -186,15 +186,15 @@ void Problem::hessian_product(VectorRef v, VectorOut out, Point& at) const {
 void Problem::hessian(Matrix& H, Point& at) const {
   require(has_identity_network(), "the dense Hessian of a network is not available");
   const Index n = unknowns();
-  Matrix J, g(outputs(), samples());
-  jacobian(J, at);
-  cotangent(at, g);
+  jacobian(at.J, at);
+  at.dg.resize(outputs(), samples());
+  cotangent(at, at.dg);
   H.resize(n, n);
-  parts_.physics->curvature(g, H, at.physics);
-  Matrix weighted(residuals(), n);  // (∂²L/∂y²) J
+  parts_.physics->curvature(at.dg, H, at.physics);
+  at.weighted.resize(residuals(), n);
   for (Index j = 0; j < n; ++j)
-    parts_.loss->curvature(at.y, at.batch->target, J.col(j), weighted.col(j));
-  H.noalias() += J.transpose() * weighted;
+    parts_.loss->curvature(at.y, at.batch->target, at.J.col(j), at.weighted.col(j));
+  product(Form::AH_B, at.J, at.weighted, H, 1);
 }
 
 void Problem::curvature(BatchRef w, BatchOut out, Point& at) const {
@@ -205,11 +205,16 @@ Success Problem::local_inverse(BatchRef y, BatchOut x, Point& at) const {
   return parts_.physics->local_inverse(y, at.x(), at.batch->context, x);
 }
 
-Vector Draw::start(const Vector& standard) const {
+Vector near(const Vector& standard, StartScale scale, RandomStream& noise) {
+  const Real least = scale == StartScale::at_least_one ? 1 : 0;
+  return standard.array() +
+         0.1 * standard.array().abs().max(least) * noise.normal_vector(standard.size()).array();
+}
+
+Vector Draw::start(const Vector& standard, StartScale scale) const {
   if (is_published()) return standard;
   RandomStream noise = stream("start");
-  return standard.array() +
-         0.1 * standard.array().abs().max(1) * noise.normal_vector(standard.size()).array();
+  return near(standard, scale, noise);
 }
 
 }  // namespace isoline::problems

@@ -31,6 +31,8 @@ struct Point {
   Workspace physics, network;
   Matrix scratch_x;             // (k, B)
   Matrix dx, dy, dg, du, bent;  // of Hessian products: (k, B), (m, B), (m, B), (k, B), (k, B)
+  Matrix dy_dx;                 // of Jacobians: (m, k·B)
+  Matrix J, weighted;           // of dense Hessians: (m·B, n), and (∂²L/∂y²) J
 
   const Matrix& x() const { return physics.x; }  // (k, B)
 };
@@ -41,17 +43,26 @@ struct Series {
   std::function<void(Point& at, VectorOut values)> evaluate = {};
 };
 
+// What the tenth is taken of by which starts are drawn around the standard one: max(1, |θᵢ|), or
+// |θᵢ| where each unknown has a scale of its own, as 1e-4 among thousands.
+enum class StartScale { at_least_one, own };
+
+// standard + 0.1 s N(0, 1), s the scale of each component.
+Vector near(const Vector& standard, StartScale scale, RandomStream& noise);
+
 // What a problem is made of. A direct problem leaves network, input and samples empty; a learning
 // problem leaves target, input, context and truth empty, which `samples` draws.
 struct ProblemParts {
   std::unique_ptr<Physics> physics;
-  Vector start;                      // θ₀, (n)
+  Vector start;  // θ₀, (n)
+  StartScale start_scale = StartScale::at_least_one;
   Matrix target;                     // y*, (m, B)
   std::unique_ptr<Network> network;  // identity where empty
   Matrix input;                      // what the network sees, (i, B)
   Matrix context;                    // c, (p, B)
   std::unique_ptr<Loss> loss;        // ½‖y − y*‖² where empty
   std::optional<Real> minimum;       // f_L, least loss attainable, where known
+  Real minimum_error = 0;            // most that f_L may be off: of a published one, its last digit
   std::optional<Matrix> truth;       // the x* that made y*, (k, B), where there is one
   // Distance from x to the nearest solution, the mean over samples, where solutions are known.
   std::function<Real(BatchRef x, const Batch& batch)> x_error;
@@ -74,9 +85,11 @@ class Problem {
   Index samples() const { return batch_.samples(); }           // B
   Index residuals() const { return batch_.target.size(); }     // m·B, rows of J
   const Vector& start() const { return parts_.start; }
+  StartScale start_scale() const { return parts_.start_scale; }
   const Batch& batch() const { return batch_; }  // the only one, or the first of a learning problem
   const Matrix& target() const { return batch_.target; }
   std::optional<Real> minimum() const { return parts_.minimum; }
+  Real minimum_error() const { return parts_.minimum_error; }
   const std::optional<Matrix>& truth() const { return parts_.truth; }  // of a direct problem
   const auto& window() const { return parts_.window; }
   const auto& y_window() const { return parts_.y_window; }
@@ -136,8 +149,9 @@ class Draw {
   RandomStream stream(std::string_view purpose, std::uint64_t index = 0) const {
     return {seed_, problem_, purpose, index};
   }
-  // standard + 0.1 max(1, |standard|) N(0, 1), the standard start itself for seed 0.
-  Vector start(const Vector& standard) const;
+  // A start near the standard one; for seed 0 that itself. The scale goes with
+  // ProblemParts::start_scale.
+  Vector start(const Vector& standard, StartScale scale = StartScale::at_least_one) const;
 
  private:
   std::uint64_t seed_;

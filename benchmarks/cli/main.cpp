@@ -80,6 +80,6 @@ int run(int count, char** arguments) {
 }  // namespace isoline::benchmarks
 
 int main(int count, char** arguments) {
-  isoline::start_single_threaded(arguments);
+  isoline::prepare_libraries(arguments);
   return isoline::benchmarks::run(count, arguments);
 }

@@ -116,7 +116,9 @@ struct HalfInverse {
     f.forward(theta);
     f.problem.jacobian(J, f.at);
     const Index m = J.rows(), n = J.cols(), r = std::min(m, n);
-    U.resize(m, r), sigma.resize(r), Vt.resize(r, n);
+    U.resize(m, r);
+    sigma.resize(r);
+    Vt.resize(r, n);
     LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'S', as_int(m), as_int(n), J.data(), as_int(m), sigma.data(),
                    U.data(), as_int(m), Vt.data(), as_int(r));
     along.noalias() = U.transpose() * f.g.reshaped();

@@ -44,8 +44,15 @@ void bare(Metered& f) { f.problem.forward(f.theta, f.point); }
 void add(const std::string& name, const Budget& budget, const Goal& goal, Call ours) {
   register_pair("metering/" + name, kPairs, goal, [=] {
     const auto f = std::make_shared<Metered>(budget);
-    return Pair{[=] { return cost_of(kCalls, [&] { approach(*f), ours(*f); }); },
-                [=] { return cost_of(kCalls, [&] { approach(*f), bare(*f); }); }};
+    const auto timed = [f](Call call) {
+      return [=] {
+        return cost_of(kCalls, [&] {
+          approach(*f);
+          call(*f);
+        });
+      };
+    };
+    return Pair{timed(ours), timed(bare)};
   });
 }
 

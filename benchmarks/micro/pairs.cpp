@@ -41,7 +41,8 @@ struct Readings {
 
 void compare(benchmark::State& state, const Pair& pair, const Goal& goal) {
   Readings readings;
-  pair.ours(), pair.bare();  // warm
+  pair.ours();  // warm
+  pair.bare();
   bool ours_first = true;
   for (auto _ : state) {
     Cost a, b;

@@ -37,7 +37,7 @@ void add_over_adam(const std::string& problem_spec, const std::string& spec, con
     const auto problem = std::make_shared<const Problem>(make_problem(problem_spec));
     const auto ours = std::make_shared<Underway>(*problem, spec);
     const auto adam = std::make_shared<Underway>(*problem, "adam");
-    return Pair{[=] { return (void)problem, ours->run(); }, [=] { return adam->run(); }};
+    return Pair{[problem, ours] { return ours->run(); }, [=] { return adam->run(); }};
   });
 }
 
@@ -101,7 +101,7 @@ void register_training() {
     const auto problem = std::make_shared<const Problem>(toy());
     const auto ours = std::make_shared<Underway>(*problem, "hig");
     const auto bare = std::make_shared<BareGram>(*problem);
-    return Pair{[=] { return (void)problem, ours->run(); }, [=] { return bare->run(); }};
+    return Pair{[problem, ours] { return ours->run(); }, [=] { return bare->run(); }};
   });
 }
 

@@ -95,7 +95,7 @@ void pull_back_output(const UnitPass& last, Index task, Index sample, BatchRef u
   const Index pixels = last.N * last.N, channels = last.plan.output_channels;
   const Place spare = thread.spare.place();
   for (Index block = 0; block < last.blocks; ++block) {
-    const auto a = activation<T>(last.plan, last.state, last.index, sample, block);
+    const auto a = activated<T>(last.plan, last.state, last.index, sample, block);
     for (Index o = 0; o < channels; ++o) {
       const Real* const value = u.col(sample).data() + o * pixels;
       const Real* const tangent = du.col(sample).data() + o * pixels;

@@ -32,7 +32,7 @@ enum class Part { only, first, last };  // of the cotangents of an activation th
 template <class T>
 void absorb(const UnitPass& pass, Index task, Index unit, Index sample, Index block,
             const Place& cotangent, Part part) {
-  const auto a = activation<T>(pass.plan, pass.state, unit, sample, block);
+  const auto a = activated<T>(pass.plan, pass.state, unit, sample, block);
   Norm& norm = pass.state.units[unit].norm;
   const T inverse = norm.at<T>(Norm::inverse, block), centre = norm.at<T>(Norm::centre, block);
   const Index level = pass.plan.units[unit].level, N = pass.plan.size(level);
@@ -88,7 +88,7 @@ void scatter(const UnitPass& pass, Index task, ThreadState& thread) {
     if (unit.source == Unit::Source::activation) {
       absorb<T>(pass, task, unit.from, sample, block, in, Part::only);
     } else if (unit.source == Unit::Source::pooled) {
-      unpool(activation<T>(pass.plan, pass.state, unit.from, sample, block), in, spare, N);
+      unpool(activated<T>(pass.plan, pass.state, unit.from, sample, block), in, spare, N);
       absorb<T>(pass, task, unit.from, sample, block, spare, Part::last);
     } else if (block < pass.blocks) {
       absorb<T>(pass, task, unit.skip, sample, block, in, Part::first);

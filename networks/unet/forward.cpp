@@ -150,7 +150,7 @@ void write_output(const UnetPlan& plan, UnetState& state, BatchOut x) {
       Real* const out = x.col(sample).data() + o * pixels;
       std::fill_n(out, pixels, kIsDual<T> ? bias.tangent : bias.value);
       for (Index block = 0; block < plan.blocks(); ++block) {
-        const auto a = activation<T>(plan, state, last, sample, block);
+        const auto a = activated<T>(plan, state, last, sample, block);
         const T weights = load<T>(state.output.place(), o * plan.blocks() + block);
         for (Index pixel = 0; pixel < pixels; ++pixel) {
           const Lane product = asked_of(weights * a(pixel));

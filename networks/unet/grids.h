@@ -37,7 +37,7 @@ void fill_halo(Element* image, Index N, bool is_circular) {
 
 // relu(scale z + shift): the pixels of z after batch norm and rectifier.
 template <class T>
-struct Activation {
+struct Activated {
   Place z;
   T scale, shift;
 
@@ -49,7 +49,7 @@ struct Activation {
 };
 
 template <class T>
-void activate(const Activation<T>& a, const Place& out, const Grid& grid) {
+void activate(const Activated<T>& a, const Place& out, const Grid& grid) {
   for (Index column = 0; column < grid.N; ++column)
     for (Index row = 0; row < grid.N; ++row)
       store(out, grid.at(column, row), a(column * grid.N + row));
@@ -63,7 +63,7 @@ inline std::array<Index, 4> finer(Index N, Index column, Index row) {
 
 // The largest of each four; of equals the first.
 template <class T>
-void pool(const Activation<T>& a, const Place& out, const Grid& grid) {
+void pool(const Activated<T>& a, const Place& out, const Grid& grid) {
   for (Index column = 0; column < grid.N; ++column)
     for (Index row = 0; row < grid.N; ++row) {
       const auto four = finer(grid.N, column, row);
@@ -78,7 +78,7 @@ void pool(const Activation<T>& a, const Place& out, const Grid& grid) {
 
 // The transpose of pool: fine pixel ← coarse cotangent where it was the largest, else 0.
 template <class T>
-void unpool(const Activation<T>& a, const Place& coarse, const Place& fine, Index N) {
+void unpool(const Activated<T>& a, const Place& coarse, const Place& fine, Index N) {
   for (Index column = 0; column < N; ++column)
     for (Index row = 0; row < N; ++row) {
       const auto four = finer(N, column, row);

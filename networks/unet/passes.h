@@ -52,8 +52,8 @@ struct UnitPass {
 };
 
 template <class T>
-Activation<T> activation(const UnetPlan& plan, UnetState& state, Index unit, Index sample,
-                         Index block) {
+Activated<T> activated(const UnetPlan& plan, UnetState& state, Index unit, Index sample,
+                       Index block) {
   UnitState& from = state.units[unit];
   const Index N = plan.size(plan.units[unit].level);
   return {from.z.place() + (sample * plan.blocks() + block) * N * N,
@@ -66,8 +66,8 @@ void assemble_block(const UnitPass& pass, Index sample, Index block, const Place
                     const Grid& grid, ThreadState& thread) {
   const Unit& unit = pass.unit;
   if (block < pass.blocks && unit.source == Unit::Source::joined)
-    return activate(activation<T>(pass.plan, pass.state, unit.skip, sample, block), out, grid);
-  const auto a = activation<T>(pass.plan, pass.state, unit.from, sample, block % pass.blocks);
+    return activate(activated<T>(pass.plan, pass.state, unit.skip, sample, block), out, grid);
+  const auto a = activated<T>(pass.plan, pass.state, unit.from, sample, block % pass.blocks);
   if (unit.source == Unit::Source::activation) return activate(a, out, grid);
   if (unit.source == Unit::Source::pooled) return pool(a, out, grid);
   activate(a, thread.spare.place(), Grid{grid.N / 2});

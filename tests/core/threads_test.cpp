@@ -1,12 +1,17 @@
-// Every piece of shared work is done once, and what it throws reaches the caller.
+// Every piece of shared work is done once, and what it throws reaches the caller. The libraries'
+// kernel is who it is said to be chosen by.
 #include "core/threads.h"
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <atomic>
+#include <cstdlib>
 #include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "core/processor.h"
 
 namespace isoline {
 namespace {
@@ -36,6 +41,58 @@ TEST(Share, ThrowsToTheCallerWhatAnyPieceThrew) {
                        if (i == 41) throw std::runtime_error("41");
                      }),
                std::runtime_error);
+}
+
+TEST(LibraryKernel, IsNotBelowTheProcessorUnlessAUserSaysSo) {
+  const LibraryKernel kernel = library_kernel();
+  if (kernel.chosen_by == "OpenBLAS" || kernel.chosen_by == "isoline")
+    EXPECT_EQ(better_kernel(processor(), kernel.name), "") << kernel.name;
+  else
+    EXPECT_STRCASEEQ(kernel.name.c_str(), std::getenv("OPENBLAS_CORETYPE"));
+}
+
+#ifndef ISOLINE_PORTABLE
+// In a process of its own that Google Test starts anew: OpenBLAS reads its environment but once.
+[[noreturn]] void leave_if(bool is_so) { std::_Exit(is_so ? 0 : 1); }
+
+bool is_kernel(const std::string& name, const std::string& chosen_by) {
+  return library_kernel().name == name && library_kernel().chosen_by == chosen_by;
+}
+
+class LibraryKernelDeathTest : public ::testing::Test {
+ protected:
+  LibraryKernelDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+};
+
+TEST_F(LibraryKernelDeathTest, OfAUserWins) {
+  setenv("OPENBLAS_CORETYPE", "Nehalem", 1);
+  EXPECT_EXIT(leave_if(is_kernel("Nehalem", "user")), testing::ExitedWithCode(0), "");
+}
+
+TEST_F(LibraryKernelDeathTest, IsOursWhereOpenBlasFellBelow) {
+  unsetenv("OPENBLAS_CORETYPE");
+  unsetenv("ISOLINE_KERNEL");
+  EXPECT_EXIT(leave_if(better_kernel(processor(), library_kernel().name).empty() &&
+                       library_kernel().chosen_by != "user"),
+              testing::ExitedWithCode(0), "");
+}
+
+TEST_F(LibraryKernelDeathTest, OfAnUnknownNameIsNotTheUsers) {
+  if (better_kernel(processor(), "Prescott") != "SkylakeX")
+    GTEST_SKIP() << "OpenBLAS 0.3.21 takes AVX-512 kernels for an unknown name";
+  setenv("OPENBLAS_CORETYPE", "Abacus", 1);
+  EXPECT_EXIT(leave_if(library_kernel().chosen_by == "OpenBLAS"), testing::ExitedWithCode(0), "");
+}
+#endif
+
+TEST(CacheSizes, AreThoseThatEigenBlocksBy) {
+  EXPECT_EQ(cache_sizes().l1, Eigen::l1CacheSize());
+  EXPECT_EQ(cache_sizes().l2, Eigen::l2CacheSize());
+  EXPECT_EQ(cache_sizes().l3, Eigen::l3CacheSize());
+  EXPECT_LT(cache_sizes().l1, cache_sizes().l2);
+#ifdef ISOLINE_PORTABLE
+  EXPECT_EQ(cache_sizes().l1, 32 * 1024);
+#endif
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ TEST_P(EveryNetwork, GivesTheSameBitsTwiceWhereverThetaLies) {
   for (Index offset = 1; offset < 8; offset += 3) {
     Vector shifted(at.theta().size() + 8);
     shifted.segment(offset, at.theta().size()) = at.theta();
-    const auto theta = shifted.segment(offset, at.theta().size());
+    const Eigen::Ref<const Vector> theta = shifted.segment(offset, at.theta().size());
     EXPECT_EQ(at.forward_at(theta, at.in()), at.x()) << offset;
     EXPECT_EQ(at.pull_at(theta, u), g) << offset;
   }

@@ -19,8 +19,22 @@ TEST(FourierOperator, HasThePublishedNumberOfParameters) {
   EXPECT_EQ(network->parameters(), 2'368'001);
   Index complex = 0;
   for (const Block& block : network->layout())
-    if (block.kind == Block::Kind::convolution) complex += block.rows * block.columns / 2;
+    if (block.kind == Block::Kind::spectrum) complex += block.rows * block.columns / 2;
   EXPECT_EQ(network->parameters() - complex, 1'188'353);
+}
+
+// A row is the real or imaginary part of a pair of channels, a column a mode of one corner.
+TEST(FourierOperator, SpectraAreLaidOutByPairsOfChannelsAndModes) {
+  constexpr Index kWidth = 3, kModesKept = 2;
+  const auto network = make("fno[modes=2,width=3]", 8);
+  Index spectra = 0;
+  for (const Block& block : network->layout()) {
+    if (block.kind != Block::Kind::spectrum) continue;
+    EXPECT_EQ(block.rows, 2 * kWidth * kWidth);
+    EXPECT_EQ(block.columns, kModesKept * kModesKept);
+    ++spectra;
+  }
+  EXPECT_EQ(spectra, 4 * 2);  // layers, corners of the half spectrum
 }
 
 TEST(FourierOperator, WantsAGridWithRoomForItsModes) {

@@ -93,18 +93,35 @@ TEST(Perceptron, JacobianIsTheOneByPullbacks) {
   }
 }
 
-// A sample's bits may not depend on its place: neither on the batch before it nor on where vector
-// registers end.
+// What belongs to a sample, x, its change along v and its rows of the Jacobian, may not depend on
+// its place: neither on the batch around it, nor on where vector registers end, nor on the kernels
+// that a library picks.
 TEST(Perceptron, EqualSamplesGetEqualBits) {
-  for (const char* activation : {"relu", "tanh", "sigmoid", "gelu"}) {
-    const auto network = make(std::string("layers=7-5,activation=") + activation, 3, 2);
+  constexpr Index kRows = 2;
+  for (const std::string options : {"activation=relu", "activation=tanh", "activation=sigmoid",
+                                    "activation=gelu", "activation=tanh,precision=double"}) {
+    const auto network = make("layers=7-33-5," + options, 3, 2);
     RandomStream stream(1, "mlp", "test");
-    const Vector theta = network->start(stream), sample = stream.normal_vector(3);
-    for (const Index samples : {1, 2, 15, 16, 37}) {
-      Matrix x(2, samples);
+    const Vector theta = network->start(stream), sample = stream.normal_vector(3),
+                 v = stream.normal_vector(network->parameters());
+    const Matrix dy_dx = stream.normal_vector(2 * kRows).reshaped(kRows, 2);
+    Matrix x1, Jv1, J1;
+    for (const Index samples : {1, 2, 15, 16, 37, 100}) {
+      Matrix x(2, samples), Jv(2, samples), J(kRows * samples, network->parameters());
       Workspace w;
       network->forward(theta, sample.replicate(1, samples), x, w);
-      for (Index b = 1; b < samples; ++b) EXPECT_EQ(x.col(b), x.col(0)) << activation << b;
+      network->pushforward(v, Jv, w);
+      network->jacobian(dy_dx.replicate(1, samples), J, w);
+      if (samples == 1) {
+        x1 = x;
+        Jv1 = Jv;
+        J1 = J;
+      }
+      for (Index b = 0; b < samples; ++b) {
+        EXPECT_EQ(x.col(b), x1) << options << ": " << b << " of " << samples;
+        EXPECT_EQ(Jv.col(b), Jv1) << options << ": " << b << " of " << samples;
+        EXPECT_EQ(J.middleRows(b * kRows, kRows), J1) << options << ": " << b << " of " << samples;
+      }
     }
   }
 }

@@ -35,9 +35,11 @@ struct Trial {
       : network(make_network(spec, shape)) {
     const Index n = network->parameters(), k = network->outputs();
     in = wave(network->inputs(), samples, 0.9, 0.1);
-    u = wave(k, samples, 1.3, 0.2), du = wave(k, samples, 0.4, 0.6);
+    u = wave(k, samples, 1.3, 0.2);
+    du = wave(k, samples, 0.4, 0.6);
     RandomStream stream(0, "unet", "start");
-    theta = network->start(stream), v = wave(n, 1, 0.7, 0.5);
+    theta = network->start(stream);
+    v = wave(n, 1, 0.7, 0.5);
     x = Jv = Matrix(k, samples);
     gradient = curvature = Vector(n);
   }
@@ -121,9 +123,11 @@ TEST(Unet, PullbackIsTheTransposeOfPushforward) {
 TEST(Unet, CurvatureOfAFixedCotangentIsSymmetric) {
   for (const auto& [spec, shape, samples] : kShapes) {
     Trial a(spec, shape, samples), b(spec, shape, samples);
-    a.du.setZero(), b.du.setZero();
+    a.du.setZero();
+    b.du.setZero();
     b.v = wave(b.v.size(), 1, 1.1, 0.2);
-    a.run(), b.run();
+    a.run();
+    b.run();
     const Real scale = a.curvature.norm() * b.v.norm() + b.curvature.norm() * a.v.norm();
     EXPECT_NEAR(a.curvature.dot(b.v), b.curvature.dot(a.v), 1e-5 * scale) << spec;
   }
@@ -142,7 +146,8 @@ TEST(Unet, GivesTheSameBitsAgainAndOnMoreThreadsAndFromArraysThatLieElsewhere) {
   Trial first("unet", grids(32), 6);
   first.run();
   Trial again("unet", grids(32), 6);
-  again.run(), again.run();
+  again.run();
+  again.run();
   set_library_threads(3);
   Trial threaded("unet", grids(32), 6);
   Matrix memory(1024 + 1, 6);
@@ -193,7 +198,8 @@ TEST(Unet, BiasesBeforeBatchNormChangeNothingButTheStatistics) {
     ++at;
   }
   EXPECT_EQ(at, 6);
-  plain.run(), shifted.run();
+  plain.run();
+  shifted.run();
   EXPECT_EQ(plain.x, shifted.x);
   const Vector before = plain.network->statistics(plain.theta, plain.in, plain.w);
   const Vector after = shifted.network->statistics(shifted.theta, shifted.in, shifted.w);

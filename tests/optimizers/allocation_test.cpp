@@ -25,6 +25,7 @@ __attribute__((visibility("default"))) void* malloc(std::size_t size) noexcept {
 namespace isoline::optimizers {
 
 using problems::Draw;
+using problems::Point;
 using problems::Problem;
 using problems::problem_entry;
 using problems::ProblemRegistry;
@@ -61,6 +62,40 @@ TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
       if (entry.family != Family::first_order) continue;
       EXPECT_EQ(allocations_of_steps(problem, name), 0) << problem_name << " × " << name;
     }
+  }
+}
+
+std::int64_t allocations_of_jacobians(const Problem& problem) {
+  Point at;
+  Matrix J;
+  const auto evaluate = [&] {
+    problem.forward(problem.start(), at);
+    problem.jacobian(J, at);
+  };
+  evaluate();  // sizes the work space
+  const std::int64_t before = allocations;
+  evaluate();
+  return allocations - before;
+}
+
+// By formula, by products, through a network, and row by row through one without its own.
+TEST(Allocation, JacobiansAllocateNothingOnceWarm) {
+  for (const char* spec : {"rosenbrock", "broyden-tridiagonal[n=20]", "sine[mode=learn]", "hig-toy",
+                           "exponential[mode=learn]", "variably-dimensioned"})
+    EXPECT_EQ(allocations_of_jacobians(published(spec)), 0) << spec;
+  EXPECT_EQ(allocations_of_jacobians(learned_affine(6)), 0) << "a network without its own";
+}
+
+TEST(Allocation, HessiansAllocateNothingOnceWarm) {
+  for (const char* spec : {"rosenbrock", "brown-dennis", "wood"}) {
+    const Problem problem = published(spec);
+    Point at;
+    Matrix H;
+    problem.forward(problem.start(), at);
+    problem.hessian(H, at);
+    const std::int64_t before = allocations;
+    problem.hessian(H, at);
+    EXPECT_EQ(allocations - before, 0) << spec;
   }
 }
 

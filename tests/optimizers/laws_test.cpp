@@ -117,6 +117,18 @@ TEST(LevenbergMarquardt, LossNeverRises) {
   EXPECT_LE(before, 1e-20);
 }
 
+// Of unit length for any number of unknowns, however small the gradient.
+TEST(Rescaled, StepsHaveUnitLengthAgainstTheGradient) {
+  for (const Real size : {1.0, 1e-200}) {
+    const Problem problem = linear(easy_matrix(), size * Eigen::Vector2d(3, -4), Vector::Zero(2));
+    Point at;
+    problem.forward(problem.start(), at);
+    const Vector slope = easy_matrix().transpose() * (at.y / size);
+    const Vector step = first_step(problem, "rescaled[network-optimizer=gd[rate=1]]");
+    EXPECT_LE((step + slope.normalized()).norm(), 1e-14) << size;
+  }
+}
+
 TEST(Sip, IdentityNetworkAndUnitStepSolveInOne) {
   for (const char* spec : {"sip", "sip[inverse=lbfgs]"}) {
     const Outcome result = run(easy(), spec, iterations(1));

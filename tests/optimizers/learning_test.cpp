@@ -47,7 +47,7 @@ TEST(LevenbergMarquardt, LearnsFromFreshBatchesWideAndTall) {
   }
 }
 
-TEST(Rescaled, SignsByGradientAndByTruthAgreeOnANetwork) {
+TEST(Rescaled, DirectionsByGradientAndByTruthAgreeOnANetworkOfOneOutput) {
   const Problem problem = published("exponential[mode=learn,batch=20]");
   EXPECT_EQ(run(problem, "rescaled", iterations(20)).theta,
             run(problem, "rescaled[by=truth]", iterations(20)).theta);

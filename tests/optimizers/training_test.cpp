@@ -160,14 +160,16 @@ TEST(AdaHessian, DiagonalOfADiagonalHessianIsExact) {
   expect_near(step, -problem.start(), 1e-14, "Newton's step");
 }
 
-// Parameters that act one by one, but are laid out as two kernels of two taps.
+// Parameters that act one by one, but are laid out as two kernels of two taps, or as two modes of
+// one pair of channels.
 class Kernels final : public Network {
  public:
+  explicit Kernels(Block::Kind kind) : kind_(kind) {}
   Index parameters() const override { return 4; }
   Index inputs() const override { return 0; }
   Index outputs() const override { return 4; }
   Vector start(RandomStream&) const override { return Vector::Ones(4); }
-  std::vector<Block> layout() const override { return {{0, 2, 2, Block::Kind::convolution}}; }
+  std::vector<Block> layout() const override { return {{0, 2, 2, kind_}}; }
   void forward(VectorRef theta, BatchRef, BatchOut x, Workspace&) const override {
     x.col(0) = theta;
   }
@@ -177,20 +179,34 @@ class Kernels final : public Network {
   void curvature(VectorRef, BatchRef, BatchRef du, VectorOut out, Workspace&) const override {
     out = du.col(0);
   }
+
+ private:
+  Block::Kind kind_;
 };
 
-TEST(AdaHessian, AveragesTheTapsOfAKernel) {
+// The curvatures, like the gradient, are 1, 4, 9, 16.
+Problem kernels(Block::Kind kind) {
   const Matrix M = Eigen::Vector4d(1, 2, 3, 4).asDiagonal();
-  const Problem problem({.physics = std::make_unique<Linear>(M),
-                         .start = Vector::Ones(4),
-                         .target = Vector::Zero(4),
-                         .network = std::make_unique<Kernels>(),
-                         .input = Matrix(0, 1),
-                         .minimum = 0});
-  const Eigen::Vector4d gradient(1, 4, 9, 16), mean(2.5, 2.5, 12.5, 12.5);
+  return Problem({.physics = std::make_unique<Linear>(M),
+                  .start = Vector::Ones(4),
+                  .target = Vector::Zero(4),
+                  .network = std::make_unique<Kernels>(kind),
+                  .input = Matrix(0, 1),
+                  .minimum = 0});
+}
+const Eigen::Vector4d kGradient(1, 4, 9, 16);
+
+TEST(AdaHessian, AveragesTheTapsOfAKernel) {
+  const Problem problem = kernels(Block::Kind::convolution);
+  const Eigen::Vector4d mean(2.5, 2.5, 12.5, 12.5);
   const std::string spec = "adahessian[rate=1,power=1,epsilon=0";
-  expect_near(first_step(problem, spec + "]"), -gradient.cwiseQuotient(mean), 1e-14, "averaged");
+  expect_near(first_step(problem, spec + "]"), -kGradient.cwiseQuotient(mean), 1e-14, "averaged");
   expect_near(first_step(problem, spec + ",average=false]"), -Vector::Ones(4), 1e-14, "each");
+}
+
+TEST(AdaHessian, AveragesTheModesOfAPairOfChannelsTheirRealAndImaginaryParts) {
+  expect_near(first_step(kernels(Block::Kind::spectrum), "adahessian[rate=1,power=1,epsilon=0]"),
+              -kGradient / 7.5, 1e-14, "averaged");
 }
 
 TEST(HessianFree, SolvesALinearLeastSquaresProblemAtOnceWithoutDamping) {

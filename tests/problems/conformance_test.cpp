@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "make.h"
+#include "problems/dense_physics.h"
 
 namespace isoline::problems {
 namespace {
@@ -115,6 +117,53 @@ TEST(Conformance, FindsAWrongPushforward) {
   int failures = 0;
   for (const Finding& finding : examine(problem, stream)) failures += !finding.holds();
   EXPECT_GE(failures, 2);  // the adjoint identity and Taylor's slope
+}
+
+// P(x) = (1e4 x1, x2) from (1e-4, 1), with a minimum as a paper prints it.
+class TwoScales final : public DensePhysics {
+ public:
+  TwoScales() : DensePhysics(2, 2) {}
+  void value(VectorRef x, VectorOut y) const override { y << 1e4 * x[0], x[1]; }
+  void derivative(VectorRef, BatchOut J) const override { J.diagonal() << 1e4, 1; }
+};
+
+Problem two_scales(Real minimum, Real error) {
+  return Problem({.physics = std::make_unique<TwoScales>(),
+                  .start = Eigen::Vector2d(1e-4, 1),
+                  .start_scale = StartScale::own,
+                  .target = Eigen::Vector2d(1, 2),
+                  .minimum = minimum,
+                  .minimum_error = error,
+                  .truth = Eigen::Vector2d(1e-4, 2)});
+}
+
+bool holds(const Problem& problem) {
+  RandomStream stream(0, "two-scales", "conformance");
+  bool all = true;
+  for (const Finding& finding : examine(problem, stream)) all = all && finding.holds();
+  return all;
+}
+
+TEST(Conformance, TakesAPublishedMinimumWithTheErrorDeclaredOfIt) {
+  EXPECT_TRUE(holds(two_scales(0, 0)));
+  EXPECT_TRUE(holds(two_scales(4e-12, 5e-12)));   // of eleven digits, rounded up
+  EXPECT_FALSE(holds(two_scales(4e-12, 0)));      // below what is declared
+  EXPECT_FALSE(holds(two_scales(6e-12, 5e-12)));  // further off than declared
+}
+
+// 0.1 N(0, 1) beside an unknown of 1e-4 would be a thousand times the unknown.
+TEST(Draw, StartsKeepTheScaleOfEachUnknownWhereItIsTheProblemsOwn) {
+  const Eigen::Vector2d standard(1e-4, 1000);
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    const Draw draw(seed, "two-scales");
+    const Vector start = draw.start(standard, StartScale::own);
+    EXPECT_LT((start.cwiseQuotient(standard) - Vector::Ones(2)).cwiseAbs().maxCoeff(), 0.5) << seed;
+    EXPECT_NE(start[0], standard[0]);
+    const Vector wide = draw.start(standard);
+    EXPECT_EQ(wide[1], start[1]) << "the same numbers, the same scale of 1000";
+    EXPECT_GT(std::abs(wide[0] - standard[0]), 1e-4) << seed;
+  }
+  EXPECT_EQ(Draw(0, "two-scales").start(standard, StartScale::own), standard);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(Learning, TruthIsWhatWasObserved) {
 TEST(Learning, ExponentialTargetsAreLogUniform) {
   Batch validation;
   make("exponential[mode=learn]").draw_validation(validation);
-  const auto x = validation.truth.array();
+  const Eigen::ArrayXXd x = validation.truth;
   EXPECT_GE(x.minCoeff(), -12);
   EXPECT_LE(x.maxCoeff(), 0);
   const Real error = 12 / std::sqrt(12.0 * 1024);  // of the mean of 1,024 samples
@@ -80,7 +80,7 @@ TEST(Learning, SineTeachesEveryBranchOfItsInverse) {
   const Problem problem = make("sine[mode=learn,xi=1,phi=0]");
   Batch validation;
   problem.draw_validation(validation);
-  const auto phase = 10 * validation.truth.row(0).array();  // γ z₁ with ξ = 1, φ = 0
+  const Eigen::ArrayXd phase = 10 * validation.truth.row(0).array();  // γ z₁ with ξ = 1, φ = 0
   EXPECT_LT(phase.minCoeff(), -2 * M_PI);
   EXPECT_GT(phase.maxCoeff(), 2 * M_PI);
   EXPECT_LE(validation.target.cwiseAbs().maxCoeff(), 1);
@@ -101,7 +101,7 @@ TEST(Learning, HeatGivesTheNetworkTheMean) {
   const Problem problem = make("heat[mode=learn,N=16,batch=3,network=unet[levels=2]]");
   Point at;
   problem.forward(problem.start(), at);
-  const auto means = at.x().colwise().mean() - problem.batch().truth.colwise().mean();
+  const Eigen::RowVectorXd means = at.x().colwise().mean() - problem.batch().truth.colwise().mean();
   EXPECT_LT(means.cwiseAbs().maxCoeff(), 1e-6);  // the network is of single precision
 }
 

@@ -27,7 +27,8 @@ struct Steps {
   Steps() {
     RandomStream stream(0, "unet", "micro");
     const Index n = network->parameters(), size = kN * kN * kBatch;
-    theta = network->start(stream), v = stream.normal_vector(n), gradient = v;
+    theta = network->start(stream);
+    v = gradient = stream.normal_vector(n);
     in = stream.normal_vector(size).reshaped(kN * kN, kBatch);
     u = stream.normal_vector(size).reshaped(kN * kN, kBatch);
     x = u;

@@ -109,7 +109,10 @@ void register_precision(const std::string& precision) {
   };
   register_pair(name + "/forward-and-pullback", kPairs, {.ratio = 1.5},
                 pair([](Passes& p) { p.step(); },
-                     [](BareProducts<Scalar>& b) { b.forward(), b.pullback(); }));
+                     [](BareProducts<Scalar>& b) {
+                       b.forward();
+                       b.pullback();
+                     }));
   register_pair(
       name + "/jacobian", kPairs, {.ratio = 2},
       pair([](Passes& p) { p.jacobian(); }, [](BareProducts<Scalar>& b) { b.jacobian(); }));

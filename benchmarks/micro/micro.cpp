@@ -6,7 +6,7 @@
 #include "core/threads.h"
 
 int main(int count, char** arguments) {
-  isoline::start_single_threaded(arguments);
+  isoline::prepare_libraries(arguments);
   isoline::benchmarks::micro::register_metering();
   isoline::benchmarks::micro::register_steps();
   isoline::benchmarks::micro::register_training();

@@ -1,0 +1,138 @@
+// Products whose rows do not depend on their place. One register holds as many rows of a column; a
+// tile of sums stays in registers while the inner index runs, as in Goto, van de Geijn (2008), but
+// without their packing: the arrays of small networks lie in the caches as they are.
+#include <algorithm>
+
+#include "core/errors.h"
+#include "core/product.h"
+#include "core/threads.h"
+
+namespace isoline {
+namespace {
+
+using Eigen::internal::packet_traits;
+using Eigen::internal::ploadu;
+using Eigen::internal::pmadd;
+using Eigen::internal::pmul;
+using Eigen::internal::pset1;
+using Eigen::internal::pstoreu;
+
+template <class Scalar>
+using Register = typename packet_traits<Scalar>::type;
+template <class Scalar>
+constexpr Index kLanes = packet_traits<Scalar>::size;
+
+// Columns of a tile. Two registers of rows by as many sums hide the latency of a multiply-add;
+// there are 32 registers with AVX-512 and 16 without.
+constexpr int kColumns = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 4;
+
+// A matrix as numbers and the steps from one to the next: along the inner index, and across it.
+template <class Scalar>
+struct Panel {
+  const Scalar* numbers;
+  Index along, across;
+};
+
+template <class Scalar>
+struct Result {
+  Scalar* numbers;
+  Index stride;
+  Scalar keep;
+};
+
+// C = A B + keep C for `Registers` registers of rows and `Columns` columns.
+template <int Registers, int Columns, class Scalar>
+void tile(const Panel<Scalar>& A, const Panel<Scalar>& B, Index depth, const Result<Scalar>& C) {
+  Register<Scalar> sum[Columns][Registers];
+  for (int c = 0; c < Columns; ++c)
+    for (int r = 0; r < Registers; ++r)
+      sum[c][r] =
+          C.keep == 0
+              ? pset1<Register<Scalar>>(Scalar(0))
+              : pmul(pset1<Register<Scalar>>(C.keep),
+                     ploadu<Register<Scalar>>(C.numbers + c * C.stride + r * kLanes<Scalar>));
+  for (Index p = 0; p < depth; ++p) {
+    Register<Scalar> a[Registers];
+    for (int r = 0; r < Registers; ++r)
+      a[r] = ploadu<Register<Scalar>>(A.numbers + p * A.along + r * kLanes<Scalar>);
+    for (int c = 0; c < Columns; ++c) {
+      const auto b = pset1<Register<Scalar>>(B.numbers[p * B.along + c * B.across]);
+      for (int r = 0; r < Registers; ++r) sum[c][r] = pmadd(a[r], b, sum[c][r]);
+    }
+  }
+  for (int c = 0; c < Columns; ++c)
+    for (int r = 0; r < Registers; ++r)
+      pstoreu(C.numbers + c * C.stride + r * kLanes<Scalar>, sum[c][r]);
+}
+
+// All rows of `Columns` columns.
+template <int Columns, class Scalar>
+void columns(Panel<Scalar> A, const Panel<Scalar>& B, Index rows, Index depth, Result<Scalar> C) {
+  constexpr int kTwo = 2;
+  constexpr Index kStep = kTwo * kLanes<Scalar>;
+  for (; rows >= kStep; rows -= kStep) {
+    tile<kTwo, Columns>(A, B, depth, C);
+    A.numbers += kStep;
+    C.numbers += kStep;
+  }
+  if (rows > 0) tile<1, Columns>(A, B, depth, C);
+}
+
+// The inner index in blocks whose part of B stays in the first cache; what a block leaves in C is
+// exactly what its registers held, so blocks change no bits.
+template <class Scalar>
+void all_columns(Panel<Scalar> A, Panel<Scalar> B, Index rows, Index width, Index depth,
+                 Result<Scalar> C) {
+  constexpr Index kDeepest = 256;
+  for (Index p = 0; p < std::max<Index>(depth, 1); p += kDeepest) {
+    const Index deep = std::min(kDeepest, depth - p);
+    Index c = 0;
+    const auto next = [&]<int Columns>() {
+      const Panel<Scalar> part{B.numbers + p * B.along + c * B.across, B.along, B.across};
+      columns<Columns>({A.numbers + p * A.along, A.along, A.across}, part, rows, deep,
+                       {C.numbers + c * C.stride, C.stride, C.keep});
+      c += Columns;
+    };
+    while (c + kColumns <= width) next.template operator()<kColumns>();
+    while (c + 2 <= width) next.template operator()<2>();
+    if (c < width) next.template operator()<1>();
+    C.keep = 1;
+  }
+}
+
+template <class Scalar>
+void multiply(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scalar>::In B,
+              typename Gemm<Scalar>::Out C, Scalar keep) {
+  const bool is_across = form == Form::A_BH;
+  const Index rows = A.rows(), depth = A.cols(), width = is_across ? B.rows() : B.cols();
+  if (form == Form::AH_B || C.rows() != rows || C.cols() != width ||
+      depth != (is_across ? B.cols() : B.rows()) || rows % kLanes<Scalar> != 0)
+    throw UsageError("the matrices of a product by rows do not fit");
+  const Panel<Scalar> right{B.data(), is_across ? B.outerStride() : 1,
+                            is_across ? 1 : B.outerStride()};
+  const auto some_rows = [&](Index first, Index count) {
+    all_columns<Scalar>({A.data() + first, A.outerStride(), 1}, right, count, width, depth,
+                        {C.data() + first, C.outerStride(), keep});
+  };
+  constexpr Real kWorthSharing = 4e6;  // multiply-adds: some 50 µs, against 5 to wake a thread
+  constexpr Index kShare = 16 * kLanes<Scalar>;
+  if (library_threads() == 1 || static_cast<Real>(rows * width) * Real(depth) < kWorthSharing)
+    return some_rows(0, rows);
+  for_each_task((rows + kShare - 1) / kShare, [&](Index task, int) {
+    some_rows(task * kShare, std::min(kShare, rows - task * kShare));
+  });
+}
+
+}  // namespace
+
+void product_by_rows(Form form, Gemm<float>::In A, Gemm<float>::In B, Gemm<float>::Out C,
+                     float keep) {
+  multiply<float>(form, A, B, C, keep);
+}
+
+void product_by_rows(Form form, Gemm<double>::In A, Gemm<double>::In B, Gemm<double>::Out C,
+                     double keep) {
+  multiply<double>(form, A, B, C, keep);
+}
+
+}  // namespace isoline

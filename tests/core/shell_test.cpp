@@ -1,0 +1,43 @@
+// A command that a record keeps means the same when it is typed again.
+#include "core/shell.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+namespace isoline {
+namespace {
+
+TEST(Shell, WordsAreQuotedOnlyWhereTheyMustBe) {
+  EXPECT_EQ(shell_word("--out=results/a.b"), "--out=results/a.b");
+  EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("it's"), R"('it'\''s')");
+  EXPECT_EQ(shell_word("sine[xi=1|3]"), "'sine[xi=1|3]'");
+  const std::array words = {"isoline", "run", "--problem", "square, sine"};
+  EXPECT_EQ(shell_command(words), "isoline run --problem 'square, sine'");
+}
+
+// What `sh` makes of it, each word on a line of its own.
+std::string read_back(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(
+      popen(("printf '<%s>' " + command).c_str(), "r"), pclose);
+  std::string text;
+  for (int letter = std::fgetc(pipe.get()); letter != EOF; letter = std::fgetc(pipe.get()))
+    text += static_cast<char>(letter);
+  return text;
+}
+
+TEST(Shell, ReadsEveryWordBackAsItWas) {
+  const std::vector<const char*> words = {"it's",  "a b",      "$HOME", "`date`", "\\",  "\"", "*",
+                                          "~",     "a;b",      "#",     "",       "–ξ’", "'",  "!x",
+                                          "(a|b)", "two\nlines"};
+  std::string expected;
+  for (const char* word : words) expected += std::string("<") + word + ">";
+  EXPECT_EQ(read_back(shell_command(words)), expected);
+}
+
+}  // namespace
+}  // namespace isoline
