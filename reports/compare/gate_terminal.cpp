@@ -2,7 +2,8 @@
 #include <fmt/format.h>
 
 #include "reports/compare/gate_words.h"
-#include "reports/text.h"
+#include "reports/formats/escape.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {

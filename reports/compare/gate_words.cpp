@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/text.h"
+#include "reports/formats/escape.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
