@@ -46,6 +46,12 @@ Rates Rates::builtin() {
   return all;
 }
 
+Rates Rates::named(const std::string& given) {
+  if (given == "builtin") return builtin();
+  if (given == "none") return {};
+  return from_json(read_json(given), given);
+}
+
 Rates Rates::from_json(const Json& json, const std::string& origin) {
   Rates rates;
   try {

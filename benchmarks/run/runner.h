@@ -33,8 +33,11 @@ struct Outcome {
   bool is_interrupted = false;
 };
 
+// Runs the requests that the store has no record of, and no more.
 Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                 const RunOptions& options);
+
+int one_a_core();  // how many cells at a time a machine is meant for
 
 // The limits of one request: its soft time limit, doubled, is its hard one.
 Limits limits_of(const Request& request, const Limits& standard);

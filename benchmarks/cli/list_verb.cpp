@@ -1,10 +1,11 @@
 // isoline list: what there is.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/plan/suite.h"
 #include "core/json.h"
@@ -14,11 +15,6 @@ namespace isoline::benchmarks {
 
 using networks::network_registry;
 namespace {
-
-struct ListOptions {
-  std::string kind = "all";
-  bool as_json = false, names_only = false;
-};
 
 Json listing(Session& session, const std::string& kind) {
   Json all = Json::object();
@@ -57,21 +53,13 @@ void print(const Json& all, bool names_only) {
 
 }  // namespace
 
-void add_list(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<ListOptions>();
-  CLI::App* verb = app.add_subcommand("list", "List the problems, networks, optimizers and suites");
-  verb->add_option("KIND", options->kind, "problems, networks, optimizers, suites or all")
-      ->check(CLI::IsMember({"problems", "networks", "optimizers", "suites", "all"}))
-      ->capture_default_str();
-  verb->add_flag("--json", options->as_json, "As JSON");
-  verb->add_flag("--names", options->names_only, "Names only, one a line");
-  verb->callback([options, &session] {
-    const Json all = listing(session, options->kind);
-    if (options->as_json)
-      fmt::print("{}\n", all.dump(2));
-    else
-      print(all, options->names_only);
-  });
+int list_verb(const ListArguments& given, Session& session) {
+  const Json all = listing(session, given.kind);
+  if (given.as_json)
+    fmt::print("{}\n", all.dump(2));
+  else
+    print(all, given.names_only);
+  return kGood;
 }
 
 }  // namespace isoline::benchmarks

@@ -1,7 +1,7 @@
 // isoline completion bash: a script for the shell, with the names of problems and optimizers.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <string_view>
 
 #include "benchmarks/cli/verbs.h"
 
@@ -47,16 +47,13 @@ complete -o nosort -F _isoline isoline ./isoline
 
 }  // namespace
 
-void add_completion(CLI::App& app, Session&) {
-  const auto shell = std::make_shared<std::string>("bash");
-  CLI::App* verb = app.add_subcommand("completion", "Print the completion script of a shell");
-  verb->add_option("SHELL", *shell, "bash")->check(CLI::IsMember({"bash"}))->capture_default_str();
-  verb->callback([&app] {
-    std::string verbs, script = kBash;
-    for (const CLI::App* each : app.get_subcommands({})) verbs += each->get_name() + " ";
-    script.replace(script.find("@VERBS@"), std::string_view("@VERBS@").size(), verbs);
-    fmt::print("{}", script);
-  });
+int completion_verb(const CompletionArguments& given, Session&) {
+  constexpr std::string_view kPlace = "@VERBS@";
+  std::string verbs, script = kBash;
+  for (const std::string& verb : given.verbs) verbs += verb + " ";
+  script.replace(script.find(kPlace), kPlace.size(), verbs);
+  fmt::print("{}", script);
+  return kGood;
 }
 
 }  // namespace isoline::benchmarks

@@ -1,13 +1,15 @@
 // isoline validate PATH...: are the records, plans, sheets, suites and rates what they claim to be?
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/resources.h"
+#include "core/errors.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/threads.h"
@@ -61,26 +63,20 @@ std::vector<fs::path> files_under(const std::vector<std::string>& paths) {
 
 }  // namespace
 
-void add_validate(CLI::App& app, Session& session) {
-  const auto paths = std::make_shared<std::vector<std::string>>();
-  CLI::App* verb = app.add_subcommand(
-      "validate", "Hold records, suites and every other JSON file of ours to its schema");
-  verb->add_option("PATH", *paths, "Files, or folders to search for *.json")->required();
-  verb->callback([paths, &session] {
-    std::size_t wrong = 0;
-    const std::vector<fs::path> files = files_under(*paths);
-    std::vector<std::vector<std::string>> violations(files.size());
-    share(
-        files.size(), [&](std::size_t i) { violations[i] = violations_in(files[i]); },
-        on_terminal("files"));
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      wrong += !violations[i].empty();
-      for (const std::string& violation : violations[i])
-        fmt::print("{}: {}\n", files[i].string(), violation);
-    }
-    fmt::print("{} files, {} wrong\n", files.size(), wrong);
-    if (wrong > 0) session.exit_code = kWorse;
-  });
+int validate_verb(const ValidateArguments& given, Session&) {
+  std::size_t wrong = 0;
+  const std::vector<fs::path> files = files_under(given.paths);
+  std::vector<std::vector<std::string>> violations(files.size());
+  share(
+      files.size(), [&](std::size_t i) { violations[i] = violations_in(files[i]); },
+      on_terminal("files"));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    wrong += !violations[i].empty();
+    for (const std::string& violation : violations[i])
+      fmt::print("{}: {}\n", files[i].string(), violation);
+  }
+  fmt::print("{} files, {} wrong\n", files.size(), wrong);
+  return wrong > 0 ? kWorse : kGood;
 }
 
 }  // namespace isoline::benchmarks

@@ -1,10 +1,11 @@
 // isoline check [SPEC]: are a problem's derivatives, adjoint, inverse and solution what they claim?
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
 #include "core/spec.h"
@@ -17,12 +18,6 @@ using problems::Finding;
 namespace {
 
 constexpr double kCheckSeconds = 120;
-
-struct CheckOptions {
-  std::string spec;
-  std::uint64_t seed = 0;
-  bool as_json = false;
-};
 
 Json findings_of(const Catalog& catalog, const Component& component, std::uint64_t seed) {
   const Problem problem = make_problem(catalog, component, seed);
@@ -39,13 +34,13 @@ Json findings_of(const Catalog& catalog, const Component& component, std::uint64
 
 // The findings, from a process of its own: a broken problem costs its own check alone.
 Json isolated_findings(const Catalog& catalog, const Component& component, std::uint64_t seed) {
-  const auto text =
+  const auto [text, failure] =
       isolated_text([&] { return findings_of(catalog, component, seed).dump(); }, kCheckSeconds);
   if (text) return parse_json(*text, component.spec);
   return Json::array({{{"property", "the problem can be made and examined"},
                        {"figure", "nan"},
                        {"limit", 0},
-                       {"reason", "its process crashed, threw or took too long"},
+                       {"reason", failure},
                        {"holds", false}}});
 }
 
@@ -72,33 +67,23 @@ void print(const std::string& spec, const Json& findings) {
   }
 }
 
-void check(const CheckOptions& options, Session& session) {
+}  // namespace
+
+int check_verb(const CheckArguments& given, Session& session) {
   Json all = Json::object();
   std::size_t failed = 0, total = 0;
-  for (const Component& component : chosen(session.catalog(), options.spec)) {
-    all[component.spec] = isolated_findings(session.catalog(), component, options.seed);
-    for (const Json& finding : all[component.spec]) failed += !finding.at("holds").get<bool>();
-    total += all[component.spec].size();
-    if (!options.as_json) print(component.spec, all[component.spec]);
+  for (const Component& component : chosen(session.catalog(), given.spec)) {
+    const Json findings = isolated_findings(session.catalog(), component, given.seed);
+    for (const Json& finding : findings) failed += !finding.at("holds").get<bool>();
+    total += findings.size();
+    if (!given.as_json) print(component.spec, findings);
+    all[component.spec] = findings;
   }
-  if (options.as_json)
+  if (given.as_json)
     fmt::print("{}\n", all.dump(2));
   else
     fmt::print("{} checks, {} failed\n", total, failed);
-  if (failed > 0) session.exit_code = kWorse;
-}
-
-}  // namespace
-
-void add_check(CLI::App& app, Session& session) {
-  const auto options = std::make_shared<CheckOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "check", "Hold a problem's derivatives, adjoint and inverse to each other, with figures");
-  verb->add_option("SPEC", options->spec, "Problems, as in `isoline run` (default: all)");
-  verb->add_option("--seed", options->seed, "Seed of the instance and of the directions")
-      ->capture_default_str();
-  verb->add_flag("--json", options->as_json, "As JSON");
-  verb->callback([options, &session] { check(*options, session); });
+  return failed > 0 ? kWorse : kGood;
 }
 
 }  // namespace isoline::benchmarks

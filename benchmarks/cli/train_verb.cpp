@@ -3,9 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
+#include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
@@ -15,14 +13,6 @@
 
 namespace isoline::benchmarks {
 namespace {
-
-struct TrainArguments {
-  std::string problem, optimizer = "sip", out;
-  std::uint64_t seed = 0;
-  std::int64_t iterations = 1000;
-  int threads = 1;
-  bool quiet = false;
-};
 
 Request request_of(const TrainArguments& given, const Catalog& catalog) {
   const Spec problem_spec = parse_spec(given.problem), spec = parse_spec(given.optimizer);
@@ -39,12 +29,16 @@ Request request_of(const TrainArguments& given, const Catalog& catalog) {
                 .rates = ""});
 }
 
+bool is_trained(const Trace& trace) {
+  return trace.status == Status::budget || trace.status == Status::converged;
+}
+
 // In the worker: the run, then the network with its statistics.
 void train_and_write(const Catalog& catalog, const Request& request, const std::string& out,
                      Trace& trace) {
   Vector theta;
   execute(catalog, request, trace, {}, &theta);
-  if (trace.status != Status::budget && trace.status != Status::converged) return;
+  if (!is_trained(trace)) return;
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   write_network({.problem = request.problem,
                  .optimizer = request.optimizer,
@@ -62,59 +56,40 @@ void show(const Trace& trace, std::int64_t iterations, const char* end) {
              trace.last.iteration, iterations, trace.last.loss, trace.last.x_error, end);
 }
 
-void train(const TrainArguments& given, Session& session) {
+// How far it has come, as a line that each call overwrites.
+void watch(Worker& worker, std::int64_t iterations, bool is_shown) {
+  while (!worker.poll()) {
+    constexpr int kMilliseconds = 200;
+    pollfd ending{worker.descriptor(), POLLIN, 0};
+    ::poll(&ending, 1, kMilliseconds);
+    if (is_shown) show(worker.trace(), iterations, "");
+  }
+  if (is_shown) show(worker.trace(), iterations, "\n");
+}
+
+}  // namespace
+
+int train_verb(const TrainArguments& given, Session& session) {
   const Request request = request_of(given, session.catalog());
   require_sound(session.catalog(), {request});
   Worker worker;
   constexpr double kForever = 1e9;
   worker.start([&](Trace& trace) { train_and_write(session.catalog(), request, given.out, trace); },
                {.hard_seconds = kForever, .memory_bytes = std::int64_t{8} << 30}, request.threads);
-  const bool is_shown = !given.quiet && isatty(STDERR_FILENO) != 0;
-  while (!worker.poll()) {
-    constexpr int kMilliseconds = 200;
-    pollfd ending{worker.descriptor(), POLLIN, 0};
-    ::poll(&ending, 1, kMilliseconds);
-    if (is_shown) show(worker.trace(), given.iterations, "");
-  }
+  watch(worker, given.iterations, !given.quiet && isatty(STDERR_FILENO) != 0);
   const Trace& trace = worker.trace();
-  if (is_shown) show(trace, given.iterations, "\n");
-  const bool is_trained = trace.status == Status::budget || trace.status == Status::converged;
-  require(trace.status != Status::inapplicable || is_trained, [&] {
+  require(trace.status != Status::inapplicable, [&] {
     return fmt::format("{} cannot train {}: {}", request.optimizer.spec, request.problem.spec,
                        trace.message);
   });
-  if (!is_trained) {
+  if (!is_trained(trace)) {
     fmt::print(stderr, "isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message);
-    session.exit_code = kWorse;
-    return;
+    return kWorse;
   }
   fmt::print("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n", given.out,
              request.problem.spec, request.optimizer.spec, trace.last.iteration, trace.last.loss,
              trace.last.x_error);
-}
-
-}  // namespace
-
-void add_train(CLI::App& app, Session& session) {
-  const auto given = std::make_shared<TrainArguments>();
-  CLI::App* verb =
-      app.add_subcommand("train", "Train a network on a learning problem and write it to a file");
-  verb->add_option("PROBLEM", given->problem,
-                   "Problem: 'sine[xi=32]'; mode=learn goes without saying")
-      ->required();
-  verb->add_option("--out", given->out,
-                   "Where to write it: .json, or any other name for raw numbers")
-      ->required();
-  verb->add_option("--optimizer", given->optimizer, "Training method")->capture_default_str();
-  verb->add_option("--iterations", given->iterations, "Steps of training")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option("--seed", given->seed, "Seed of the start and of the samples")
-      ->capture_default_str();
-  verb->add_option("--threads", given->threads, "Threads of the libraries")
-      ->check(CLI::Range(1, 256));
-  verb->add_flag("--quiet", given->quiet, "No progress");
-  verb->callback([given, &session] { train(*given, session); });
+  return kGood;
 }
 
 }  // namespace isoline::benchmarks
