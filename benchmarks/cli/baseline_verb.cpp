@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/perturbed_runs.h"
 #include "core/errors.h"

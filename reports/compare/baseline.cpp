@@ -17,7 +17,7 @@ namespace {
 Json work_json(const Record& record, const BestKnown& best) {
   Run run{.record = &record, .work = {}, .seconds = {}};
   fill_reached(run, best);
-  return json_numbers(run.work.data(), run.work.size());
+  return json_numbers(run.work);
 }
 
 Json cell_json(const Record& record, const Subject& subject, const BestKnown& best) {
