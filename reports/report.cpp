@@ -2,7 +2,6 @@
 #include "reports/report.h"
 
 #include "core/files.h"
-#include "core/files.h"
 #include "core/threads.h"
 
 namespace isoline::reports {

@@ -2,6 +2,7 @@
 #include "benchmarks/run/sheets.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "benchmarks/run/isolate.h"

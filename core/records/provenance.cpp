@@ -11,7 +11,9 @@
 
 #include "core/decompose.h"
 #include "core/digest.h"
+#include "core/processor.h"
 #include "core/records/provenance_fields.h"
+#include "core/threads.h"
 #include "isoline_build_flags.h"
 #include "isoline_build_info.h"
 
@@ -85,7 +87,13 @@ std::shared_ptr<const Build> read_build() {
   build->build_type = ISOLINE_BUILD_TYPE;
   build->flags = ISOLINE_FLAGS;
   build->instruction_set = instruction_set();
-  build->processor = value_in("/proc/cpuinfo", "model name", ':');
+  build->processor = processor().brand;
+  build->processor_features = processor().features;
+  const LibraryKernel kernel = library_kernel();
+  build->kernel = kernel.name;
+  build->kernel_chosen_by = kernel.chosen_by;
+  const CacheSizes caches = cache_sizes();
+  build->cache_bytes = {{"l1", caches.l1}, {"l2", caches.l2}, {"l3", caches.l3}};
   build->cores = std::thread::hardware_concurrency();
   build->system = system_name();
   build->libraries = libraries();
@@ -137,8 +145,10 @@ void set_program_tree(std::string commit, bool is_dirty) {
 std::string build_digest(int problem_revision, int optimizer_revision) {
   const Build& build = *this_build();
   const Json libraries = Form<std::map<std::string, std::string>>::write(build.libraries);
-  return digest(fmt::format("{} {} {} {} {}", kHarnessRevision, problem_revision,
-                            optimizer_revision, libraries.dump(), build.instruction_set));
+  const CacheSizes caches = cache_sizes();
+  return digest(fmt::format("{} {} {} {} {} {} {} {}", kHarnessRevision, problem_revision,
+                            optimizer_revision, libraries.dump(), build.instruction_set, caches.l1,
+                            caches.l2, caches.l3));
 }
 
 }  // namespace isoline

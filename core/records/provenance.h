@@ -22,9 +22,9 @@ struct Build {
   std::optional<bool> is_dirty;
   std::string isoline_commit;  // of Isoline itself, where the program was built elsewhere
   std::string compiler, build_type, flags, instruction_set;
-  std::string processor;                        // its brand, by CPUID
-  std::vector<std::string> processor_features;  // by CPUID
-  std::string kernel, kernel_chosen_by;         // OpenBLAS'
+  std::string processor;                            // its brand, by CPUID
+  std::vector<std::string> processor_features;      // by CPUID
+  std::string kernel, kernel_chosen_by;             // OpenBLAS'
   std::map<std::string, std::int64_t> cache_bytes;  // that Eigen blocks its products by
   std::int64_t cores = 0;
   std::string system;
@@ -66,7 +66,7 @@ const std::shared_ptr<const Build>& this_build();
 void set_program_tree(std::string commit, bool is_dirty);
 
 // Digest of all that may change a result besides the request: the revisions of the harness and of
-// the two components, the versions of the libraries, the instruction set.
+// the two components, the versions and kernels of the libraries, the instruction set, the caches.
 std::string build_digest(int problem_revision, int optimizer_revision);
 
 }  // namespace isoline

@@ -22,13 +22,15 @@ struct Format {
   std::string (*text)(const Document&);
 };
 inline constexpr Format kFormats[] = {
-    {"index.html", html_report},   {"report.csv", csv_report},
-    {"report.json", json_report},  {"report.md", markdown_report},
-    {"report.tex", latex_report},  {"statistics.csv", statistics_csv}};
+    {"index.html", html_report},  {"report.csv", csv_report},
+    {"report.json", json_report}, {"report.md", markdown_report},
+    {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
 
-std::string terminal_table(const Document& document);   // standings, or every cell of a small study
-std::string terminal_section(const Section& section);   // within a hundred columns
+std::string terminal_table(const Document& document);  // standings, or every cell of a small study
+std::string terminal_section(const Section& section);  // within a hundred columns
 
+// Parts of report.json.
+nlohmann::json statistics_json(const Document& document);
 nlohmann::json claims_json(const std::vector<Judgement>& judgements);
 
 inline constexpr const char* kReportSchema = "isoline.report/1";

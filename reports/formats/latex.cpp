@@ -28,8 +28,8 @@ std::string marked_text(std::string_view text) {
       {"°", "$^\\circ$"}, {"α", "$\\alpha$"}, {"’", "'"}};
   std::string out, plain;
   while (!text.empty()) {
-    const auto* mark = std::ranges::find_if(
-        kMarks, [&](const Mark& one) { return text.starts_with(one.letter); });
+    const auto* mark =
+        std::ranges::find_if(kMarks, [&](const Mark& one) { return text.starts_with(one.letter); });
     if (mark == std::end(kMarks)) {
       plain += text.front();
       text.remove_prefix(1);
@@ -78,8 +78,7 @@ std::string row_text(const Table& table, const Part& part, const std::vector<Tab
 
 using Rows = std::span<const std::vector<TableCell>>;
 
-std::string part_text(const Table& table, const Part& part, Rows rows,
-                      const std::string& caption) {
+std::string part_text(const Table& table, const Part& part, Rows rows, const std::string& caption) {
   std::string align, heading;
   const auto add = [&](std::size_t column) {
     align += table.align_of(column);

@@ -26,7 +26,8 @@ std::string part_text(const Table& table, const Part& part) {
     for (std::size_t i = part.first; i < part.last; ++i) text += of_column(i);
     return text + "\n";
   };
-  std::string text = line([&](std::size_t i) { return " " + markdown_text(table.columns[i]) + " |"; });
+  std::string text =
+      line([&](std::size_t i) { return " " + markdown_text(table.columns[i]) + " |"; });
   text += line([&](std::size_t i) { return table.align_of(i) == 'r' ? "---:|" : "---|"; });
   for (std::size_t row = 0; row < std::min(table.rows.size(), kMostRows); ++row)
     text += line([&](std::size_t i) {
@@ -49,8 +50,8 @@ std::string table_text(const Table& table) {
   if (table.rows.size() > kMostRows)
     text += fmt::format("{} more rows are in the page.\n\n", table.rows.size() - kMostRows);
   for (std::size_t i = 1; i < table.meanings.size(); ++i)
-    text += fmt::format("{}: {}. ", markdown_text(table.columns[i]),
-                        markdown_text(table.meanings[i]));
+    text +=
+        fmt::format("{}: {}. ", markdown_text(table.columns[i]), markdown_text(table.meanings[i]));
   if (!table.caption.empty()) text += markdown_text(table.caption);
   return text + (table.is_folded ? "\n\n</details>\n\n" : "\n\n");
 }
@@ -60,11 +61,10 @@ std::string section_text(const Section& section) {
   std::string text = fmt::format("\n## {}\n\n", markdown_text(section.title));
   if (!section.lead.empty()) text += markdown_text(section.lead) + "\n\n";
   for (const Reading& reading : section.readings)
-    text += fmt::format("- {}{}\n",
-                        reading.title.empty()
-                            ? ""
-                            : fmt::format("**{}:** ", markdown_text(reading.title)),
-                        markdown_text(reading.text));
+    text += fmt::format(
+        "- {}{}\n",
+        reading.title.empty() ? "" : fmt::format("**{}:** ", markdown_text(reading.title)),
+        markdown_text(reading.text));
   if (!section.readings.empty()) text += "\n";
   for (const Table& table : section.tables) text += table_text(table);
   return text;
@@ -73,8 +73,8 @@ std::string section_text(const Section& section) {
 }  // namespace
 
 std::string markdown_report(const Document& document) {
-  std::string text = fmt::format("# Isoline report\n\n{}. Status: {}.\n\n", document.headline,
-                                 document.statuses);
+  std::string text =
+      fmt::format("# Isoline report\n\n{}. Status: {}.\n\n", document.headline, document.statuses);
   if (!document.incomplete.empty())
     text += fmt::format("> **Incomplete: {}**\n\n", markdown_text(document.incomplete));
   for (const std::string& remark : document.remarks)

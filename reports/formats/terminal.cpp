@@ -39,6 +39,12 @@ std::string label_of(const OptimizerAxis& optimizer) {
   return name_of_spec(optimizer.label) + (optimizer.privileges.empty() ? "" : " †");
 }
 
+std::size_t widest_label(const Comparison& c) {
+  std::size_t width = 10;
+  for (const OptimizerAxis& each : c.optimizers) width = std::max(width, width_of(label_of(each)));
+  return width;
+}
+
 // Breaks between words.
 std::string wrapped(const std::string& text) {
   std::string out;
@@ -58,9 +64,7 @@ std::string wrapped(const std::string& text) {
 }
 
 std::string standings(const Comparison& c) {
-  std::size_t width = 10;
-  for (const OptimizerAxis& optimizer : c.optimizers)
-    width = std::max(width, width_of(label_of(optimizer)));
+  const std::size_t width = widest_label(c);
   std::string text = "\n" + left("", width + 4) +
                      "  solved  best on  x least      runs  failed  solved at 1e-3  at 1e-1\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
@@ -126,9 +130,7 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
 }
 
 std::string every_cell(const Comparison& c) {
-  std::size_t width = 10;
-  for (const OptimizerAxis& optimizer : c.optimizers)
-    width = std::max(width, width_of(label_of(optimizer)));
+  const std::size_t width = widest_label(c);
   std::string text;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     text +=
@@ -196,7 +198,8 @@ std::string block(const Table& table, const Part& part) {
 std::string paragraph(const Table& table, std::size_t row) {
   const auto& cells = table.rows[row];
   const std::string id = row < table.row_topics.size() ? table.row_topics[row].id : "";
-  std::string text = fmt::format("{}{}\n", id.empty() ? "" : id + ": ", terminal_text(cells[0].text));
+  std::string text =
+      fmt::format("{}{}\n", id.empty() ? "" : id + ": ", terminal_text(cells[0].text));
   if (!cells[0].remark.empty()) text += "  " + terminal_text(cells[0].remark) + "\n";
   for (std::size_t i = 1; i < cells.size(); ++i)
     if (!cells[i].text.empty())
@@ -222,8 +225,8 @@ std::string terminal_section(const Section& section) {
   std::string text;
   for (const Table& table : section.tables) text += table_text(table) + "\n";
   for (const Reading& reading : section.readings)
-    text += wrapped((reading.title.empty() ? "" : reading.title + ": ") +
-                    terminal_text(reading.text));
+    text +=
+        wrapped((reading.title.empty() ? "" : reading.title + ": ") + terminal_text(reading.text));
   if (!section.lead.empty()) text += wrapped(section.lead);
   return section.is_empty() ? section.otherwise + "\n" : text;
 }
@@ -231,12 +234,11 @@ std::string terminal_section(const Section& section) {
 std::string terminal_table(const Document& document) {
   const Comparison& c = document.comparison;
   std::size_t cells = 0;
-  bool has_privileges = false;
   for (const auto& row : c.cells)
     cells += static_cast<std::size_t>(
         std::ranges::count_if(row, [](const Cell& cell) { return cell.planned > 0; }));
-  for (const OptimizerAxis& optimizer : c.optimizers)
-    has_privileges = has_privileges || !optimizer.privileges.empty();
+  const bool has_privileges = std::ranges::any_of(
+      c.optimizers, [](const OptimizerAxis& optimizer) { return !optimizer.privileges.empty(); });
   std::string text = document.headline + "\n";
   if (!document.incomplete.empty())
     text += wrapped("INCOMPLETE: " + terminal_text(document.incomplete));

@@ -163,8 +163,8 @@ std::string problem_json(const Comparison& c, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
   std::string text =
       fmt::format("{{\"spec\":{},\"asked\":{},\"name\":{},\"cells\":{},\"curves\":{}",
-                  json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec), json_quoted(problem.name),
-                  cells_json(c, p), curves_json(c, p));
+                  json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec),
+                  json_quoted(problem.name), cells_json(c, p), curves_json(c, p));
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)
@@ -206,13 +206,15 @@ std::string page_data(const Document& document) {
       "\"figures\":{},\"problems\":[",
       list(c.optimizers,
            [](const OptimizerAxis& optimizer) { return json_quoted(shown_spec(optimizer.label)); }),
-      list(c.optimizers, [](const OptimizerAxis& optimizer) { return json_quoted(optimizer.method); }),
       list(c.optimizers,
-           [](const OptimizerAxis& optimizer) { return json_quoted(family_title(optimizer.family())); }),
+           [](const OptimizerAxis& optimizer) { return json_quoted(optimizer.method); }),
       list(c.optimizers,
            [](const OptimizerAxis& optimizer) {
-             return json_quoted(joined(optimizer.privileges));
+             return json_quoted(family_title(optimizer.family()));
            }),
+      list(
+          c.optimizers,
+          [](const OptimizerAxis& optimizer) { return json_quoted(joined(optimizer.privileges)); }),
       claims_about(document), figures_json(document.figures));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (p > 0) text += ',';

@@ -45,7 +45,8 @@ class Lattice {
 
 // The segments of one cell: crossed edges joined in pairs. In a saddle, where all four are crossed,
 // the mean of the corners decides which corners are cut off.
-void add_segments(const Lattice& grid, Index i, Index j, Real level, std::vector<Segment>& segments) {
+void add_segments(const Lattice& grid, Index i, Index j, Real level,
+                  std::vector<Segment>& segments) {
   const std::array<Real, 4> corner = {grid.loss(i, j), grid.loss(i + 1, j), grid.loss(i + 1, j + 1),
                                       grid.loss(i, j + 1)};
   const Real mean = (corner[0] + corner[1] + corner[2] + corner[3]) / 4;

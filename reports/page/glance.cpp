@@ -97,8 +97,7 @@ std::string verdict_html(const Comparison& c) {
 
 std::string dagger(const std::vector<std::string>& privileges) {
   if (privileges.empty()) return "";
-  return fmt::format("<sup title=\"sees {}\">†</sup>",
-                     html_text(joined(privileges)));
+  return fmt::format("<sup title=\"sees {}\">†</sup>", html_text(joined(privileges)));
 }
 
 std::string glance_html(const Comparison& c) {

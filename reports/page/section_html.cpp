@@ -14,7 +14,8 @@ std::string about(const std::vector<Topic>& topics, std::size_t i) {
   std::string attributes;
   if (topic.optimizer) attributes += fmt::format(" data-s={}", *topic.optimizer);
   if (topic.problem) attributes += fmt::format(" data-p={}", *topic.problem);
-  if (!topic.method.empty()) attributes += fmt::format(" data-method=\"{}\"", html_text(topic.method));
+  if (!topic.method.empty())
+    attributes += fmt::format(" data-method=\"{}\"", html_text(topic.method));
   if (!topic.id.empty()) attributes += fmt::format(" id=\"{}\"", html_text(topic.id));
   return attributes;
 }
@@ -23,10 +24,10 @@ std::string head_html(const Table& table) {
   std::string html = "<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const bool has_meaning = i < table.meanings.size() && !table.meanings[i].empty();
-    html += fmt::format(
-        "<th scope=col{}{}>{}", about(table.column_topics, i),
-        has_meaning ? fmt::format(" title=\"{}\"", html_text(table.meanings[i])) : "",
-        html_text(table.columns[i]));
+    html +=
+        fmt::format("<th scope=col{}{}>{}", about(table.column_topics, i),
+                    has_meaning ? fmt::format(" title=\"{}\"", html_text(table.meanings[i])) : "",
+                    html_text(table.columns[i]));
   }
   return html + "<tbody>\n";
 }
@@ -67,7 +68,8 @@ std::string table_html(const Table& table, const std::string& name) {
     html += fmt::format("<h3 id=\"{}\">{}</h3>", table.id, html_text(table.title));
   if (!table.reading.empty())
     html += fmt::format("<p class=reading>{}</p>\n", html_text(table.reading));
-  const bool is_tall = table.rows.size() > 40;
+  constexpr std::size_t kTall = 25;  // rows: more scroll in a window of their own
+  const bool is_tall = table.rows.size() > kTall && !table.is_folded;
   html += fmt::format(
       "{}<div class=\"scroll{}\" tabindex=0 role=region aria-label=\"{}\"><table class=sortable>{}{}"
       "</table></div>",
@@ -85,8 +87,7 @@ std::string table_html(const Table& table, const std::string& name) {
 std::string section_html(const Section& section) {
   if (section.is_empty()) return fmt::format("<p class=lead>{}</p>", html_text(section.otherwise));
   std::string html;
-  if (!section.lead.empty())
-    html += fmt::format("<p class=lead>{}</p>\n", html_text(section.lead));
+  if (!section.lead.empty()) html += fmt::format("<p class=lead>{}</p>\n", html_text(section.lead));
   for (const Reading& reading : section.readings)
     html += fmt::format(
         "<p class=reading>{}{}</p>\n",

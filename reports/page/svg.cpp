@@ -128,8 +128,8 @@ std::string dot_svg(const Frame& frame, const Plot& plot, std::size_t s, std::si
   std::string svg = opened({.optimizer = series.optimizer}, place_of(plot, s));
   std::string range;
   if (!series.low.empty()) {
-    svg += fmt::format("<path class=whisker d=\"M{:.1f} {:.1f}H{:.1f}\"/>",
-                       frame.x(series.low[i]), y, frame.x(series.high[i]));
+    svg += fmt::format("<path class=whisker d=\"M{:.1f} {:.1f}H{:.1f}\"/>", frame.x(series.low[i]),
+                       y, frame.x(series.high[i]));
     range = fmt::format(" [{}–{}]", reached_figure(series.low[i]), reached_figure(series.high[i]));
   }
   return svg + fmt::format(
@@ -149,12 +149,9 @@ std::string dots_svg(const Plot& plot) {
   const Real n = static_cast<Real>(plot.series.size());
   for (std::size_t s = 0; s < plot.series.size(); ++s)
     for (std::size_t i = 0; i < plot.series[s].x.size(); ++i)
-      rows[static_cast<std::size_t>(plot.series[s].y[i])] +=
-          dot_svg(frame, plot, s, i,
-                  are_apart ? (static_cast<Real>(s) - (n - 1) / 2) * 0.7 * kRow / n : 0);
-  std::string svg = x_axis(frame, plot.x_label);
-  for (const std::string& row : rows) svg += row + "</g>";
-  return svg;
+      rows[static_cast<std::size_t>(plot.series[s].y[i])] += dot_svg(
+          frame, plot, s, i, are_apart ? (static_cast<Real>(s) - (n - 1) / 2) * 0.7 * kRow / n : 0);
+  return x_axis(frame, plot.x_label) + joined(rows, "</g>") + (rows.empty() ? "" : "</g>");
 }
 
 std::string bars_svg(const Plot& plot) {
@@ -191,8 +188,8 @@ std::string matrix_svg(const Plot& plot) {
           "<g data-s={}><rect class=\"cell {}\" x={:.0f} y={:.0f} width={:.0f} height={:.0f} "
           "/><text "
           "class={} x={:.0f} y={:.0f} text-anchor=middle>{:.2g}</text></g>",
-          *plot.series[b].optimizer, shade, x + 1, y + 1, kCell - 2, kHigh - 2, shade, x + kCell / 2,
-          y + 15, row.y[b]);
+          *plot.series[b].optimizer, shade, x + 1, y + 1, kCell - 2, kHigh - 2, shade,
+          x + kCell / 2, y + 15, row.y[b]);
     }
     svg += "</g>";
   }
@@ -217,20 +214,17 @@ std::string marks_html(const Plot& plot) {
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
     const PlotSeries& series = plot.series[s];
     const std::size_t place = place_of(plot, s);
-    html += fmt::format(
-        "<span{} class=c{}><b>{}</b> {}</span> ",
-        series.optimizer ? fmt::format(" data-s={}", *series.optimizer) : "", place % 8,
-        mark_of(place), html_text(series.name));
+    html += fmt::format("<span{} class=c{}><b>{}</b> {}</span> ",
+                        series.optimizer ? fmt::format(" data-s={}", *series.optimizer) : "",
+                        place % 8, mark_of(place), html_text(series.name));
   }
   return html + "</p>";
 }
 
 // Rows of methods close up where some are hidden: the scripts are told how high a row is.
 std::string closing_rows(const Plot& plot) {
-  const bool are_methods = !plot.rows.empty() && !plot.rows[0].topic.method.empty();
-  return are_methods ? fmt::format(" class=dots data-row={:.0f} data-edge={:.0f}", kRow,
-                                   kTop + kBelow)
-                     : "";
+  if (plot.rows.empty() || plot.rows[0].topic.method.empty()) return "";
+  return fmt::format(" class=dots data-row={:.0f} data-edge={:.0f}", kRow, kTop + kBelow);
 }
 
 }  // namespace
@@ -240,8 +234,8 @@ std::string plot_svg(const Plot& plot) {
   constexpr Draw kDraw[] = {steps_svg, dots_svg, bars_svg, matrix_svg};  // by kind
   return fmt::format(
              "<svg{} viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\"><title>{}</title>",
-             closing_rows(plot), kWidth, height_of(plot), html_text(plot.title + ". " + plot.reading),
-             html_text(plot.title)) +
+             closing_rows(plot), kWidth, height_of(plot),
+             html_text(plot.title + ". " + plot.reading), html_text(plot.title)) +
          kDraw[static_cast<std::size_t>(plot.kind)](plot) + "</svg>";
 }
 

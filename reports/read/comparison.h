@@ -72,7 +72,7 @@ struct Standing {
 };
 
 struct OptimizerAxis {
-  std::string label;  // its spec; its name alone where a file of rates chose the options
+  std::string label;   // its spec; its name alone where a file of rates chose the options
   std::string method;  // its name
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
@@ -114,7 +114,8 @@ struct Comparison {
 
 Comparison compare_optimizers(const Study& study);
 
-// costs[p][s]: medians to one tolerance, of &Cell::work or &Cell::cost; nothing where never planned.
+// costs[p][s]: medians to one tolerance, of &Cell::work or &Cell::cost; nothing where never
+// planned.
 Costs median_costs(const Comparison& comparison, std::size_t tolerance,
                    std::array<Spread, kTolerances.size()> Cell::*what = &Cell::work);
 

@@ -149,8 +149,8 @@ std::vector<Scored> ranked_by(const Costs& costs, std::size_t optimizers) {
 
 // Second's work over first's on problems of one name, where at least one of the two solves them; a
 // name without any is left out.
-std::vector<std::vector<Real>> ratios_of(const Comparison& c, const Costs& costs,
-                                         std::size_t first, std::size_t second) {
+std::vector<std::vector<Real>> ratios_of(const Comparison& c, const Costs& costs, std::size_t first,
+                                         std::size_t second) {
   std::vector<std::vector<Real>> all;
   for (const auto& [name, problems] : problems_by_name(c)) {
     std::vector<Real> ratios;

@@ -32,8 +32,8 @@ struct Study {
   std::optional<Exhibit> pictures_of(const Record& record) const;
 };
 
-// Folders are laid out as core/records/sheet.h says; a missing one is a UsageError. The listener is told of
-// the records.
+// Folders are laid out as core/records/sheet.h says; a missing one is a UsageError. The listener is
+// told of the records.
 Study read_study(const std::vector<std::filesystem::path>& folders, const Listener& listener = {});
 
 }  // namespace isoline::reports

@@ -9,7 +9,8 @@
 namespace isoline::reports {
 
 // Of a claim, or of its contrast.
-std::string quantity_text(const nlohmann::json& claim);   // "ratio of the loss, at the end: adam / sip"
+std::string quantity_text(
+    const nlohmann::json& claim);  // "ratio of the loss, at the end: adam / sip"
 std::string published_text(const nlohmann::json& claim);  // "≥ 3 (±5 % from text)"
 Real published_value(const nlohmann::json& published);
 

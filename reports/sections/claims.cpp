@@ -16,10 +16,9 @@ constexpr const char* kNothing = "–";
 std::string remarks_of(const Judgement& judgement) {
   std::vector<std::string> parts;
   if (const auto& contrast = judgement.contrast)
-    parts.push_back(
-        fmt::format("Held against the {}: published {}, measured {}.", contrast->quantity,
-                    contrast->published,
-                    contrast->measured ? figure(contrast->measured->value) : kNothing));
+    parts.push_back(fmt::format("Held against the {}: published {}, measured {}.",
+                                contrast->quantity, contrast->published,
+                                contrast->measured ? figure(contrast->measured->value) : kNothing));
   if (!judgement.why.empty()) parts.push_back(judgement.why + ".");
   if (!judgement.caveat.empty()) parts.push_back(judgement.caveat);
   return joined(parts, " ");

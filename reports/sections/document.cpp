@@ -19,10 +19,14 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
   document.statuses = status_text(c.statuses);
   document.incomplete = missing_text(c);
   document.remarks = remarks(c);
-  document.sections = {standings_section(c),  problems_section(c),
-                       learned_section(c),    claims_section(document.claims),
-                       properties_section(c.study->audits), statistics_section(c),
-                       failures_section(c),   builds_section(c)};
+  document.sections = {standings_section(c),
+                       problems_section(c),
+                       learned_section(c),
+                       claims_section(document.claims),
+                       properties_section(c.study->audits),
+                       statistics_section(c),
+                       failures_section(c),
+                       builds_section(c)};
   document.figures = figures(c);
   return document;
 }

@@ -17,8 +17,7 @@ std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
 }
 
 void rows_are_optimizers(Table& table) {
-  for (std::size_t s = 0; s < table.rows.size(); ++s)
-    table.row_topics.push_back({.optimizer = s});
+  for (std::size_t s = 0; s < table.rows.size(); ++s) table.row_topics.push_back({.optimizer = s});
 }
 
 void columns_are_optimizers(Table& table, std::size_t count) {

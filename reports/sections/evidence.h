@@ -40,9 +40,9 @@ Plots target_plot(const Comparison& comparison);
 
 // In the order of a report: what is declared above stands in it once it is named here.
 inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
-    profile_table,  rank_table,         signed_rank_table, pairwise_table, flip_table,
-    returned_table, accuracy_table,     data_profile_table, anytime_table, interval_table,
-    restart_table,  calls_table,        prices_table};
+    profile_table,  rank_table,     signed_rank_table,  pairwise_table, flip_table,
+    returned_table, accuracy_table, data_profile_table, anytime_table,  interval_table,
+    restart_table,  calls_table,    prices_table};
 inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {
     profile_plot,      pairwise_plots, log_ratio_plot, rank_plot,  signed_rank_plot,
     data_profile_plot, runtime_plot,   accuracy_plot,  target_plot};

@@ -23,8 +23,8 @@ const Component& component_of(const Comparison& c, std::size_t problem) {
 
 bool is_wanted(const Component& problem, const Panel& panel) {
   return problem.is_learned && std::ranges::all_of(panel.where, [&](const auto& wanted) {
-    return problem.options.number(wanted.first, std::nan("")) == wanted.second;
-  });
+           return problem.options.number(wanted.first, std::nan("")) == wanted.second;
+         });
 }
 
 // The problems of one name whose options a panel wants.

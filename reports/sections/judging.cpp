@@ -170,8 +170,7 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
     }
   }
   out.why = claim.value("not_comparable", "");
-  if (out.why.empty() || !missing.empty())
-    out.why = fmt::format("no runs of {}", joined(missing));
+  if (out.why.empty() || !missing.empty()) out.why = fmt::format("no runs of {}", joined(missing));
   return out;
 }
 

@@ -46,8 +46,8 @@ std::string label(const Comparison& c, const LearnedRow& row) {
 // Rows are in order of their error in x.
 std::string reading_of(const Comparison& c, const std::vector<LearnedRow>& rows) {
   const LearnedRow& nearest = rows.front();
-  const auto lowest = std::ranges::min_element(
-      rows, {}, [](const LearnedRow& row) { return row.loss.median; });
+  const auto lowest =
+      std::ranges::min_element(rows, {}, [](const LearnedRow& row) { return row.loss.median; });
   if (lowest->optimizer == nearest.optimizer)
     return fmt::format("{} has both the least error in x, {}, and the least loss, {}.",
                        label(c, nearest), figure(nearest.x_error.median),
@@ -61,14 +61,13 @@ std::string reading_of(const Comparison& c, const std::vector<LearnedRow>& rows)
 
 Table table_of(const Comparison& c, std::size_t problem, const std::vector<LearnedRow>& rows) {
   const Sheet* sheet = c.problems[problem].sheet;
-  Table table{
-      .id = fmt::format("learned-{}", problem),
-      .title = shown_spec(c.problems[problem].spec),
-      .reading = reading_of(c, rows),
-      .caption = sheet == nullptr ? "" : sheet->note,
-      .columns = {"optimizer", "error in x", "loss in y", "iterations", "ms each", "runs",
-                  "failed"},
-      .topic = {.problem = problem}};
+  Table table{.id = fmt::format("learned-{}", problem),
+              .title = shown_spec(c.problems[problem].spec),
+              .reading = reading_of(c, rows),
+              .caption = sheet == nullptr ? "" : sheet->note,
+              .columns = {"optimizer", "error in x", "loss in y", "iterations", "ms each", "runs",
+                          "failed"},
+              .topic = {.problem = problem}};
   for (const LearnedRow& row : rows) {
     const bool is_privileged = !c.cell(problem, row.optimizer).privileges.empty();
     table.rows.push_back({label(c, row) + (is_privileged ? " †" : ""), figure(row.x_error),

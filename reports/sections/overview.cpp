@@ -21,8 +21,7 @@ std::string partial_rows(const Comparison& c) {
   }
   const std::size_t more = rows.size() > kNamed ? rows.size() - kNamed : 0;
   rows.resize(rows.size() - more);
-  return fmt::format("{}{}", joined(rows),
-                     more > 0 ? fmt::format(" and {} more", more) : "");
+  return fmt::format("{}{}", joined(rows), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
 // The solvers with the greatest share within a factor, joined; many are counted, not named.

@@ -72,9 +72,7 @@ std::string asked_cell(const AuditedOptimizer& audited) {
   return fmt::format("{} in {}", text, audited.iterations);
 }
 
-std::string flags_cell(const AuditedOptimizer& audited) {
-  return joined(audited.flags, "; ");
-}
+std::string flags_cell(const AuditedOptimizer& audited) { return joined(audited.flags, "; "); }
 
 struct Property {
   const char* heading;

@@ -39,8 +39,8 @@ void add_series(Plot& plot, const Audits& all, std::string_view name, Value valu
 }
 
 Plot exponents_plot(const Audits& all) {
-  Plot plot = plot_of(all, "plot-exponents", "Exponent of the first step, by what is scaled",
-                      {-1, 2});
+  Plot plot =
+      plot_of(all, "plot-exponents", "Exponent of the first step, by what is scaled", {-1, 2});
   for (std::size_t i = 0; i < kScalingNames.size(); ++i)
     add_series(plot, all, kScalingNames[i], [i](const AuditedOptimizer& audited) {
       const PowerLaw& law = audited.scalings[i].step;
@@ -69,8 +69,7 @@ Plot orders_plot(const Audits& all) {
 }
 
 Plot angles_plot(const Audits& all) {
-  Plot plot =
-      plot_of(all, "plot-angles", "Angle between promised and made step, degrees", {0, 90});
+  Plot plot = plot_of(all, "plot-angles", "Angle between promised and made step, degrees", {0, 90});
   add_series(plot, all, "linear stage", [](const auto& audited) { return audited.linear_angle; });
   add_series(plot, all, "curved stage", [](const auto& audited) { return audited.curved_angle; });
   return plot;

@@ -12,7 +12,7 @@
 namespace isoline::reports {
 namespace {
 
-constexpr Real kDigits = 10;  // of the targets: τ = 10^(−j/5), j = 0 … 50
+constexpr Real kDigits = 10;               // of the targets: τ = 10^(−j/5), j = 0 … 50
 constexpr std::size_t kMostProblems = 25;  // columns of a matrix
 
 // What is left of the descent at each point of a run's curve.

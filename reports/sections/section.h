@@ -1,5 +1,5 @@
-// The nouns of a report: sections of sentences, tables and plots, worded once. Every format lays out
-// these.
+// The nouns of a report: sections of sentences, tables and plots, worded once. Every format lays
+// out these.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ namespace isoline::reports {
 // What a row, a column or a table is about: filters of the page go by it.
 struct Topic {
   std::optional<std::size_t> optimizer = {}, problem = {};  // indices in the comparison
-  std::string method = {};                                  // an optimizer by name, for all settings
-  std::string id = {};                                      // by which others point at it
+  std::string method = {};  // an optimizer by name, for all settings
+  std::string id = {};      // by which others point at it
 };
 
 // The text is the same in every format; the numbers, by what they are, go into report.json.
@@ -41,13 +41,14 @@ struct Table {
   std::string reading = {};  // a sentence on this very data
   std::string caption = {};  // what the figures are
   std::vector<std::string> columns = {};
-  std::vector<std::vector<TableCell>> rows = {};  // a short row's last cell spans the rest
+  std::vector<std::vector<TableCell>> rows = {};           // a short row's last cell spans the rest
   std::vector<Topic> row_topics = {}, column_topics = {};  // may be fewer, or none
   Topic topic = {};
   std::vector<std::string> meanings = {};  // of the columns, for a reader who meets them first
-  std::string align = {};   // a letter a column: r figures, l words, p sentences, c commands; else lr…
-  bool is_folded = false;   // behind its reading, where a format can fold
-  std::size_t names = 1;    // columns that name the row, repeated in each part of a wide table
+  std::string align =
+      {};  // a letter a column: r figures, l words, p sentences, c commands; else lr…
+  bool is_folded = false;  // behind its reading, where a format can fold
+  std::size_t names = 1;   // columns that name the row, repeated in each part of a wide table
   std::vector<std::size_t> parts = {};  // how many others stand together where room is narrow
   std::size_t most_columns = 0;         // of others side by side in any format; 0: all
 
@@ -78,7 +79,7 @@ struct Plot {
   std::string caption;  // what is drawn, of how many, and how many of them failed
   std::string x_label, y_label;
   bool is_log_x = false;
-  bool is_folded = false;  // where a format can fold
+  bool is_folded = false;                          // where a format can fold
   std::optional<std::array<Real, 2>> window = {};  // of x; else as wide as the numbers
   std::vector<PlotRow> rows = {};                  // of dots, bars and matrix
   std::vector<PlotSeries> series = {};
@@ -91,8 +92,8 @@ struct Reading {
 
 struct Section {
   std::string id, title;
-  std::string lead = {};                   // what its figures are
-  std::vector<Reading> readings = {};      // what this data shows, a sentence each
+  std::string lead = {};               // what its figures are
+  std::vector<Reading> readings = {};  // what this data shows, a sentence each
   std::vector<Table> tables = {};
   std::vector<Plot> plots = {};
   std::string otherwise = {};  // what the page says where there is nothing

@@ -16,9 +16,9 @@ Interval bootstrap(const std::vector<Real>& values, const std::string& key, Stat
   if (values.empty()) return {};
   std::vector<Real> all, sample(values.size());
   resample(values.size(), {fnv1a(key), "report", "bootstrap"}, [&](const Places& places) {
-        for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = values[places[i]];
-        all.push_back(statistic(sample));
-      });
+    for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = values[places[i]];
+    all.push_back(statistic(sample));
+  });
   return interval_of(std::move(all));
 }
 
@@ -76,11 +76,11 @@ Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key
   if (groups.empty()) return band;
   std::vector<std::vector<Real>> draws(all.sums.size());  // by component
   resample(groups.size(), {fnv1a(key), "report", "groups"}, [&](const Places& places) {
-        GroupSum sample;
-        for (const std::size_t place : places) add(sample, groups[place]);
-        const std::vector<Real> ratios = ratios_of(sample);
-        for (std::size_t i = 0; i < ratios.size(); ++i) draws[i].push_back(ratios[i]);
-      });
+    GroupSum sample;
+    for (const std::size_t place : places) add(sample, groups[place]);
+    const std::vector<Real> ratios = ratios_of(sample);
+    for (std::size_t i = 0; i < ratios.size(); ++i) draws[i].push_back(ratios[i]);
+  });
   for (std::vector<Real>& values : draws) {
     const Interval interval = interval_of(std::move(values));
     band.low.push_back(interval.low);

@@ -1,6 +1,4 @@
 // The audit in reports: the same table in every format, and reports do without it.
-#include "reports/sections/properties.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "core/json.h"
 #include "reports/page/page.h"
 #include "reports/report.h"
+#include "reports/sections/properties.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

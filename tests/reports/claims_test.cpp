@@ -1,6 +1,4 @@
 // Verdicts on claims against figures worked out by hand, and what false claims come to.
-#include "reports/sections/judging.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "reports/page/page.h"
 #include "reports/report.h"
+#include "reports/sections/judging.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -168,7 +167,8 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
   EXPECT_EQ(kept.contrast->measured->value, 20);
   EXPECT_EQ(refuted.measured->value, 10);
   EXPECT_EQ(refuted.verdict, Verdict::not_reproduced);
-  EXPECT_NE(terminal_section(claims_section({refuted})).find("Held against the value"), std::string::npos);
+  EXPECT_NE(terminal_section(claims_section({refuted})).find("Held against the value"),
+            std::string::npos);
   EXPECT_EQ(claims_json({refuted})[0].at("contrast").at("measured").at("value"), 20);
 }
 

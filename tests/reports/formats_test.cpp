@@ -101,7 +101,8 @@ TEST(Html, AsksNothingOfTheNetwork) {
 TEST(Markdown, HostileNamesBreakNoRow) {
   const Study study = hostile_study();
   std::size_t expected = 0;  // bars of the table's first line
-  for (const std::string& line : lines_of(markdown_report(document_of(compare_optimizers(study))))) {
+  for (const std::string& line :
+       lines_of(markdown_report(document_of(compare_optimizers(study))))) {
     std::size_t bars = 0;
     for (std::size_t i = 0; i < line.size() && line.starts_with("|"); ++i)
       bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
@@ -229,8 +230,10 @@ TEST(Formats, TheSameStudyGivesTheSameBytes) {
   const ResultFolder folder;
   write_sample_study(folder.path(), {.problems = 3, .optimizers = 12, .seeds = 2, .points = 20});
   const Study first = read_study({folder.path()}), second = read_study({folder.path()});
-  EXPECT_EQ(html_report(document_of(compare_optimizers(first))), html_report(document_of(compare_optimizers(second))));
-  EXPECT_EQ(json_report(document_of(compare_optimizers(first))), json_report(document_of(compare_optimizers(second))));
+  EXPECT_EQ(html_report(document_of(compare_optimizers(first))),
+            html_report(document_of(compare_optimizers(second))));
+  EXPECT_EQ(json_report(document_of(compare_optimizers(first))),
+            json_report(document_of(compare_optimizers(second))));
 }
 
 TEST(Rerun, TheCommandAsksForTheCell) {

@@ -1,6 +1,4 @@
 // The plots of the statistics: hand-computed numbers, and figures that every reader can use.
-#include "reports/sections/evidence.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "core/json.h"
 #include "reports/page/page.h"
 #include "reports/report.h"
+#include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -1,11 +1,10 @@
 // The tables of statistics: hand-computed cases, and the same figure in every format.
-#include "reports/sections/evidence.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "reports/report.h"
+#include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
