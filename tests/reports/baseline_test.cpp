@@ -23,7 +23,10 @@ using Changes = std::map<std::uint64_t, std::function<void(Record&)>>;  // by se
 void fill(const ResultFolder& folder, const Changes& changes = {}) {
   for (std::uint64_t seed = 0; seed < 13; ++seed) {
     Record record = record_of({.seed = seed, .hits = 20 + seed, .status = Status::budget});
-    if (seed >= 8) record.minimum.reset(), record.hits.reset();
+    if (seed >= 8) {
+      record.minimum.reset();
+      record.hits.reset();
+    }
     if (seed == 12) record.status = Status::inapplicable;
     if (const auto change = changes.find(seed); change != changes.end()) change->second(record);
     folder.add(record);

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 
-#include "core/json.h"
 #include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
 #include "tests/reports/fixture.h"
@@ -19,13 +18,17 @@ constexpr Real kTolerance = 1e-6;  // of the gate of this repository
 using Edit = std::function<void(Record&)>;
 
 // Ten cells, all reaching 1e-1 and 1e-3 but not 1e-6; cell 5 is chaotic or what a test makes of it.
-Study study_with(const std::map<std::uint64_t, Edit>& changes) {
-  const ResultFolder folder;
+void fill(const ResultFolder& folder, const std::map<std::uint64_t, Edit>& changes) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     Record record = record_of({.seed = seed, .hits = 20, .status = Status::budget});
     if (const auto change = changes.find(seed); change != changes.end()) change->second(record);
     folder.add(record);
   }
+}
+
+Study study_with(const std::map<std::uint64_t, Edit>& changes) {
+  const ResultFolder folder;
+  fill(folder, changes);
   return read_study({folder.path()});
 }
 
@@ -47,13 +50,11 @@ Edit reaches(std::size_t hits) {
 GateResult compared(const std::map<std::uint64_t, Edit>& changed, const Edit& once = moves,
                     const Edit& twice = moves_more,
                     const GateOptions& options = {.tolerance = kTolerance}) {
-  const ResultFolder before;
+  const ResultFolder before, after;
+  fill(after, changed);
   before.add_file("baseline.json", baseline_json(study_with({}), {study_with({{5, once}}),
                                                                   study_with({{5, twice}})}));
-  const Study after = study_with(changed);
-  const Baseline baseline =
-      baseline_from_json(parse_json(read_text(before.path() / "baseline.json"), "baseline"));
-  return compare_subjects(baseline.subjects, subjects_of(after, baseline.minima), options);
+  return compare_results(before.path() / "baseline.json", after.path(), options);
 }
 
 TEST(Chaos, WhatMovesWithTheLastBitIsJudgedByItsStatusAndCoarseTargets) {
