@@ -10,7 +10,6 @@
 #include <thread>
 #include <unordered_map>
 
-#include "core/decompose.h"
 #include "core/digest.h"
 #include "core/processor.h"
 #include "core/records/provenance_fields.h"
@@ -64,7 +63,7 @@ std::map<std::string, std::string> libraries() {
   std::istringstream list(ISOLINE_LIBRARIES);  // "Name version;Name version"
   for (std::string library; std::getline(list, library, ';');)
     versions[library.substr(0, library.find(' '))] = library.substr(library.find(' ') + 1);
-  versions["OpenBLAS"] = lapack_library();
+  versions["OpenBLAS"] += " " + library_kernel().name;
   return versions;
 }
 
