@@ -6,6 +6,7 @@
 // - sections/: cells to sections of sentences, tables and plots, one file a topic; `Document`.
 // - formats/: a document to text, one file a format; formats.h lists them.
 // - page/: a document to the page, its charts' data, its style and its scripts.
+// - compare/: the gate: what changed from one set of results to another; baselines.
 //
 // A new statistic is a function in a file of sections/ and its name in sections/evidence.h; a new
 // format is a file of formats/ and its name in formats/formats.h.

@@ -1,12 +1,15 @@
 // isoline baseline RESULTS: what later results are compared with, as one small file.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 
+#include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/run/perturbed_runs.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "reports/gate/baseline.h"
+#include "reports/compare/baseline.h"
 #include "reports/read/study.h"
 
 namespace isoline::benchmarks {
@@ -15,10 +18,27 @@ using reports::baseline_json;
 using reports::read_study;
 using reports::Study;
 
-int baseline_verb(const BaselineArguments& given, Session&) {
+namespace {
+
+// Studies of the same cells from perturbed starts, one a perturbation.
+std::vector<Study> perturbed_studies(const BaselineArguments& given, Session& session,
+                                     const Study& study) {
+  const RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
+                           .progress = Progress::style_of(STDERR_FILENO),
+                           .command = session.command()};
+  std::vector<Study> perturbed(static_cast<std::size_t>(given.perturbations));
+  for (std::size_t i = 0; i < perturbed.size(); ++i)
+    perturbed[i].runs =
+        perturbed_records(session.catalog(), study.runs, static_cast<int>(i) + 1, options);
+  return perturbed;
+}
+
+}  // namespace
+
+int baseline_verb(const BaselineArguments& given, Session& session) {
   const Study study = read_study({given.folders.begin(), given.folders.end()});
   require(!study.runs.empty(), "there are no records to remember");
-  const std::string text = baseline_json(study);
+  const std::string text = baseline_json(study, perturbed_studies(given, session, study));
   if (given.out.empty()) {
     fmt::print("{}", text);
     return kGood;

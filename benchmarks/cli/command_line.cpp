@@ -208,8 +208,16 @@ void CommandLine::add_baseline() {
       "baseline", "Keep what later results are compared with, as one small file", baseline_verb);
   verb.add_option("RESULTS", given.folders, "Result folders of `isoline run`")->required();
   verb.add_option("--out", given.out, "The file (default: standard output)");
+  verb.add_option("--perturbations", given.perturbations,
+                  "Runs of each cell from a start that differs in the last bit")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  verb.add_option("--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
   verb.footer(
       "A line a cell: status, digest of the trace, final figures, work to 1e-1, 1e-3 and 1e-6.\n"
+      "Each cell is run again from starts that differ in the last bit. A cell whose figures then\n"
+      "move by more than the tolerance of a comparison is chaotic: it is judged by its status and\n"
+      "by which of 1e-1, 1e-3 and 1e-6 it reaches, so that rounding alone makes nothing worse.\n"
       "Made by the portable preset it means the same on every x86-64-v3 machine:\n"
       "  ISOLINE_PRESET=portable isoline run quick --out results/quick\n"
       "  ISOLINE_PRESET=portable isoline baseline results/quick --out baseline.json\n"

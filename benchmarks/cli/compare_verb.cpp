@@ -4,7 +4,7 @@
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
-#include "reports/gate/gate.h"
+#include "reports/compare/gate.h"
 
 namespace isoline::benchmarks {
 

@@ -41,6 +41,7 @@ int compare_verb(const CompareArguments& given, Session& session);
 struct BaselineArguments {
   std::vector<std::string> folders;
   std::string out;
+  int perturbations = 2, jobs = 0;
 };
 int baseline_verb(const BaselineArguments& given, Session& session);
 

@@ -118,7 +118,10 @@ class Runner {
       progress.started(title_of(request));
       if (options_.force) store_.remove_checkpoint(request);
       workers_[i].start(
-          [&](Trace& trace) { execute(catalog_, request, trace, checkpoint_of(request)); },
+          [&](Trace& trace) {
+            execute(catalog_, request, trace, checkpoint_of(request), nullptr,
+                    options_.perturbation);
+          },
           limits_of(request, options_.limits), request.threads);
     }
     return next;

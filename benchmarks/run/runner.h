@@ -19,6 +19,7 @@ struct RunOptions {
   int repeat = 1;          // timings wanted of each cell
   Limits limits;
   double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
+  int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
   std::string command;  // for the record
 };

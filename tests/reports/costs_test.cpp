@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/gate/subject.h"
+#include "reports/compare/subject.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"

@@ -1,5 +1,5 @@
 // The gate: what is worse is caught, what is the same passes, what cannot be compared says so.
-#include "reports/gate/gate.h"
+#include "reports/compare/gate.h"
 
 #include <gtest/gtest.h>
 
@@ -175,7 +175,8 @@ TEST(Gate, ReportsAreComparedToo) {
   const ResultFolder before, after;
   fill(before, [](Record&) {});
   fill(after, [](Record& record) {
-    record.hits->work.assign(51, -1), record.hits->iteration.assign(51, -1);
+    record.hits->work.assign(51, -1);
+    record.hits->iteration.assign(51, -1);
   });
   for (const ResultFolder* folder : {&before, &after}) {
     const Study study = read_study({folder->path()});

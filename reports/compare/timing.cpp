@@ -1,5 +1,5 @@
 // Judges times: exact ranks, an interval of the ratio, and the noise that the repetitions show.
-#include "reports/gate/timing.h"
+#include "reports/compare/timing.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "reports/gate/baseline.h"
-#include "reports/gate/gate.h"
+#include "reports/compare/baseline.h"
+#include "reports/compare/gate.h"
 #include "reports/report.h"
 
 namespace isoline::reports {

@@ -1,17 +1,26 @@
 // Joins two sets of subjects, holds their figures to each other, judges their times, and concludes.
-#include "reports/gate/gate.h"
+#include "reports/compare/gate.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
 
 #include "core/errors.h"
+#include "reports/compare/chaos.h"
 #include "reports/formats/escape.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
+
+// "1e-1, 1e-3, 1e-6".
+std::string target_names() {
+  std::vector<std::string_view> names;
+  for (const Tolerance& tolerance : kTolerances) names.push_back(tolerance.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
 
 // Why figures of the two cannot be held to each other; empty where they can.
 std::string why_incomparable(const Subject& a, const Subject& b, const GateOptions& options) {
@@ -63,19 +72,29 @@ class Gate {
         result_.incomparable.push_back({a.title, reason});
       return;
     }
-    const std::size_t known = result_.differences.size();
-    if (a.state != b.state) result_.differences.push_back(state_difference(a, b));
-    for (Difference& difference : quantity_differences(a, b, options_.tolerance))
-      result_.differences.push_back(std::move(difference));
-    const bool is_same = result_.differences.size() == known;
-    if (is_same && !options_.tolerance && a.trace != b.trace)
-      result_.differences.push_back({.key = a.key,
-                                     .title = a.title,
-                                     .what = "trace",
-                                     .before = a.trace,
-                                     .after = b.trace,
-                                     .note = "the path differs, all compared figures agree"});
-    result_.equal += result_.differences.size() == known;
+    judge(a, b);
+  }
+
+  std::vector<Difference> differences_of(const Subject& a, const Subject& b) const {
+    std::vector<Difference> found = quantity_differences(a, b, options_.tolerance);
+    if (a.state != b.state) found.insert(found.begin(), state_difference(a, b));
+    if (found.empty() && !options_.tolerance && a.trace != b.trace)
+      found.push_back({.key = a.key,
+                       .title = a.title,
+                       .what = "trace",
+                       .before = a.trace,
+                       .after = b.trace,
+                       .note = "the path differs, all compared figures agree"});
+    return found;
+  }
+
+  void judge(const Subject& a, const Subject& b) {
+    std::vector<Difference> found = differences_of(a, b);
+    const bool is_coarse = !found.empty() && is_chaotic(a, options_.tolerance);
+    if (is_coarse) found = coarse_differences(a, b);
+    result_.equal += found.empty() && !is_coarse;
+    result_.chaotic += is_coarse;
+    for (Difference& difference : found) result_.differences.push_back(std::move(difference));
   }
 
   void offer_times(const Subject& a, const Subject& b) {
@@ -124,6 +143,12 @@ class Gate {
   }
 
   void conclude() {
+    remark(
+        result_.chaotic,
+        fmt::format("chaotic cells are judged by their status and by which of the targets {} they "
+                    "reach: their figures moved by more than the tolerance when their start was "
+                    "perturbed in the last bit",
+                    target_names()));
     remark(cut_, "cells ended by a clock or a kill: only their status is compared");
     remark(too_few_, fmt::format("cells have too few repetitions for a verdict on time: {} a side "
                                  "are needed (run --repeat {} --exclusive)",

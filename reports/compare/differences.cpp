@@ -1,8 +1,9 @@
 // Holds the figures of two subjects to each other.
-#include "reports/gate/differences.h"
+#include "reports/compare/differences.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -17,11 +18,19 @@ constexpr Real kRounding = 1e-16;  // of double precision, as a share of the val
 // Not-a-number is no better than infinite.
 Real finite_or_never(Real value) { return std::isnan(value) ? kNever : value; }
 
-bool agree(Real before, Real after, Real scale, const std::optional<Real>& tolerance) {
-  if (before == after) return true;
-  if (!tolerance || !std::isfinite(before) || !std::isfinite(after)) return false;
+// As a share of |before|, above what rounding explains.
+Real least_tolerance(Real before, Real after, Real scale) {
+  if (before == after) return 0;
+  if (!std::isfinite(before) || !std::isfinite(after)) return kNever;
   const Real rounding = std::isfinite(scale) ? kRounding * std::abs(scale) : 0;
-  return std::abs(after - before) <= *tolerance * std::abs(before) + rounding;
+  const Real excess = std::abs(after - before) - rounding;
+  if (excess <= 0) return 0;
+  return before == 0 ? kNever : excess / std::abs(before);
+}
+
+bool agree(Real before, Real after, Real scale, const std::optional<Real>& tolerance) {
+  if (!tolerance) return before == after;
+  return least_tolerance(before, after, scale) <= *tolerance;
 }
 
 Real relative_change(Real before, Real after) {
@@ -56,21 +65,36 @@ void keep_largest(std::map<std::pair<std::string, Change>, std::pair<Difference,
   if (std::abs(difference.relative) > std::abs(kept.relative)) kept = std::move(difference);
 }
 
-}  // namespace
-
-std::vector<Difference> quantity_differences(const Subject& a, const Subject& b,
-                                             const std::optional<Real>& tolerance) {
+// Of each quantity that both have: it, before; its values before and after.
+template <class Visit>
+void compare_figures(const Subject& a, const Subject& b, Visit visit) {
   std::map<std::string, const Quantity*> before;
   for (const Quantity& quantity : a.quantities) before[quantity.name] = &quantity;
-  std::map<std::pair<std::string, Change>, std::pair<Difference, int>> largest;
   for (const Quantity& quantity : b.quantities) {
     const auto at = before.find(quantity.name);
     if (at == before.end()) continue;
-    const Real old_value = finite_or_never(at->second->value);
-    const Real value = finite_or_never(quantity.value);
-    if (!agree(old_value, value, at->second->scale, tolerance))
-      keep_largest(largest, quantity.group, difference_of(a, quantity, old_value, value));
+    visit(*at->second, finite_or_never(at->second->value), finite_or_never(quantity.value));
   }
+}
+
+}  // namespace
+
+Real movement(const Subject& a, const Subject& b) {
+  if (a.state != b.state) return kNever;
+  Real most = 0;
+  compare_figures(a, b, [&](const Quantity& quantity, Real before, Real after) {
+    most = std::max(most, least_tolerance(before, after, quantity.scale));
+  });
+  return most;
+}
+
+std::vector<Difference> quantity_differences(const Subject& a, const Subject& b,
+                                             const std::optional<Real>& tolerance) {
+  std::map<std::pair<std::string, Change>, std::pair<Difference, int>> largest;
+  compare_figures(a, b, [&](const Quantity& quantity, Real before, Real after) {
+    if (!agree(before, after, quantity.scale, tolerance))
+      keep_largest(largest, quantity.group, difference_of(a, quantity, before, after));
+  });
   std::vector<Difference> out;
   for (auto& [key, kept] : largest) {
     auto& [difference, more] = kept;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/gate/subject.h"
+#include "reports/compare/subject.h"
 
 namespace isoline::reports {
 
@@ -16,8 +16,9 @@ struct Baseline {
 };
 
 // Keeps what is compared bit for bit (status, build, digest of the trace, final figures, work to
-// the tolerances of the tables), and neither curves nor times.
-std::string baseline_json(const Study& study);
+// the tolerances of the tables), and neither curves nor times. `perturbed` holds runs of the same
+// cells from starts perturbed in the last bit, a study a perturbation: how far they moved is kept.
+std::string baseline_json(const Study& study, const std::vector<Study>& perturbed = {});
 
 Baseline baseline_from_json(const Json& json);  // UsageError where it is no such file
 

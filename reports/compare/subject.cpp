@@ -1,5 +1,5 @@
 // Turns records and reports into subjects of a comparison.
-#include "reports/gate/subject.h"
+#include "reports/compare/subject.h"
 
 #include <fmt/format.h>
 
@@ -10,20 +10,12 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/threads.h"
-#include "reports/report.h"
 #include "reports/formats/escape.h"
+#include "reports/report.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
-
-// Two that are equally bad may still differ: that is a change, and no verdict.
-int badness_of(Status status) {
-  if (status == Status::target || status == Status::converged) return 0;
-  if (status == Status::budget || status == Status::stalled) return 1;
-  if (status == Status::diverged) return 2;
-  return 3;
-}
 
 bool is_lost(Status status) { return is_failure(status) || status == Status::inapplicable; }
 
@@ -105,12 +97,26 @@ Subject subject_of_pair(const Json& cell) {
 
 }  // namespace
 
+// Two that are equally bad may still differ: that is a change, and no verdict.
+int badness_of(Status status) {
+  if (status == Status::target || status == Status::converged) return 0;
+  if (status == Status::budget || status == Status::stalled) return 1;
+  if (status == Status::diverged) return 2;
+  return 3;
+}
+
 Subject subject_that_ended(Status status) {
   return {.key = "",
           .title = "",
           .state = std::string(name_of(status)),
           .badness = badness_of(status),
           .lost = is_lost(status)};
+}
+
+Status status_named(const std::string& name) {
+  const std::optional<Status> status = status_of(name);
+  require(status.has_value(), [&] { return fmt::format("unknown status '{}'", name); });
+  return *status;
 }
 
 Quantity loss_quantity(const std::string& name, Real loss, Real start) {

@@ -1,13 +1,15 @@
 // Writes what a gate remembers of a study, and reads it back as subjects of a comparison.
-#include "reports/gate/baseline.h"
+#include "reports/compare/baseline.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "reports/compare/chaos.h"
 
 namespace isoline::reports {
 namespace {
@@ -15,7 +17,7 @@ namespace {
 Json work_json(const Record& record, const BestKnown& best) {
   Run run{.record = &record, .work = {}, .seconds = {}};
   fill_reached(run, best);
-  return json_numbers(run.work.data(), run.work.size());
+  return json_numbers(run.work);
 }
 
 Json cell_json(const Record& record, const Subject& subject, const BestKnown& best) {
@@ -38,6 +40,23 @@ Json cell_json(const Record& record, const Subject& subject, const BestKnown& be
   return cell;
 }
 
+Json to_json(const Perturbed& perturbed) {
+  const Real moved = std::isfinite(perturbed.moved)
+                         ? std::stod(fmt::format("{:.2e}", perturbed.moved))  // a measured size
+                         : perturbed.moved;
+  return {{"moved", json_number(moved)},
+          {"statuses", perturbed.states},
+          {"reached", perturbed.reached}};
+}
+
+Perturbed perturbed_from_json(const Json& json) {
+  Perturbed perturbed{.moved = real_of(json.at("moved"))};
+  json.at("statuses").get_to(perturbed.states);
+  json.at("reached").get_to(perturbed.reached);
+  for (const std::string& state : perturbed.states) status_named(state);  // refuses what is none
+  return perturbed;
+}
+
 void add_figures(Subject& subject, const Json& cell) {
   const auto real = [&](const char* key) { return real_of(cell.at(key)); };
   subject.trace = cell.at("trace").get<std::string>();
@@ -51,15 +70,14 @@ void add_figures(Subject& subject, const Json& cell) {
 }
 
 Subject subject_from_json(const Json& cell) {
-  const auto name = cell.at("status").get<std::string>();
-  const std::optional<Status> status = status_of(name);
-  require(status.has_value(), [&] { return fmt::format("unknown status '{}'", name); });
-  Subject subject = subject_that_ended(*status);
+  const Status status = status_named(cell.at("status").get<std::string>());
+  Subject subject = subject_that_ended(status);
   subject.key = cell.at("cell").get<std::string>();
   subject.title = cell.at("title").get<std::string>();
   subject.builds = {cell.at("build").get<std::string>()};
   subject.is_nondeterministic = cell.value("nondeterministic", false);
-  if (*status != Status::inapplicable) add_figures(subject, cell);
+  if (status != Status::inapplicable) add_figures(subject, cell);
+  if (cell.contains("perturbed")) subject.perturbed = perturbed_from_json(cell.at("perturbed"));
   return subject;
 }
 
@@ -84,16 +102,24 @@ BestKnown minima_from_json(const Json& minima) {
 
 }  // namespace
 
-std::string baseline_json(const Study& study) {
+std::string baseline_json(const Study& study, const std::vector<Study>& perturbed) {
   const BestKnown best(study);
   const std::vector<Subject> subjects = subjects_of(study, best);
-  std::string text =
-      fmt::format("{{\"schema\": \"{}\",\n\"suites\": {},\n\"minima\": {},\n\"cells\": [",
-                  kBaselineSchema, Json(study.plan.suites).dump(), minima_json(study, best).dump());
-  for (std::size_t i = 0; i < subjects.size(); ++i)
-    text += fmt::format("{}\n{}", i == 0 ? "" : ",",
-                        cell_json(study.runs[i], subjects[i], best)
-                            .dump(-1, ' ', false, Json::error_handler_t::replace));
+  std::map<std::string, std::vector<Subject>> moved;
+  for (const Study& one : perturbed)
+    for (Subject& subject : subjects_of(one, best))
+      moved[subject.key].push_back(std::move(subject));
+  std::string text = fmt::format(
+      "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n\"minima\": {},\n"
+      "\"cells\": [",
+      kBaselineSchema, Json(study.plan.suites).dump(), perturbed.size(),
+      minima_json(study, best).dump());
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    Json cell = cell_json(study.runs[i], subjects[i], best);
+    const Perturbed others = perturbed_of(subject_from_json(cell), moved[subjects[i].key]);
+    if (others.moved > 0) cell["perturbed"] = to_json(others);
+    text += (i == 0 ? "\n" : ",\n") + cell.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
   return text + "\n]}\n";
 }
 

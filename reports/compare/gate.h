@@ -2,11 +2,12 @@
 //
 //   subject       the two sides in one form
 //   differences   figures, exactly or within a tolerance
+//   chaos         what can be judged of results that hang on the last bit
 //   timing        times, by statistics
 //   gate          what joins and what does not; the verdict
 //   sides         reads both: result folders, a baseline, reports
 //   baseline      what of results stands in a repository
-//   formats       terminal, Markdown, JSON
+//   gate_words, gate_terminal, gate_markdown, gate_json
 #pragma once
 
 #include <filesystem>
@@ -15,8 +16,8 @@
 #include <vector>
 
 #include "core/threads.h"
-#include "reports/gate/differences.h"
-#include "reports/gate/timing.h"
+#include "reports/compare/differences.h"
+#include "reports/compare/timing.h"
 
 namespace isoline::reports {
 
@@ -34,6 +35,7 @@ struct Incomparable {
 
 struct GateResult {
   std::size_t joined = 0, equal = 0;    // subjects in both; of them, without any difference
+  std::size_t chaotic = 0;              // of them, judged by status and coarse targets
   std::vector<Difference> differences;  // worst first
   std::vector<TimeVerdict> times;       // worst first
   std::vector<std::string> only_before, only_after;  // titles

@@ -2,6 +2,8 @@
 // record folders, or a pair of problem and optimizer in two reports.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,6 +21,13 @@ struct Quantity {
   Real scale = 0;  // where rounding is measured from: the value at the start
 };
 
+// What runs did that started one unit in the last place away.
+struct Perturbed {
+  Real moved = 0;                   // the least tolerance within which all agree with the subject
+  std::vector<std::string> states;  // how each ended
+  std::array<std::size_t, kTolerances.size()> reached{};  // of them, how many reached each target
+};
+
 struct Subject {
   std::string key;               // what joins two results
   std::string title;             // "heat × gd, seed 3"
@@ -31,11 +40,14 @@ struct Subject {
   std::string trace;          // digest of all that is deterministic in it; empty: unknown
   std::vector<Real> seconds;  // repetitions
   std::string processor;
-  bool is_nondeterministic = false;  // a clock or a kill ended it
+  bool is_nondeterministic = false;    // a clock or a kill ended it
+  std::optional<Perturbed> perturbed;  // where a baseline has measured it
 };
 
 // What runs of every kind have in common; less is better.
 Subject subject_that_ended(Status status);
+int badness_of(Status status);
+Status status_named(const std::string& name);  // UsageError where there is none
 Quantity loss_quantity(const std::string& name, Real loss, Real start);
 Quantity x_error_quantity(Real x_error, Real start);
 Quantity work_quantity(Real tau, Real work);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/gate/subject.h"
+#include "reports/compare/subject.h"
 
 namespace isoline::reports {
 
@@ -20,6 +20,10 @@ struct Difference {
 };
 
 Difference state_difference(const Subject& before, const Subject& after);
+
+// The least tolerance within which the figures of the two agree; infinite where one is finite and
+// the other is not, or where their status differs.
+Real movement(const Subject& before, const Subject& after);
 
 // The largest difference of each group of quantities and direction. Without a tolerance figures
 // agree if they are the same number; with one if they differ by no more than that share of the
