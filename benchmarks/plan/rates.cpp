@@ -25,7 +25,8 @@ bool is_same(const OptionValue& value, const std::string& wanted) {
     return number == std::strtod(wanted.c_str(), nullptr);
   };
   if (const Real* number = std::get_if<Real>(&value)) return as_number(*number);
-  if (const Index* number = std::get_if<Index>(&value)) return as_number(static_cast<Real>(*number));
+  if (const Index* number = std::get_if<Index>(&value))
+    return as_number(static_cast<Real>(*number));
   return text_of(value) == wanted;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/array.h"
+#include "core/real.h"
 
 namespace isoline::reports {
 

@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 #include <unordered_map>
 
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/json.h"
 
 namespace isoline::reports {
 namespace {

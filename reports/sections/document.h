@@ -7,8 +7,8 @@
 
 #include "reports/read/comparison.h"
 #include "reports/sections/figures.h"
-#include "reports/sections/judging.h"
 #include "reports/sections/section.h"
+#include "reports/sections/verdicts.h"
 
 namespace isoline::reports {
 

@@ -6,8 +6,8 @@
 
 #include "core/records/audited.h"
 #include "reports/read/comparison.h"
-#include "reports/sections/judging.h"
 #include "reports/sections/section.h"
+#include "reports/sections/verdicts.h"
 
 namespace isoline::reports {
 

@@ -46,7 +46,8 @@ build=$HERE/build/release
 mkdir -p "$build"
 tests=OFF
 [[ $* != *ISOLINE_TESTS=ON* ]] || tests=ON
-printf '%s\n' "CMAKE_HOME_DIRECTORY:INTERNAL=$HERE" "ISOLINE_TESTS:BOOL=$tests" > "$build/CMakeCache.txt"
+printf '%s\n' "CMAKE_HOME_DIRECTORY:INTERNAL=$HERE" "ISOLINE_TESTS:BOOL=$tests" \
+  > "$build/CMakeCache.txt"
 touch "$build/build.ninja"
 """
 
@@ -116,6 +117,12 @@ class Questions(WithTree):
             self.assertEqual(result.stdout, f'program {" ".join(question)}\n')
             self.assertEqual(tree.calls(), [], question)
 
+    def test_help_on_tests_needs_no_program(self):
+        tree = Tree(self.folder)
+        result = tree.run('test', '--help')
+        self.assertIn('--kernels', result.stdout)
+        self.assertEqual(tree.calls(), [])
+
     def test_without_a_program_they_build_it(self):
         tree = Tree(self.folder)
         self.assertEqual(tree.run('--help').stdout, 'program --help\n')
@@ -156,7 +163,7 @@ class Packages(WithTree):
         self.assertRegex(result.stderr, r'libfftw3-dev +Fourier transforms')
         self.assertNotIn('libeigen3-dev', result.stderr)
         install = tree.calls('apt-get')[-1]
-        self.assertTrue(install.endswith('--no-install-recommends libfftw3-dev libdnnl-dev'), install)
+        self.assertRegex(install, '--no-install-recommends libfftw3-dev libdnnl-dev$')
 
     def test_tests_ask_for_their_own_packages_too(self):
         tree = Tree(self.folder)
@@ -199,6 +206,12 @@ class Arguments(WithTree):
         self.assertRegex(tree.calls('ctest')[0], '-R core --stop-on-failure$')
         self.assertIn('-DISOLINE_TESTS=ON', tree.calls('cmake')[0])
 
+    def test_kernels_are_named_by_the_table(self):
+        result = Tree(self.folder).run('test', '--kernels', 'nobody')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no row 'nobody'; there are: ", result.stderr)
+        self.assertIn(' haswell ', result.stderr)
+
     def test_tests_once_on_stay_on(self):
         tree = Tree(self.folder)
         tree.run('test')
@@ -240,6 +253,53 @@ ninja: build stopped: subcommand failed.
 """
 
 
+# Writes down its kernel and its threads; fails where it is the one of $FAILING.
+NUMERICAL_TEST = r"""#!/bin/bash
+echo "$(basename "$0") $OPENBLAS_CORETYPE $ISOLINE_TEST_THREADS" >> "$CALLS"
+if [[ "$OPENBLAS_CORETYPE $(basename "$0")" == "$FAILING" ]]; then
+  echo '[  FAILED  ] Sums.AreSums (3 ms)'
+  exit 1
+fi
+"""
+
+
+class Kernels(WithTree):
+    """The numerical tests, row by row; every processor that runs this has SSE3."""
+
+    PROGRAMS = ('core_tests', 'networks_tests', 'problems_tests', 'optimizers_tests')
+
+    def setUp(self):
+        super().setUp()
+        self.tree = Tree(self.folder)
+        tests = self.tree.path / 'build/release/tests'
+        tests.mkdir(parents=True)
+        for program in self.PROGRAMS:
+            write_program(tests / program, NUMERICAL_TEST)
+
+    def run_rows(self, *rows, failing=''):
+        return self.tree.run('test', '--kernels', *rows, FAILING=failing)
+
+    def test_a_row_is_run_on_one_and_on_two_threads(self):
+        result = self.run_rows('prescott')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.splitlines()[-1], '2 passed, 0 failed, 0 skipped')
+        calls = [call for call in self.tree.calls() if '_tests Prescott' in call]
+        self.assertEqual(calls, [f'{program} Prescott {threads}' for threads in (1, 2)
+                                 for program in self.PROGRAMS])
+
+    def test_one_failure_fails_the_row_and_is_named(self):
+        result = self.run_rows('prescott', failing='Prescott networks_tests')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn('Sums.AreSums', result.stdout)
+        self.assertEqual(result.stdout.splitlines()[-1], '0 passed, 2 failed, 0 skipped')
+
+    def test_a_name_of_no_row_is_refused_before_anything_is_built(self):
+        result = self.run_rows('pentium')
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no row 'pentium'; there are: prescott haswell", result.stderr)
+        self.assertEqual(self.tree.calls('ninja'), [])
+
+
 class Failures(WithTree):
     def run_with(self, words):
         errors = self.folder / 'errors'
@@ -270,7 +330,8 @@ class Failures(WithTree):
 PROJECT = {
     'CMakeLists.txt': 'cmake_minimum_required(VERSION 3.25)\nproject(small LANGUAGES CXX)\n'
                       'option(ISOLINE_TESTS "" OFF)\nadd_executable(isoline main.cpp)\n',
-    'CMakePresets.json': '{"version": 6, "configurePresets": [{"name": "release", "generator": "Ninja",'
+    'CMakePresets.json': '{"version": 6, "configurePresets": [{"name": "release",'
+                         ' "generator": "Ninja",'
                          ' "binaryDir": "${sourceDir}/build/${presetName}"}]}',
     'main.cpp': '#include <cstdio>\nint main() { std::puts("the first place"); }\n'}
 
@@ -322,9 +383,10 @@ class Components(WithTree):
             (room / name).parent.mkdir(parents=True, exist_ok=True)
             (room / name).write_text(text)
         (room / 'CMakeLists.txt').write_text(
-            'isoline_components(problems ENTRY ProblemEntry HEADER problems/problem.h CORE problem.cpp)\n')
-        result = subprocess.run(['cmake', '-G', 'Ninja', '-S', self.folder, '-B', self.folder / 'build'],
-                                capture_output=True, text=True)
+            'isoline_components(problems ENTRY ProblemEntry HEADER problems/problem.h\n'
+            '                   CORE problem.cpp)\n')
+        result = subprocess.run(['cmake', '-G', 'Ninja', '-S', self.folder,
+                                 '-B', self.folder / 'build'], capture_output=True, text=True)
         registry = self.folder / 'build' / 'problems' / 'registry.cpp'
         return result, registry.read_text() if registry.exists() else ''
 

@@ -1,5 +1,5 @@
 // Finds the runs of each claim, measures what it speaks of, and compares with what was published.
-#include "reports/sections/judging.h"
+#include "reports/sections/verdicts.h"
 
 #include <fmt/format.h>
 
