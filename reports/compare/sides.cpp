@@ -7,7 +7,7 @@
 #include "core/json.h"
 #include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
-#include "reports/report.h"
+#include "reports/formats/formats.h"
 
 namespace isoline::reports {
 namespace {
