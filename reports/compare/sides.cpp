@@ -7,7 +7,10 @@
 #include "core/json.h"
 #include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
-#include "reports/report.h"
+#include "reports/formats/formats.h"
+#include "reports/read/comparison.h"
+#include "reports/read/study.h"
+#include "reports/sections/document.h"
 
 namespace isoline::reports {
 namespace {

@@ -11,7 +11,8 @@
 #include "core/json.h"
 #include "core/threads.h"
 #include "reports/formats/escape.h"
-#include "reports/report.h"
+#include "reports/formats/formats.h"
+#include "reports/read/study.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
