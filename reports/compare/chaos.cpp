@@ -2,10 +2,11 @@
 #include "reports/compare/chaos.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
+
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
@@ -48,7 +49,7 @@ std::optional<Difference> status_difference(const Subject& before, const Subject
                                                 : Change::changed;
   Difference difference = difference_in(before, change);
   difference.what = "status";
-  difference.before = fmt::format("{}", fmt::join(seen, " or "));
+  difference.before = joined({seen.begin(), seen.end()}, " or ");
   difference.after = after.state;
   if (change != Change::changed) difference.relative = change == Change::worse ? kNever : -kNever;
   return difference;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "reports/formats/escape.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -2,14 +2,12 @@
 #include "reports/compare/gate.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
 
 #include "core/errors.h"
 #include "reports/compare/chaos.h"
-#include "reports/formats/escape.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -17,9 +15,9 @@ namespace {
 
 // "1e-1, 1e-3, 1e-6".
 std::string target_names() {
-  std::vector<std::string_view> names;
-  for (const Tolerance& tolerance : kTolerances) names.push_back(tolerance.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  std::vector<std::string> names;
+  for (const Tolerance& tolerance : kTolerances) names.emplace_back(tolerance.name);
+  return joined(names);
 }
 
 // Why figures of the two cannot be held to each other; empty where they can.

@@ -3,7 +3,6 @@
 
 #include "reports/compare/gate_words.h"
 #include "reports/formats/escape.h"
-#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/formats/escape.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -8,9 +8,6 @@
 #include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
 #include "reports/formats/formats.h"
-#include "reports/read/comparison.h"
-#include "reports/read/study.h"
-#include "reports/sections/document.h"
 
 namespace isoline::reports {
 namespace {

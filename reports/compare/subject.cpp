@@ -10,9 +10,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/threads.h"
-#include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
-#include "reports/read/study.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
