@@ -88,7 +88,7 @@ class Page(unittest.TestCase):
     def test_every_optimizer_has_a_section_with_its_formula(self):
         sections = self.browser.run("return document.querySelectorAll('article.optimizer').length")
         formulas = self.browser.run("return [...document.querySelectorAll("
-                                    "'article.optimizer p.formula')].map((one) => one.innerText)")
+                                    "'article.optimizer p.formula')].map((one) => one.textContent)")
         self.assertEqual(sections, len(self.json["optimizers"]))
         self.assertEqual(len(formulas), sections)
         self.assertTrue(all(formula.strip() for formula in formulas))
