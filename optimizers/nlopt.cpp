@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "optimizers/lbfgs.h"
 #include "optimizers/optimizer.h"
