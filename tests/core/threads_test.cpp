@@ -7,7 +7,10 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <cstdlib>
+#include <map>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -62,6 +65,19 @@ bool is_kernel(const std::string& name, const std::string& chosen_by) {
 class LibraryKernelDeathTest : public ::testing::Test {
  protected:
   LibraryKernelDeathTest() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+  ~LibraryKernelDeathTest() override {  // the tests that follow see the environment they began in
+    for (const auto& [variable, value] : before_)
+      value ? setenv(variable, value->c_str(), 1) : unsetenv(variable);
+  }
+
+ private:
+  static std::optional<std::string> value_of(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value ? std::optional<std::string>(value) : std::nullopt;
+  }
+  const std::map<const char*, std::optional<std::string>> before_ = {
+      {"OPENBLAS_CORETYPE", value_of("OPENBLAS_CORETYPE")},
+      {"ISOLINE_KERNEL", value_of("ISOLINE_KERNEL")}};
 };
 
 TEST_F(LibraryKernelDeathTest, OfAUserWins) {
