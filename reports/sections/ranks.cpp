@@ -9,6 +9,7 @@
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/words.h"
+#include "reports/statistics/rank_tests.h"
 #include "reports/statistics/runtimes.h"
 
 namespace isoline::reports {

@@ -8,6 +8,7 @@
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
+#include "reports/statistics/rank_tests.h"
 #include "reports/statistics/runtimes.h"
 
 namespace isoline::reports {
