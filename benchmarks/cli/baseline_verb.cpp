@@ -20,16 +20,18 @@ using reports::Study;
 
 namespace {
 
-// Studies of the same cells from perturbed starts, one a perturbation.
+// Studies of the same cells from perturbed starts, one a perturbation; fewer where interrupted.
 std::vector<Study> perturbed_studies(const BaselineArguments& given, Session& session,
                                      const Study& study) {
   const RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                            .progress = Progress::style_of(STDERR_FILENO),
                            .command = session.command()};
-  std::vector<Study> perturbed(static_cast<std::size_t>(given.perturbations));
-  for (std::size_t i = 0; i < perturbed.size(); ++i)
-    perturbed[i].runs =
-        perturbed_records(session.catalog(), study.runs, static_cast<int>(i) + 1, options);
+  std::vector<Study> perturbed;
+  for (int number = 1; number <= given.perturbations; ++number) {
+    auto records = perturbed_records(session.catalog(), study.runs, number, options);
+    if (!records) break;
+    perturbed.emplace_back().runs = std::move(*records);
+  }
   return perturbed;
 }
 
@@ -38,7 +40,12 @@ std::vector<Study> perturbed_studies(const BaselineArguments& given, Session& se
 int baseline_verb(const BaselineArguments& given, Session& session) {
   const Study study = read_study({given.folders.begin(), given.folders.end()});
   require(!study.runs.empty(), "there are no records to remember");
-  const std::string text = baseline_json(study, perturbed_studies(given, session, study));
+  const std::vector<Study> perturbed = perturbed_studies(given, session, study);
+  if (perturbed.size() < static_cast<std::size_t>(given.perturbations)) {
+    fmt::print(stderr, "interrupted; no baseline was written\n");
+    return kInterrupted;
+  }
+  const std::string text = baseline_json(study, perturbed);
   if (given.out.empty()) {
     fmt::print("{}", text);
     return kGood;

@@ -62,16 +62,16 @@ bool is_repeated(const Record& record) {
 
 }  // namespace
 
-std::vector<Record> perturbed_records(const Catalog& catalog, const std::vector<Record>& records,
-                                      int number, RunOptions options) {
+std::optional<std::vector<Record>> perturbed_records(const Catalog& catalog,
+                                                     const std::vector<Record>& records, int number,
+                                                     RunOptions options) {
   std::vector<Request> requests;
   for (const Record& record : records)
     if (is_repeated(record)) requests.push_back(request_again(catalog, record));
   const HiddenFolder folder;
   Store store(folder.path());
   options.perturbation = number;
-  const Outcome outcome = run_all(catalog, requests, store, options);
-  require(!outcome.is_interrupted, "interrupted: nothing was kept");
+  if (run_all(catalog, requests, store, options).is_interrupted) return std::nullopt;
   std::vector<Record> perturbed;
   for (const Request& request : requests)
     if (std::optional<Record> record = store.find(request)) perturbed.push_back(std::move(*record));

@@ -56,6 +56,10 @@ const Catalog& catalog() {
   return built;
 }
 
+std::vector<Record> perturbed(const std::vector<Record>& records) {
+  return perturbed_records(catalog(), records, 1, {.jobs = 2}).value();
+}
+
 FinishedMatrix small_matrix() {
   Suite suite;
   suite.name = "small";
@@ -66,8 +70,8 @@ FinishedMatrix small_matrix() {
 
 TEST(PerturbedRuns, AnswerTheSameCellsFromAnotherStart) {
   const FinishedMatrix matrix = small_matrix();
-  const auto once = perturbed_records(catalog(), matrix.records, 1, {.jobs = 2});
-  const auto again = perturbed_records(catalog(), matrix.records, 1, {.jobs = 2});
+  const auto once = perturbed(matrix.records);
+  const auto again = perturbed(matrix.records);
   ASSERT_EQ(once.size(), matrix.records.size());
   for (std::size_t i = 0; i < once.size(); ++i) {
     const Record& record = matrix.records[i];
@@ -81,7 +85,7 @@ TEST(PerturbedRuns, AnswerTheSameCellsFromAnotherStart) {
 
 TEST(PerturbedRuns, LeaveTheRecordsOfTheFolderAsTheyWere) {
   const FinishedMatrix matrix = small_matrix();
-  perturbed_records(catalog(), matrix.records, 1, {.jobs = 2});
+  perturbed(matrix.records);
   for (const Record& record : matrix.records) {
     const auto kept = matrix.store.find(record.request);
     ASSERT_TRUE(kept.has_value());
@@ -93,15 +97,14 @@ TEST(PerturbedRuns, LeaveTheRecordsOfTheFolderAsTheyWere) {
 TEST(PerturbedRuns, RefuseRecordsOfAnotherBuild) {
   FinishedMatrix matrix = small_matrix();
   matrix.records[1].build = "0123456789abcdef";
-  EXPECT_THROW(perturbed_records(catalog(), matrix.records, 1, {.jobs = 2}), UsageError);
+  EXPECT_THROW(perturbed(matrix.records), UsageError);
 }
 
 TEST(PerturbedRuns, LeaveOutWhatAClockEndedAndWhatDoesNotApply) {
   FinishedMatrix matrix = small_matrix();
   matrix.records[0].is_nondeterministic = true;
   matrix.records[1].status = Status::inapplicable;
-  EXPECT_EQ(perturbed_records(catalog(), matrix.records, 1, {.jobs = 2}).size(),
-            matrix.records.size() - 2);
+  EXPECT_EQ(perturbed(matrix.records).size(), matrix.records.size() - 2);
 }
 
 }  // namespace
