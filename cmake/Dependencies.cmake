@@ -38,6 +38,9 @@ find_file(ISOLINE_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js REQ
 file(STRINGS ${Isoline__onednn_INCLUDE}/oneapi/dnnl/dnnl_version.h _lines REGEX "VERSION_(MAJOR|MINOR|PATCH) ")
 string(REGEX REPLACE "[^0-9;]" "" _lines "${_lines}")
 list(JOIN _lines "." _onednn)
+find_file(ISOLINE_OPENBLAS_CONFIG openblas_config.h REQUIRED)
+file(STRINGS ${ISOLINE_OPENBLAS_CONFIG} _lines REGEX "OPENBLAS_VERSION")
+string(REGEX MATCH "[0-9]+[0-9.]*" _openblas "${_lines}")
 set(ISOLINE_LIBRARIES "Eigen ${Eigen3_VERSION}" "Ceres ${Ceres_VERSION}" "NLopt ${NLopt_VERSION}"
     "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}"
-    "oneDNN ${_onednn}")
+    "oneDNN ${_onednn}" "OpenBLAS ${_openblas}")

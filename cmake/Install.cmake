@@ -8,14 +8,18 @@ foreach(library IN LISTS libraries)
   install(TARGETS isoline_${library} EXPORT IsolineTargets)
   install(DIRECTORY ${library} DESTINATION include/isoline FILES_MATCHING PATTERN "*.h")
 endforeach()
+set_target_properties(isoline_cli PROPERTIES EXPORT_NAME cli)  # its headers are benchmarks'
+install(TARGETS isoline_cli EXPORT IsolineTargets)
 install(TARGETS isoline)
 
 set(package lib/cmake/Isoline)
 install(EXPORT IsolineTargets NAMESPACE Isoline:: DESTINATION ${package})
-install(FILES cmake/Dependencies.cmake DESTINATION ${package})
+install(FILES cmake/Dependencies.cmake cmake/Commit.cmake cmake/BuildInfo.cmake
+        DESTINATION ${package})
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/IsolineConfig.cmake @ONLY CONTENT [[
 include("${CMAKE_CURRENT_LIST_DIR}/Dependencies.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/IsolineTargets.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/Commit.cmake")
 ]])
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/IsolineConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)

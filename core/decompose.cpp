@@ -1,13 +1,9 @@
 // Factorizations by LAPACKE, the only door to it.
 #include "core/decompose.h"
 
-#include <fmt/format.h>
 #include <lapacke.h>
-#include <openblas_config.h>
 
 #include <algorithm>
-
-extern "C" char* openblas_get_corename();
 
 namespace isoline {
 namespace {
@@ -15,12 +11,6 @@ namespace {
 lapack_int as_int(Index n) { return static_cast<lapack_int>(n); }
 
 }  // namespace
-
-std::string lapack_library() {
-  std::string version = OPENBLAS_VERSION;  // " OpenBLAS 0.3.21 "
-  version = version.substr(version.find_last_of(' ', version.size() - 2) + 1);
-  return fmt::format("{} {}", version.substr(0, version.find(' ')), openblas_get_corename());
-}
 
 bool thin_svd(const Matrix& A, Svd& out) {
   const Index m = A.rows(), n = A.cols(), r = std::min(m, n);

@@ -1,13 +1,9 @@
 // Matrix factorizations, by LAPACK. Compiled once; shapes as in the field's books.
 #pragma once
 
-#include <string>
-
 #include "core/array.h"
 
 namespace isoline {
-
-std::string lapack_library();  // version and the kernels it chose
 
 struct Svd {
   Matrix U;      // (m, r), r = min(m, n)

@@ -9,8 +9,9 @@ namespace isoline {
 
 using Json = nlohmann::json;
 
-Json to_json(const OptionValues& options);        // an object; numbers survive
-OptionValues option_values_from(const Json& json);  // UsageError where a value is of no type of ours
+Json to_json(const OptionValues& options);  // an object; numbers survive
+OptionValues option_values_from(
+    const Json& json);                            // UsageError where a value is of no type of ours
 Json describe_options(const OptionTable& table);  // a list: name, type, default, law and meaning
 
 }  // namespace isoline

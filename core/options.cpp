@@ -63,8 +63,8 @@ class FieldParser {
     return value;
   }
   [[noreturn]] void reject(const std::string& law, const std::string& nearest = "") const {
-    std::string text = fmt::format("{}: {} must be {}, got {}", component_, field_.name, law,
-                                   text_of(given_));
+    std::string text =
+        fmt::format("{}: {} must be {}, got {}", component_, field_.name, law, text_of(given_));
     if (!nearest.empty()) text += fmt::format("; did you mean {}?", nearest);
     throw UsageError(text);
   }

@@ -49,11 +49,11 @@ class OptionValues {
     for (const NamedOption& each : values) set(each.name, each.value);
   }
 
-  void set(std::string_view name, OptionValue value);      // added, or put in place of the old
-  void set_all(const OptionValues& others);                // each of them
-  void erase(std::string_view name);                       // where there is one
-  const OptionValue* find(std::string_view name) const;    // or nullptr
-  const OptionValue& at(std::string_view name) const;      // UsageError where there is none
+  void set(std::string_view name, OptionValue value);    // added, or put in place of the old
+  void set_all(const OptionValues& others);              // each of them
+  void erase(std::string_view name);                     // where there is one
+  const OptionValue* find(std::string_view name) const;  // or nullptr
+  const OptionValue& at(std::string_view name) const;    // UsageError where there is none
   bool contains(std::string_view name) const { return find(name) != nullptr; }
   // As a number, or as text; what is given where there is none, or one of another type.
   Real number(std::string_view name, Real otherwise) const;

@@ -35,9 +35,9 @@ struct OracleSizes {
 struct OracleRow {
   Oracle kind;
   std::string_view name;
-  std::string_view asks;                     // what is computed
+  std::string_view asks;                      // what is computed
   std::int64_t (*price)(const OracleSizes&);  // declared, in forwards
-  std::string_view lack;                     // why a problem does not offer it, in words
+  std::string_view lack;                      // why a problem does not offer it, in words
   bool is_dense_matrix = false;
   bool is_in_every_record = true;  // records of older versions lack what was counted later
 };
@@ -79,8 +79,7 @@ inline constexpr std::array kOracleTable = {
               [](const OracleSizes&) -> std::int64_t { return 1; },
               "there is no network of dense layers", false, false},
     OracleRow{Oracle::truth, "truth", "the x* that made y*: a privilege",
-              [](const OracleSizes&) -> std::int64_t { return 0; },
-              "the problem knows no true x"}};
+              [](const OracleSizes&) -> std::int64_t { return 0; }, "the problem knows no true x"}};
 inline constexpr std::size_t kOracles = kOracleTable.size();
 
 inline constexpr auto kOracleNames = [] {
@@ -100,9 +99,7 @@ static_assert([] {
 
 using OracleCounts = std::array<std::int64_t, kOracles>;
 
-inline std::string_view name_of(Oracle oracle) {
-  return row_of(oracle).name;
-}
+inline std::string_view name_of(Oracle oracle) { return row_of(oracle).name; }
 
 // A set of oracles: what a method needs, or what a problem offers.
 class OracleSet {

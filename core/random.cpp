@@ -10,19 +10,23 @@
 #include "core/digest.h"
 
 namespace isoline {
-RandomStream::RandomStream(std::uint64_t seed, std::string_view component, std::string_view purpose,
-                           std::uint64_t index)
+Draws::Draws(std::uint64_t seed, std::string_view component, std::string_view purpose,
+             std::uint64_t index)
     : key_{seed, fnv1a(purpose, fnv1a("/", fnv1a(component)))}, index_(index) {}
+
+void Draws::restart(std::uint64_t index) {
+  index_ = index;
+  block_ = 0;
+  left_ = 0;
+}
 
 RandomStream RandomStream::of_sample(std::uint64_t index) const {
   RandomStream other = *this;
-  other.index_ = index;
-  other.block_ = 0;
-  other.left_ = 0;
+  other.restart(index);
   return other;
 }
 
-std::uint64_t RandomStream::next() {
+std::uint64_t Draws::next() {
   if (left_ == 0) {
     const r123::Philox4x64::ctr_type counter{{index_, block_++, 0, 0}};
     const auto drawn = r123::Philox4x64()(counter, {{key_[0], key_[1]}});
@@ -32,14 +36,14 @@ std::uint64_t RandomStream::next() {
   return buffer_[static_cast<std::size_t>(--left_)];
 }
 
-Real RandomStream::uniform() {
+Real Draws::uniform() {
   constexpr Real kUnit = 0x1p-53;  // the top 53 bits fill a double's mantissa
   return static_cast<Real>(next() >> 11) * kUnit;
 }
 
-Real RandomStream::uniform(Real low, Real high) { return low + (high - low) * uniform(); }
+Real Draws::uniform(Real low, Real high) { return low + (high - low) * uniform(); }
 
-Real RandomStream::normal() {
+Real Draws::normal() {
   const Real radius = std::sqrt(-2 * std::log(1 - uniform()));
   return radius * std::cos(2 * std::numbers::pi * uniform());
 }

@@ -1,38 +1,21 @@
-// Counter-based random numbers (Philox4x64-10, Salmon et al. 2011), by named stream: what a draw
-// yields depends on its key alone, not on order, thread, shard or standard library.
+// Arrays of counter-based random numbers.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string_view>
-
 #include "core/array.h"
+#include "core/draws.h"
 
 namespace isoline {
 
-class RandomStream {
+class RandomStream : public Draws {
  public:
-  // `component` is a problem's name without options; `index` numbers the sample.
-  RandomStream(std::uint64_t seed, std::string_view component, std::string_view purpose,
-               std::uint64_t index = 0);
+  using Draws::Draws;
 
   // The stream of another sample, from its beginning; everything else of the key the same.
   RandomStream of_sample(std::uint64_t index) const;
 
-  Real uniform();                     // U[0, 1)
-  Real uniform(Real low, Real high);  // U[low, high)
-  Real normal();                      // N(0, 1), by Box and Muller
-  Vector normal_vector(Index n);      // (n) independent N(0, 1)
+  Vector normal_vector(Index n);  // (n) independent N(0, 1)
   Vector uniform_vector(Index n, Real low, Real high);
   void signs(VectorOut out);  // each −1 or 1 with equal chance
-
- private:
-  std::uint64_t next();
-
-  std::array<std::uint64_t, 2> key_;
-  std::uint64_t index_, block_ = 0;
-  std::array<std::uint64_t, 4> buffer_{};
-  int left_ = 0;
 };
 
 }  // namespace isoline

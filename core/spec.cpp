@@ -97,7 +97,9 @@ OptionValues options_of(const Spec& spec) {
   return options;
 }
 
-std::string name_of_spec(std::string_view spec) { return std::string(spec.substr(0, spec.find('['))); }
+std::string name_of_spec(std::string_view spec) {
+  return std::string(spec.substr(0, spec.find('[')));
+}
 
 std::vector<std::uint64_t> parse_seeds(std::string_view text) {
   constexpr const char* kExpected = "seeds such as 5 (0 to 4), 0..9 or =5";

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-
 #include "core/spec.h"
 
 namespace isoline::networks {

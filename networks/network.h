@@ -86,8 +86,8 @@ struct NetworkEntry {
   std::string note = {};
   OptionTable options = {};
   int revision = 1;  // raised when results change
-  std::function<std::unique_ptr<Network>(const OptionValues& complete_options, const NetworkShape&)> make =
-      {};
+  std::function<std::unique_ptr<Network>(const OptionValues& complete_options, const NetworkShape&)>
+      make = {};
 };
 using NetworkRegistry = Registry<NetworkEntry>;
 

@@ -9,7 +9,8 @@
 
 namespace isoline::optimizers {
 
-OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options, const Problem& problem) {
+OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options,
+                   const Problem& problem) {
   return entry.needs_for ? entry.needs_for(options, problem) : entry.needs;
 }
 

@@ -88,13 +88,15 @@ struct OptimizerEntry {
   std::function<OracleSet(const OptionValues& options, const Problem&)> needs_for = {};
   // Any further reason why this pair makes no sense; empty if it does.
   std::function<std::string(const OptionValues& options, const Problem&)> objection = {};
-  std::function<std::unique_ptr<Optimizer>(const OptionValues& options, const OptimizerRegistry&)> make =
-      {};
-  std::function<std::unique_ptr<Descent>(const OptionValues& options)> make_descent = {};  // gradient rules
+  std::function<std::unique_ptr<Optimizer>(const OptionValues& options, const OptimizerRegistry&)>
+      make = {};
+  std::function<std::unique_ptr<Descent>(const OptionValues& options)> make_descent =
+      {};  // gradient rules
 };
 
 // What this optimizer asks of this problem: what the meter is to grant.
-OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options, const Problem& problem);
+OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options,
+                   const Problem& problem);
 
 // What a method with these oracles sees that others do not, in words.
 std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse);
@@ -158,7 +160,8 @@ class Descending final : public Descent {
 template <Stepper M>
 OptimizerEntry stepper_entry(OptimizerEntry entry) {
   entry.options = option_table<M>();
-  entry.make = [](const OptionValues& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
+  entry.make = [](const OptionValues& options,
+                  const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
     return std::make_unique<Stepping<M>>(read_options<M>(options));
   };
   return entry;
@@ -169,7 +172,8 @@ template <GradientRule R>
 OptimizerEntry rule_entry(OptimizerEntry entry) {
   entry.options = option_table<R>();
   entry.needs = {Oracle::forward, Oracle::pullback};
-  entry.make = [](const OptionValues& options, const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
+  entry.make = [](const OptionValues& options,
+                  const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
     return std::make_unique<ByGradient<R>>(read_options<R>(options));
   };
   entry.make_descent = [](const OptionValues& options) -> std::unique_ptr<Descent> {

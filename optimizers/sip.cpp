@@ -6,7 +6,6 @@
 // 3).
 #include <fmt/format.h>
 
-
 #include "optimizers/inversion.h"
 #include "optimizers/network_descent.h"
 

@@ -1,36 +1,27 @@
 // The report of a study: one page for people, and the same figures as Markdown, LaTeX, CSV, JSON.
+// Rooms from the ground up; each may see those above it in this list.
 //
-//   study                           reads the folders
-//   axes, reached, comparison       puts runs into cells and aggregates them: every figure
-//   statistics/                     medians, profiles, ranks, tests, running times, costs, who
-//   leads tables/                         the tables of statistics, in every format plots/ their
-//   plots: numbers and SVG figures/                        the figures of the papers, panel by
-//   panel audit/                          the measured properties, in each format claims/ what
-//   papers say, held against the runs gate/                           what got worse from one
-//   result to another; baselines learned                         what networks have learned text,
-//   wording, readings         how figures, phrases and whole sentences are written csv, json,
-//   latex, markdown,     one output format each terminal, html/ and page/
+// - statistics/: numbers in, numbers out: medians, profiles, ranks, tests, the bootstrap.
+// - read/: folders to records, records to cells, axes, standings, costs and curves.
+// - sections/: cells to sections of sentences, tables and plots, one file a topic; `Document`.
+// - formats/: a document to text, one file a format; formats.h lists them.
+// - page/: a document to the page, its charts' data, its style and its scripts.
+// - compare/: the gate: what changed from one set of results to another; baselines.
+//
+// A new statistic is a function in a file of sections/ and its name in sections/evidence.h; a new
+// format is a file of formats/ and its name in formats/formats.h.
 #pragma once
 
 #include <filesystem>
-#include <string>
 
-#include "reports/comparison.h"
-#include "reports/study.h"
+#include "reports/formats/formats.h"
+#include "reports/read/study.h"
+#include "reports/sections/document.h"
+#include "reports/sections/sections.h"
 
 namespace isoline::reports {
 
-// Writes index.html, report.md, report.tex, report.csv, statistics.csv and report.json; makes the
-// folder.
-void write_report(const Comparison& comparison, const std::filesystem::path& out);
-
-std::string html_report(const Comparison& comparison);
-std::string markdown_report(const Comparison& comparison);
-std::string latex_report(const Comparison& comparison);
-std::string csv_report(const Comparison& comparison);   // one row a run
-std::string json_report(const Comparison& comparison);  // schema isoline.report/1
-std::string terminal_table(const Comparison& comparison);
-
-inline constexpr const char* kReportSchema = "isoline.report/1";
+// Writes every format into the folder, which it makes.
+void write_report(const Document& document, const std::filesystem::path& out);
 
 }  // namespace isoline::reports

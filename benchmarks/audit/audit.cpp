@@ -186,15 +186,24 @@ std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
                                         const std::vector<std::string>& names) {
   std::vector<AuditedOptimizer> all;
   for (const std::string& name : names) {
-    const auto text = isolated_text([&] { return to_json(audit_optimizer(catalog, name)).dump(); },
-                                    kAuditSeconds);
+    const auto [text, failure] = isolated_text(
+        [&] { return to_json(audit_optimizer(catalog, name)).dump(); }, kAuditSeconds);
     if (text)
       all.push_back(audited_from_json(parse_json(*text, name)));
     else
-      all.push_back(
-          {.name = name, .spec = name, .reason = "its process crashed, threw or took too long"});
+      all.push_back({.name = name,
+                     .spec = name,
+                     .reason = fmt::format("its audit came to no end: {}", failure)});
   }
   return all;
+}
+
+std::string audit_text(const std::vector<AuditedOptimizer>& all) {
+  return json_text(audit_to_json(all), 2) + "\n";
+}
+
+void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem::path& path) {
+  write_json(path, audit_to_json(all));
 }
 
 }  // namespace isoline::benchmarks

@@ -1,6 +1,10 @@
 // The audit: what every optimizer's properties are, measured on problems with known answers.
 #pragma once
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include "benchmarks/plan/catalog.h"
 #include "core/records/audited.h"
 
@@ -13,6 +17,10 @@ AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name
 // Each in a process of its own: one that crashes or hangs costs its own audit alone.
 std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
                                         const std::vector<std::string>& names);
+
+// The file that reports read, and its text.
+std::string audit_text(const std::vector<AuditedOptimizer>& all);
+void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem::path& path);
 
 // Fits log10 value = exponent · log10 scale + constant; without a law where a value is not positive
 // and finite.

@@ -207,7 +207,6 @@ Vector value_of(const Chain& chain, VectorRef x) {
   return value;
 }
 
-Vector bent_start() { return kBentStart; }
 Problem bent_problem() { return scaled_loss(1); }
 Problem scaled_loss(Real c) { return make(bent(), kBentStart, kBentSolution, c); }
 Problem scaled_output(Real s) {

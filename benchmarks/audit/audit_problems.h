@@ -33,7 +33,6 @@ inline constexpr std::size_t kChanges = 3;  // diagonal, rotated, affine
 Change change_of(std::size_t kind);
 
 // The bent problem, of which all but `slope` and `singular` are variants.
-Vector bent_start();
 Problem bent_problem();
 Problem scaled_loss(Real c);              // L → cL
 Problem scaled_output(Real s);            // y → sy, y* → sy*

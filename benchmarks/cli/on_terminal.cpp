@@ -1,8 +1,12 @@
-// The live line of verbs that read many files.
+// The live line of verbs that read many files, and the outcome of a plan.
+#include "benchmarks/cli/on_terminal.h"
+
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/progress.h"
+#include "benchmarks/run/runner.h"
 
 namespace isoline::benchmarks {
 
@@ -14,6 +18,35 @@ Listener on_terminal(const char* what) {
     line->reached(std::int64_t(done));
     line->show();
   };
+}
+
+void print_outcome(const Outcome& outcome, bool quiet) {
+  constexpr std::size_t kMost = 20;
+  for (std::size_t i = 0; i < std::min(kMost, outcome.failures.size()); ++i)
+    fmt::print(stderr, "{}\n", outcome.failures[i]);
+  if (outcome.failures.size() > kMost)
+    fmt::print(stderr, "… and {} more\n", outcome.failures.size() - kMost);
+  for (const std::string& name : outcome.conflicts)
+    fmt::print(stderr, "{}: its repetition gave another result\n", name);
+  if (outcome.reused_from_other_commits > 0)
+    fmt::print(stderr,
+               "{} of the reused cells were run by another commit or a changed tree; --force "
+               "repeats them\n",
+               outcome.reused_from_other_commits);
+  if (quiet) return;
+  std::string counts;
+  for (const auto& [status, count] : outcome.statuses)
+    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));
+  fmt::print("{} cells: {} run, {} reused ({})\n", outcome.planned, outcome.run, outcome.reused,
+             counts);
+}
+
+int exit_code_of(const Outcome& outcome) {
+  if (outcome.is_interrupted) {
+    fmt::print(stderr, "interrupted; the same command goes on where it stopped\n");
+    return kInterrupted;
+  }
+  return outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
 }
 
 }  // namespace isoline::benchmarks

@@ -1,64 +1,121 @@
-// The verbs of the command line, one file each. Every one adds itself to the application.
+// The verbs of the command line: what each is given, and a plain function that does it and returns
+// the exit code. command_line.cpp says how the arguments are written.
 #pragma once
 
-#include <memory>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "benchmarks/plan/catalog.h"
-#include "core/threads.h"
-
-namespace CLI {
-class App;
-}
-
-namespace isoline::reports {
-struct Judgement;
-struct Study;
-}  // namespace isoline::reports
-
 namespace isoline::benchmarks {
+
+class Session;
 
 // Exit codes of every verb.
 enum Exit { kGood = 0, kUsage = 1, kWorse = 2, kBetterOnly = 3, kNotComparable = 4 };
 inline constexpr int kInterrupted = 130;  // what a shell expects after Ctrl-C
 
-// What the verbs share: the catalog, made when first needed, and the way out.
-class Session {
- public:
-  explicit Session(std::string command) : command_(std::move(command)) {}
-  const Catalog& catalog() {
-    if (!catalog_) catalog_ = std::make_unique<Catalog>(builtin_catalog());
-    return *catalog_;
-  }
-  const std::string& command() const { return command_; }
-  int exit_code = kGood;
-
- private:
-  std::string command_;
-  std::unique_ptr<Catalog> catalog_;
+struct RunArguments {
+  std::string suite, problem, optimizer, seeds, time, out, rates = "builtin";
+  std::int64_t iterations = 0, work = 0, memory_bytes = 0;  // 0: as the suite or the runner has it
+  double target = -1;                                       // −1: as the suite has it
+  int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
+  bool force = false, is_dry = false, lists_all = false, exclusive = false;
+  bool no_report = false, quiet = false;
 };
+int run_verb(const RunArguments& given, Session& session);
 
-// A live line of how far the work is, on a terminal; nothing elsewhere.
-Listener on_terminal(const char* what);
+struct ReportArguments {
+  std::vector<std::string> folders;
+  std::string out;
+};
+int report_verb(const ReportArguments& given, Session& session);
 
-// The claims of the tree whose cells are among the runs, judged.
-std::vector<reports::Judgement> covered_claims(Session& session, const reports::Study& study);
+struct CompareArguments {
+  std::string before, after;
+  double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
+  std::vector<std::string> timed;
+  bool is_common_only = false, as_markdown = false, as_json = false;
+};
+int compare_verb(const CompareArguments& given, Session& session);
 
-void add_run(CLI::App& app, Session& session);
-void add_report(CLI::App& app, Session& session);
-void add_compare(CLI::App& app, Session& session);
-void add_baseline(CLI::App& app, Session& session);
-void add_merge(CLI::App& app, Session& session);
-void add_claims(CLI::App& app, Session& session);
-void add_list(CLI::App& app, Session& session);
-void add_describe(CLI::App& app, Session& session);
-void add_check(CLI::App& app, Session& session);
-void add_audit(CLI::App& app, Session& session);
-void add_validate(CLI::App& app, Session& session);
-void add_train(CLI::App& app, Session& session);
-void add_infer(CLI::App& app, Session& session);
-void add_tune(CLI::App& app, Session& session);
-void add_completion(CLI::App& app, Session& session);
+struct BaselineArguments {
+  std::vector<std::string> folders;
+  std::string out;
+  int perturbations = 2, jobs = 0;
+};
+int baseline_verb(const BaselineArguments& given, Session& session);
+
+struct MergeArguments {
+  std::vector<std::string> folders;
+  std::string out;
+};
+int merge_verb(const MergeArguments& given, Session& session);
+
+struct ClaimArguments {
+  std::vector<std::string> names;
+  std::string out = "results/claims";
+  int jobs = 0;
+  bool is_list = false, as_json = false, no_run = false, with_long = false;
+};
+int claims_verb(const ClaimArguments& given, Session& session);
+
+struct ListArguments {
+  std::string kind = "all";
+  bool as_json = false, names_only = false;
+};
+int list_verb(const ListArguments& given, Session& session);
+
+struct DescribeArguments {
+  std::string name;
+  bool as_json = false;
+};
+int describe_verb(const DescribeArguments& given, Session& session);
+
+struct CheckArguments {
+  std::string spec;
+  std::uint64_t seed = 0;
+  bool as_json = false;
+};
+int check_verb(const CheckArguments& given, Session& session);
+
+struct AuditArguments {
+  std::vector<std::string> names;
+  std::string out;
+  bool as_json = false;
+};
+int audit_verb(const AuditArguments& given, Session& session);
+
+struct ValidateArguments {
+  std::vector<std::string> paths;
+};
+int validate_verb(const ValidateArguments& given, Session& session);
+
+struct TuneArguments {
+  std::string problem, optimizer, grid = "rate=1e-4..1e2x7", unit = "one", seeds = "100..102";
+  std::string table, folder = "results/tuning";
+  std::int64_t iterations = 100'000, work = 2000;
+  int jobs = 0;
+};
+int tune_verb(const TuneArguments& given, Session& session);
+
+struct TrainArguments {
+  std::string problem, optimizer = "sip", out;
+  std::uint64_t seed = 0;
+  std::int64_t iterations = 1000;
+  int threads = 1;
+  bool quiet = false;
+};
+int train_verb(const TrainArguments& given, Session& session);
+
+struct InferArguments {
+  std::string network, input, output;
+};
+int infer_verb(const InferArguments& given, Session& session);
+
+struct CompletionArguments {
+  std::string shell = "bash";
+  std::vector<std::string> verbs;  // filled in by the command line, which knows them
+};
+int completion_verb(const CompletionArguments& given, Session& session);
 
 }  // namespace isoline::benchmarks

@@ -8,14 +8,13 @@
 #include <string>
 #include <vector>
 
-
 namespace isoline::benchmarks {
 
 using Json = nlohmann::json;
 
 struct AuditUnion {
   std::shared_ptr<const Json> json;  // the file; null where no folder has one
-  std::set<std::string> disputed;  // optimizers left out, by this merge or an earlier one
+  std::set<std::string> disputed;    // optimizers left out, by this merge or an earlier one
   std::vector<std::string> conflicts, unreadable;  // sentences
 };
 

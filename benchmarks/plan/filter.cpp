@@ -49,13 +49,14 @@ std::vector<Wanted> wanted_in(const Registered& registry, const std::string& tex
 bool is_among(const std::vector<Wanted>& all, const Component& component,
               const OptimizerEntry* entry) {
   return all.empty() || std::ranges::any_of(all, [&](const Wanted& wanted) {
-    if (is_selector(wanted.name)) return wanted.name == "*" || (entry && is_selected(*entry, wanted.name));
-    return wanted.name == component.name &&
-           std::ranges::all_of(wanted.options, [&](const NamedOption& each) {
-             const OptionValue* has = component.options.find(each.name);
-             return has && *has == each.value;
-           });
-  });
+           if (is_selector(wanted.name))
+             return wanted.name == "*" || (entry && is_selected(*entry, wanted.name));
+           return wanted.name == component.name &&
+                  std::ranges::all_of(wanted.options, [&](const NamedOption& each) {
+                    const OptionValue* has = component.options.find(each.name);
+                    return has && *has == each.value;
+                  });
+         });
 }
 
 }  // namespace
@@ -67,10 +68,10 @@ bool is_selected(const OptimizerEntry& entry, const std::string& selector) {
 
 std::vector<Request> filtered(const Catalog& catalog, std::vector<Request> requests,
                               const std::string& problems, const std::string& optimizers) {
-  const auto of_problems = problems.empty() ? std::vector<Wanted>()
-                                            : wanted_in(catalog.problems, problems);
-  const auto of_optimizers = optimizers.empty() ? std::vector<Wanted>()
-                                                : wanted_in(catalog.optimizers, optimizers);
+  const auto of_problems =
+      problems.empty() ? std::vector<Wanted>() : wanted_in(catalog.problems, problems);
+  const auto of_optimizers =
+      optimizers.empty() ? std::vector<Wanted>() : wanted_in(catalog.optimizers, optimizers);
   std::erase_if(requests, [&](const Request& request) {
     return !is_among(of_problems, request.problem, nullptr) ||
            !is_among(of_optimizers, request.optimizer,

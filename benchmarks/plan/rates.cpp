@@ -25,7 +25,8 @@ bool is_same(const OptionValue& value, const std::string& wanted) {
     return number == std::strtod(wanted.c_str(), nullptr);
   };
   if (const Real* number = std::get_if<Real>(&value)) return as_number(*number);
-  if (const Index* number = std::get_if<Index>(&value)) return as_number(static_cast<Real>(*number));
+  if (const Index* number = std::get_if<Index>(&value))
+    return as_number(static_cast<Real>(*number));
   return text_of(value) == wanted;
 }
 
@@ -44,6 +45,12 @@ Rates Rates::builtin() {
   for (const auto& [name, text] : builtin_rates())
     all.add(from_json(parse_json(std::string(text), name), name + ".json"));
   return all;
+}
+
+Rates Rates::named(const std::string& given) {
+  if (given == "builtin") return builtin();
+  if (given == "none") return {};
+  return from_json(read_json(given), given);
 }
 
 Rates Rates::from_json(const Json& json, const std::string& origin) {

@@ -17,6 +17,7 @@ class Rates {
  public:
   Rates() = default;  // an empty table: every method at its defaults
   static Rates builtin();
+  static Rates named(const std::string& given);  // "builtin", "none" or the path of a file
   static Rates from_json(const Json& json, const std::string& origin);
 
   struct Row {

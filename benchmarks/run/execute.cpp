@@ -9,6 +9,7 @@
 #include <new>
 #include <sstream>
 
+#include "benchmarks/run/perturbation.h"
 #include "core/ladder.h"
 #include "core/records/provenance.h"
 
@@ -30,7 +31,7 @@ std::vector<std::string> lines_of(const char* text) {
 }
 
 void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
-         Vector* returned) {
+         Vector* returned, int perturbation) {
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
   const std::string reason = why_inapplicable(entry, request.optimizer.options, problem);
@@ -40,7 +41,9 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   set_text(trace.privileges,
            fmt::format("{}", fmt::join(privileges_of(granted, problem.inverse_kind()), "\n")));
   Meter meter(problem, request.budget, granted, trace);
-  const Vector theta = drive(*method, meter, problem.start(), checkpoint);
+  Vector start = problem.start();
+  if (perturbation != 0) start = perturbed_start(std::move(start), request, perturbation);
+  const Vector theta = drive(*method, meter, std::move(start), checkpoint);
   if (returned) *returned = theta;
 }
 
@@ -178,9 +181,9 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
 }
 
 void execute(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint checkpoint,
-             Vector* returned) {
+             Vector* returned, int perturbation) {
   try {
-    run(catalog, request, trace, checkpoint, returned);
+    run(catalog, request, trace, checkpoint, returned, perturbation);
   } catch (const NotApplicable& reason) {
     conclude(trace, Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {

@@ -13,9 +13,10 @@ namespace isoline::benchmarks {
 Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint);
 
 // Makes the components of the request and drives them. The verdict is in the trace, whatever
-// happens: an exception ends as `failed`, `memory` or `inapplicable`. `returned` gets the last θ.
+// happens: an exception ends as `failed`, `memory` or `inapplicable`. `returned` gets the last θ. A
+// perturbation other than 0 moves the start in the last bit (perturbation.h).
 void execute(const Catalog& catalog, const Request& request, Trace& trace,
-             Checkpoint checkpoint = {}, Vector* returned = nullptr);
+             Checkpoint checkpoint = {}, Vector* returned = nullptr, int perturbation = 0);
 
 // The record of a run from what it left behind.
 Record record_of(const Request& request, const Trace& trace);

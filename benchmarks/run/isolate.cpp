@@ -27,6 +27,7 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr int kMemoryExit = 77;  // how a child says that an allocation failed outside of any catch
+constexpr int kThrownExit = 78;  // that what it wrote is an exception's text
 
 // Resident and virtual size of a process in bytes; 0 when it is gone.
 struct Sizes {
@@ -46,7 +47,7 @@ void limit(int resource, rlim_t value) {
 }
 
 // The child dies with its parent, leaves Ctrl-C to it, dumps no core and holds its memory limit.
-void confine(pid_t parent, std::int64_t memory_bytes) {
+void confine(pid_t parent, [[maybe_unused]] std::int64_t memory_bytes) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   std::signal(SIGINT, SIG_IGN);
@@ -54,8 +55,6 @@ void confine(pid_t parent, std::int64_t memory_bytes) {
   limit(RLIMIT_CORE, 0);
 #ifndef ISOLINE_SANITIZE  // the sanitizers' shadow memory does not fit under an address-space limit
   limit(RLIMIT_AS, static_cast<rlim_t>(memory_bytes + sizes_of(getpid()).address_space));
-#else
-  (void)memory_bytes;
 #endif
   std::set_new_handler([] { throw std::bad_alloc(); });
 }
@@ -179,26 +178,53 @@ std::optional<std::string> read_until(int descriptor, std::int64_t deadline) {
   }
 }
 
+void write_whole(const std::string& text, int descriptor) {
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t written = write(descriptor, text.data() + done, text.size() - done);
+    if (written < 0 && errno != EINTR) _exit(1);
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+}
+
 [[noreturn]] void write_and_exit(const std::function<std::string()>& work, int descriptor) {
   try {
-    const std::string text = work();
-    std::size_t done = 0;
-    while (done < text.size()) {
-      const ssize_t written = write(descriptor, text.data() + done, text.size() - done);
-      if (written < 0 && errno != EINTR) _exit(1);
-      if (written > 0) done += static_cast<std::size_t>(written);
-    }
+    write_whole(work(), descriptor);
+  } catch (const std::bad_alloc&) {
+    _exit(kMemoryExit);
+  } catch (const std::exception& error) {
+    write_whole(error.what(), descriptor);
+    _exit(kThrownExit);
   } catch (...) {
-    _exit(1);
+    write_whole("something that is no std::exception", descriptor);
+    _exit(kThrownExit);
   }
   _exit(0);
 }
 
+IsolatedText judged(int wait_status, std::string text) {
+  if (WIFSIGNALED(wait_status)) {
+    const int signal = WTERMSIG(wait_status);
+    return {{}, fmt::format("it was ended by signal {} ({})", signal, strsignal(signal))};
+  }
+  switch (const int code = WEXITSTATUS(wait_status)) {
+    case 0:
+      return {std::move(text), ""};
+    case kThrownExit:
+      return {{}, fmt::format("it threw: {}", text)};
+    case kMemoryExit:
+      return {{}, "it ran out of memory"};
+    default:
+      return {{}, fmt::format("it left with exit code {}", code)};
+  }
+}
+
 }  // namespace
 
-std::optional<std::string> isolated_text(const std::function<std::string()>& work, double seconds) {
+IsolatedText isolated_text(const std::function<std::string()>& work, double seconds) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    return {{}, fmt::format("no pipe to it could be made: {}", strerror(errno))};
   std::fflush(nullptr);
   const pid_t parent = getpid(), child = fork();
   if (child == 0) {
@@ -211,13 +237,13 @@ std::optional<std::string> isolated_text(const std::function<std::string()>& wor
   std::optional<std::string> text;
   if (child > 0) text = read_until(ends[0], deadline);
   close(ends[0]);
-  if (child <= 0) return std::nullopt;
+  if (child <= 0) return {{}, "its process could not be started"};
   if (!text) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  const bool succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  return succeeded ? text : std::nullopt;
+  if (!text) return {{}, fmt::format("it took more than {} s", seconds)};
+  return judged(status, std::move(*text));
 }
 
 }  // namespace isoline::benchmarks

@@ -47,7 +47,12 @@ class Worker {
   std::optional<Status> verdict_;  // ours, when we killed it
 };
 
-// What `work` returns, from a child process; nothing if the child fails or takes too long.
-std::optional<std::string> isolated_text(const std::function<std::string()>& work, double seconds);
+// What work in a child process came to: its text, or why there is none.
+struct IsolatedText {
+  std::optional<std::string> text;
+  std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
+};
+
+IsolatedText isolated_text(const std::function<std::string()>& work, double seconds);
 
 }  // namespace isoline::benchmarks

@@ -49,7 +49,8 @@ Json probe(const Catalog& catalog, const std::vector<const Request*>& requests) 
 }
 
 Probe isolated_probe(const Catalog& catalog, const std::vector<const Request*>& requests) {
-  const auto text = isolated_text([&] { return probe(catalog, requests).dump(); }, kProbeSeconds);
+  const auto text =
+      isolated_text([&] { return probe(catalog, requests).dump(); }, kProbeSeconds).text;
   if (!text) return {};  // the problem cannot be made here; its cells will say so when they run
   const Json found = parse_json(*text, "probe");
   return {found.at("forward_seconds"), found.at("unknowns"), found.at("reasons")};

@@ -124,8 +124,7 @@ MeasuredPrice price_of(Oracle oracle, std::int64_t declared, std::size_t calls,
 }  // namespace
 
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build) {
-  MeasuredPrices measured{
-      .build = build, .processor = this_build()->processor, .oracles = {}};
+  MeasuredPrices measured{.build = build, .processor = this_build()->processor, .oracles = {}};
   Point at;
   Room room(problem);
   const std::function<void()> forward = [&] { problem.forward(problem.start(), at); };
@@ -161,8 +160,7 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
 std::string prices_build(int problem_revision) { return build_digest(problem_revision, 0); }
 
 bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build) {
-  return prices && prices->build == build &&
-         prices->processor == this_build()->processor;
+  return prices && prices->build == build && prices->processor == this_build()->processor;
 }
 
 }  // namespace isoline::benchmarks

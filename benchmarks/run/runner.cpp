@@ -10,6 +10,7 @@
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "benchmarks/run/execute.h"
 #include "core/records/provenance.h"
@@ -47,12 +48,6 @@ std::string title_of(const Request& request) {
                      request.seed);
 }
 
-// One pending cell: what to run, and the earlier record whose timings it joins.
-struct Pending {
-  const Request* request;
-  std::optional<Record> earlier;
-};
-
 class Runner {
  public:
   Runner(const Catalog& catalog, Store& store, const RunOptions& options)
@@ -65,7 +60,7 @@ class Runner {
 
   Outcome run(const std::vector<Request>& requests) {
     const InterruptGuard guard;
-    std::vector<Pending> pending = find_pending(requests);
+    const std::vector<const Request*> pending = find_pending(requests);
     outcome_.planned = static_cast<std::int64_t>(requests.size());
     const auto repetitions = static_cast<std::int64_t>(pending.size());
     Progress progress(options_.progress, "cells", outcome_.reused + repetitions, outcome_.reused);
@@ -84,12 +79,13 @@ class Runner {
 
  private:
   struct Task {
-    Pending pending;
+    const Request* request;
     RunProvenance run;
   };
 
-  std::vector<Pending> find_pending(const std::vector<Request>& requests) {
-    std::vector<std::pair<std::size_t, Pending>> rounds;
+  // One entry a run that is wanted: a cell that is to be timed anew stands in it as often.
+  std::vector<const Request*> find_pending(const std::vector<Request>& requests) {
+    std::vector<std::pair<std::size_t, const Request*>> rounds;
     for (const Request& request : requests) {
       std::optional<Record> done = store_.find(request);
       if (options_.force) done.reset();
@@ -104,24 +100,28 @@ class Runner {
             origin.is_dirty.value_or(true) || origin.commit != this_build()->commit;
         continue;
       }
-      for (std::size_t i = have; i < wanted; ++i) rounds.push_back({i - have, {&request, done}});
+      for (std::size_t i = have; i < wanted; ++i) rounds.emplace_back(i - have, &request);
     }
     // Repetitions go round all cells, so that those of one cell see how the machine drifts.
     std::ranges::stable_sort(rounds, {}, [](const auto& entry) { return entry.first; });
-    std::vector<Pending> pending;
-    for (auto& [round, entry] : rounds) pending.push_back(std::move(entry));
+    std::vector<const Request*> pending;
+    for (const auto& [round, request] : rounds) pending.push_back(request);
     return pending;
   }
 
-  std::size_t start_some(std::vector<Pending>& pending, std::size_t next, Progress& progress) {
+  std::size_t start_some(const std::vector<const Request*>& pending, std::size_t next,
+                         Progress& progress) {
     for (std::size_t i = 0; i < workers_.size() && next < pending.size(); ++i) {
       if (workers_[i].is_running()) continue;
-      tasks_[i] = {std::move(pending[next++]), run_provenance()};
-      const Request& request = *tasks_[i].pending.request;
+      const Request& request = *pending[next++];
+      tasks_[i] = {&request, run_provenance()};
       progress.started(title_of(request));
       if (options_.force) store_.remove_checkpoint(request);
       workers_[i].start(
-          [&](Trace& trace) { execute(catalog_, request, trace, checkpoint_of(request)); },
+          [&](Trace& trace) {
+            execute(catalog_, request, trace, checkpoint_of(request), nullptr,
+                    options_.perturbation);
+          },
           limits_of(request, options_.limits), request.threads);
     }
     return next;
@@ -170,13 +170,13 @@ class Runner {
   }
 
   void keep(Task& task, const Trace& trace) {
-    Record record = record_of(*task.pending.request, trace);
+    Record record = record_of(*task.request, trace);
     record.provenance.run = task.run;
     std::optional<Record> earlier = store_.find(record.request);
     if (options_.force && !repeated(record)) earlier.reset();
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
         !same_result(*earlier, record))
-      outcome_.conflicts.push_back(title_of(*task.pending.request));
+      outcome_.conflicts.push_back(title_of(*task.request));
     store_.write(record, earlier);
     if (record.status != Status::interrupted) store_.remove_checkpoint(record.request);
     ++outcome_.run;
@@ -211,6 +211,8 @@ class Runner {
 };
 
 }  // namespace
+
+int one_a_core() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 Limits limits_of(const Request& request, const Limits& standard) {
   Limits limits = standard;

@@ -19,6 +19,7 @@ struct RunOptions {
   int repeat = 1;          // timings wanted of each cell
   Limits limits;
   double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
+  int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
   std::string command;  // for the record
 };
@@ -32,8 +33,11 @@ struct Outcome {
   bool is_interrupted = false;
 };
 
+// Runs the requests that the store has no record of, and no more.
 Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                 const RunOptions& options);
+
+int one_a_core();  // how many cells at a time a machine is meant for
 
 // The limits of one request: its soft time limit, doubled, is its hard one.
 Limits limits_of(const Request& request, const Limits& standard);

@@ -2,6 +2,7 @@
 #include "benchmarks/run/sheets.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "benchmarks/run/isolate.h"
@@ -55,14 +56,41 @@ void draw_landscapes(const Problem& problem, Sheet& sheet) {
   sheet.landscape_x = in_x;
   if (problem.outputs() != 2) return;
   const std::array<Real, 4> image{low[0], high[0], low[1], high[1]};
-  Landscape in_y{problem.y_window().value_or(image), Grid(kGrid, kGrid),
-                 problem.contour_spacing()};
+  Landscape in_y{problem.y_window().value_or(image), Grid(kGrid, kGrid), problem.contour_spacing()};
   const auto& [y1_low, y1_high, y2_low, y2_high] = in_y.window;
   for (Index j = 0; j < kGrid; ++j)
     for (Index i = 0; i < kGrid; ++i)
       in_y.loss(i, j) = problem.loss_of(
           Eigen::Vector2d(grid_point(y1_low, y1_high, i), grid_point(y2_low, y2_high, j)));
   sheet.landscape_y = in_y;
+}
+
+// y = x with an inverse of any kind: what a method asks of it shows what it would see.
+class Witness final : public problems::Physics {
+ public:
+  explicit Witness(Inverse kind) : kind_(kind) {}
+  Index inputs() const override { return 1; }
+  Index outputs() const override { return 1; }
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override { y = x; }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { Jv = v; }
+  void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { JTu = u; }
+  Inverse inverse_kind() const override { return kind_; }
+
+ private:
+  Inverse kind_;
+};
+
+std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
+                                             const Component& component) {
+  std::vector<std::string> all;
+  for (const Inverse kind : {Inverse::exact, Inverse::damped, Inverse::estimate}) {
+    const Problem problem({.physics = std::make_unique<Witness>(kind),
+                           .start = Vector::Ones(1),
+                           .target = Matrix::Zero(1, 1)});
+    for (const std::string& one : privileges_of(needs_of(entry, component.options, problem), kind))
+      if (std::ranges::find(all, one) == all.end()) all.push_back(one);
+  }
+  return all;
 }
 
 }  // namespace
@@ -100,7 +128,7 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
           .note = entry.note,
           .options_text = json_text(describe_options(entry.options)),
           .oracles = names_of(entry.needs),
-          .privileges = privileges_of(entry.needs, Inverse::none),
+          .privileges = possible_privileges(entry, component),
           .family = std::string(name_of(entry.family))};
 }
 
@@ -125,14 +153,13 @@ std::optional<MeasuredPrices> prices_of(const Catalog& catalog, const Component&
   const std::string build = prices_build(component.revision);
   auto stored = stored_prices(file);
   if (are_ours(stored, build)) return stored;
-  const auto text = isolated_text(
-      [&] {
-        Sheet measured;
-        measured.options_text = "[]";
-        measured.prices = measure_prices(make_problem(catalog, component, 0), build);
-        return json_text(to_json(measured));
-      },
-      kSheetSeconds);
+  const auto measured = [&] {
+    Sheet sheet;
+    sheet.options_text = "[]";
+    sheet.prices = measure_prices(make_problem(catalog, component, 0), build);
+    return json_text(to_json(sheet));
+  };
+  const auto text = isolated_text(measured, kSheetSeconds).text;
   if (!text) return std::nullopt;
   return sheet_from_text(*text, "prices of " + component.spec).prices;
 }
@@ -143,7 +170,7 @@ void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, 
   std::set<std::string> known;
   const auto made = [&](const std::string& spec, const auto& make) -> std::optional<Sheet> {
     if (!known.insert(spec).second) return std::nullopt;
-    const auto text = isolated_text([&] { return json_text(to_json(make())); }, kSheetSeconds);
+    const auto text = isolated_text([&] { return json_text(to_json(make())); }, kSheetSeconds).text;
     if (!text) return std::nullopt;
     return sheet_from_text(*text, spec);
   };
@@ -158,14 +185,6 @@ void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, 
                                 [&] { return optimizer_sheet(catalog, request.optimizer); }))
       store.write(*sheet);
   }
-}
-
-std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
-  std::vector<PlannedCell> cells;
-  for (const Request& request : requests)
-    cells.push_back(
-        {request.cell, request.problem.spec, request.optimizer.spec, request.seed});
-  return cells;
 }
 
 }  // namespace isoline::benchmarks

@@ -11,13 +11,11 @@
 namespace isoline::benchmarks {
 
 Sheet problem_sheet(const Catalog& catalog, const Component& problem);
+// Its privileges are those it would have on any physics, whatever inverse that has.
 Sheet optimizer_sheet(const Catalog& catalog, const Component& optimizer);
 
 // A sheet for every component of the plan, each made in a process of its own; a problem's with the
 // measured prices of its oracles.
 void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store);
-
-// What a store is told of a plan.
-std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests);
 
 }  // namespace isoline::benchmarks

@@ -13,8 +13,7 @@ std::string complaint_about(const Catalog& catalog, const Request& request) {
   try {
     const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
     entry.make(request.optimizer.options, catalog.optimizers);
-    if (request.problem.is_learned)
-      make_problem(catalog, request.problem, request.seed);
+    if (request.problem.is_learned) make_problem(catalog, request.problem, request.seed);
   } catch (const UsageError& error) {
     return error.what();
   } catch (const std::exception&) {
@@ -27,19 +26,18 @@ std::string complaint_about(const Catalog& catalog, const Request& request) {
 
 void require_sound(const Catalog& catalog, const std::vector<Request>& requests) {
   constexpr double kSeconds = 60;
-  const auto complaint = isolated_text(
-      [&] {
-        std::set<std::string> problems, optimizers;
-        for (const Request& request : requests) {
-          const bool is_new = problems.insert(request.problem.spec).second |
-                              optimizers.insert(request.optimizer.spec).second;
-          if (!is_new) continue;
-          const std::string text = complaint_about(catalog, request);
-          if (!text.empty()) return text;
-        }
-        return std::string();
-      },
-      kSeconds);
+  const auto first_complaint = [&] {
+    std::set<std::string> problems, optimizers;
+    for (const Request& request : requests) {
+      const bool is_new_problem = problems.insert(request.problem.spec).second;
+      const bool is_new_optimizer = optimizers.insert(request.optimizer.spec).second;
+      if (!is_new_problem && !is_new_optimizer) continue;
+      const std::string text = complaint_about(catalog, request);
+      if (!text.empty()) return text;
+    }
+    return std::string();
+  };
+  const auto complaint = isolated_text(first_complaint, kSeconds).text;
   if (complaint && !complaint->empty()) throw UsageError(*complaint);
 }
 

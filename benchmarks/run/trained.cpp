@@ -22,9 +22,8 @@ namespace {
 constexpr const char* kSchema = "isoline.network/1";
 
 Json component_json(const Component& component) {
-  return {{"name", component.name},
-          {"options", to_json(component.options)},
-          {"spec", component.spec}};
+  return {
+      {"name", component.name}, {"options", to_json(component.options)}, {"spec", component.spec}};
 }
 
 Component component_from(const Json& json) {

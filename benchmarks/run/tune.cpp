@@ -62,9 +62,10 @@ Real unit_of(const Catalog& catalog, const TuningGrid& grid, const Component& pr
              const OptionValues& published) {
   if (grid.unit == "one") return 1;
   if (grid.unit == "published") return published_value(published, grid.option);
-  const auto text = isolated_text(
-      [&] { return json_number(cauchy_step(make_problem(catalog, problem, 0))).dump(); },
-      kUnitSeconds);
+  const auto measured = [&] {
+    return json_number(cauchy_step(make_problem(catalog, problem, 0))).dump();
+  };
+  const auto text = isolated_text(measured, kUnitSeconds).text;
   const Real unit = text ? real_of(parse_json(*text, "unit")) : 1;
   return std::isfinite(unit) && unit > 0 ? unit : 1;
 }
@@ -91,10 +92,10 @@ struct Score {
   }
 };
 
-Score score_of(const Store& store, const std::vector<Request>& runs) {
+Score score_of(const std::filesystem::path& folder, const std::vector<Request>& runs) {
   std::vector<Real> work, loss;
   for (const Request& request : runs) {
-    const auto record = store.find(request);
+    const auto record = Store::find_in(folder, request);
     if (!record || is_failure(record->status) || record->status == Status::diverged ||
         record->status == Status::inapplicable)
       return {};
@@ -150,13 +151,14 @@ Json rounded_all(const std::vector<Real>& values) {
 }
 
 // The row of a pair, or null where no value of the grid gave a finite loss.
-Json row_of(const Candidate& candidate, const Store& store, const std::string& option) {
+Json row_of(const Candidate& candidate, const std::filesystem::path& folder,
+            const std::string& option) {
   Json values = Json::array(), scores = Json::array();
   std::size_t best = 0;
   Score least;
   std::vector<Real> losses;
   for (std::size_t i = 0; i < candidate.values.size(); ++i) {
-    Score score = score_of(store, candidate.runs[i]);
+    Score score = score_of(folder, candidate.runs[i]);
     if (candidate.is_learned) score.work = INFINITY;
     losses.push_back(score.loss);
     values.push_back(candidate.values[i]);
@@ -213,19 +215,19 @@ std::vector<Real> best_of(std::vector<Real> losses) {
   return expected;
 }
 
-TuningResult tune(const Catalog& catalog, const TuningPlan& plan, Store& store,
-                  const RunOptions& options) {
+TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
+                  const std::filesystem::path& folder, const RunOptions& options) {
   const std::vector<Candidate> candidates = candidates_of(catalog, plan);
   std::vector<Request> requests;
   for (const Candidate& candidate : candidates)
     for (const std::vector<Request>& runs : candidate.runs)
       requests.insert(requests.end(), runs.begin(), runs.end());
   TuningResult result{.rows = std::make_shared<Json>(Json::array()),
-                      .outcome = run_all(catalog, requests, store, options)};
+                      .outcome = run_plan(catalog, "tuning", requests, folder, options)};
   if (result.outcome.is_interrupted) return result;
   Json rows = Json::array();
   for (const Candidate& candidate : candidates) {
-    const Json row = row_of(candidate, store, plan.grid.option);
+    const Json row = row_of(candidate, folder, plan.grid.option);
     if (!row.is_null()) rows.push_back(row);
   }
   result.rows = std::make_shared<const Json>(std::move(rows));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/run/runner.h"
+#include "benchmarks/run/run_plan.h"
 
 namespace isoline::benchmarks {
 
@@ -43,8 +43,8 @@ struct TuningResult {
 // and of a learning problem the loss alone, on its validation. A value with which any seed diverges
 // or fails has neither. Each row also tells the expected least loss of the best of b values drawn
 // at random from the grid, for b = 1 to all of them.
-TuningResult tune(const Catalog& catalog, const TuningPlan& plan, Store& store,
-                  const RunOptions& options);
+TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
+                  const std::filesystem::path& folder, const RunOptions& options);
 
 // E[best of b] of n losses: Σ y₍ᵢ₎ C(n − i, b − 1)/C(n, b) over the sorted ones, for b = 1 … n.
 std::vector<Real> best_of(std::vector<Real> losses);

@@ -9,8 +9,8 @@
 namespace isoline {
 
 struct Exhibit {
-  Index grid = 0;           // N, or 0
-  Grid target, x, truth;    // one sample a column; empty where they are read from the file beside
+  Index grid = 0;         // N, or 0
+  Grid target, x, truth;  // one sample a column; empty where they are read from the file beside
 
   bool is_picture() const { return grid > 0; }
 };

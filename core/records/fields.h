@@ -2,35 +2,44 @@
 // back and described by a JSON Schema from that alone.
 //
 //   void fields(Like<Summary> auto& summary, auto& field) {
-//     field("loss", summary.loss);                  // must be there
-//     field.optional("counts", summary.counts);     // left out where empty
+//     field("loss", summary.loss);                       // must be there
 //     field("seed", summary.seed, R"({"minimum": 0})");  // with a further law, as JSON Schema
+//     field.optional("counts", summary.counts);          // left out where empty
 //   }
 //
 // The types of members, and how each stands in JSON, are those of core/records/forms.h.
 #pragma once
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "core/errors.h"
+#include "core/records/json_place.h"
 #include "core/records/json_view.h"
 
 namespace isoline {
 
-using Json = nlohmann::json;
-
 template <class Given, class Type>
 concept Like = std::is_same_v<std::remove_const_t<Given>, Type>;
 
-// How values of a type stand in JSON: write(value), read(view, value) and law(), its schema.
+// How values of a type stand in JSON: write(value, place), read(view, value), law(place), its
+// schema.
 template <class Type>
 struct Form;
+
+// An optional member is written as what it holds; one that must be there may also be null.
+template <class Value>
+decltype(auto) held(Value& value) {
+  if constexpr (requires { value.has_value(); })
+    return (*value);
+  else
+    return (value);
+}
+template <class Value>
+using FormOfHeld = Form<std::remove_cvref_t<decltype(held(std::declval<Value&>()))>>;
 
 template <class Value>
 bool is_absent(const Value& value) {
@@ -42,44 +51,35 @@ bool is_absent(const Value& value) {
     return value == Value{};
 }
 
-// An optional member is written as what it holds; one that must be there may also be null.
-template <class Value>
-decltype(auto) held(Value& value) {
-  if constexpr (requires { value.has_value(); })
-    return (*value);
-  else
-    return (value);
-}
-
 class FieldWriter {
  public:
   static constexpr bool kReads = false;
-  explicit FieldWriter(Json& out) : out_(out) {}
+  explicit FieldWriter(JsonPlace out) : out_(out) { out_.make_object(); }
 
-  void constant(const char* name, const char* value) { out_[name] = value; }
+  void constant(const char* name, const char* value) { out_[name].set(value); }
   template <class Value>
   void operator()(const char* name, const Value& value, const char* = "") {
-    out_[name] = Form<Value>::write(value);
+    Form<Value>::write(value, out_[name]);
   }
   template <class Value>
-  void optional(const char* name, const Value& value, const char* law = "") {
-    if (!is_absent(value)) (*this)(name, held(value), law);
+  void optional(const char* name, const Value& value, const char* = "") {
+    if (!is_absent(value)) (*this)(name, held(value));
   }
   template <class Value>
-  void expected(const char* name, const Value& value, const char* law = "") {
-    optional(name, value, law);
+  void expected(const char* name, const Value& value, const char* = "") {
+    optional(name, value);
   }
   template <class Value>
-  void when(bool holds, const char* name, const Value& value, const char* law = "") {
-    if (holds) (*this)(name, value, law);
+  void when(bool holds, const char* name, const Value& value, const char* = "") {
+    if (holds) (*this)(name, value);
   }
   void other(const char*) {}
   void rest(const std::string& others, bool = true) {
-    if (!others.empty()) out_.update(Json::parse(others));
+    if (!others.empty()) out_.include(others);
   }
 
  private:
-  Json& out_;
+  JsonPlace out_;
 };
 
 class FieldReader {
@@ -96,26 +96,27 @@ class FieldReader {
     known_.push_back(name);
   }
   template <class Value>
-  void optional(const char* name, Value& value, const char* law = "") {
+  void optional(const char* name, Value& value, const char* = "") {
     if (!in_.contains(name)) return;
     if constexpr (requires { value.has_value(); }) value.emplace();
-    (*this)(name, held(value), law);
+    (*this)(name, held(value));
   }
   template <class Value>
-  void expected(const char* name, Value& value, const char* law = "") {
-    optional(name, value, law);
+  void expected(const char* name, Value& value, const char* = "") {
+    optional(name, value);
   }
   template <class Value>
-  void when(bool holds, const char* name, Value& value, const char* law = "") {
-    if (holds) (*this)(name, value, law);
+  void when(bool holds, const char* name, Value& value, const char* = "") {
+    if (holds) (*this)(name, value);
   }
   void other(const char* name) { known_.push_back(name); }  // stands here, and is read elsewhere
   // All that no other field has asked for, as the text of an object.
   void rest(std::string& others, bool = true) {
-    Json left = Json::object();
+    others.clear();
     for (const auto& [name, value] : in_.items())
-      if (std::ranges::find(known_, name) == known_.end()) left[name] = value.json();
-    others = left.empty() ? "" : left.dump();
+      if (std::ranges::find(known_, name) == known_.end())
+        others += (others.empty() ? "{" : ",") + json_of_text(name) + ":" + value.text();
+    if (!others.empty()) others += "}";
   }
 
  private:
@@ -126,72 +127,68 @@ class FieldReader {
 class FieldSchema {
  public:
   static constexpr bool kReads = false;
+  explicit FieldSchema(JsonPlace out) : out_(out) {
+    out_.parse(R"({"type": "object", "required": [], "properties": {},
+                   "additionalProperties": false})");
+  }
 
-  void constant(const char* name, const char* value) { add(name, {{"const", value}}, true); }
+  void constant(const char* name, const char* value) { place_of(name, true)["const"].set(value); }
   template <class Value>
   void operator()(const char* name, const Value&, const char* law = "") {
-    add(name, with(Form<Value>::law(), law), true);
+    describe<Form<Value>>(place_of(name, true), law);
   }
   template <class Value>
-  void optional(const char* name, const Value& value, const char* law = "") {
-    add(name, with(Form<std::remove_cvref_t<decltype(held(value))>>::law(), law), false);
+  void optional(const char* name, const Value&, const char* law = "") {
+    describe<FormOfHeld<const Value>>(place_of(name, false), law);
   }
   // Written by every program of ours, and done without where a record lacks it.
   template <class Value>
-  void expected(const char* name, const Value& value, const char* law = "") {
-    add(name, with(Form<std::remove_cvref_t<decltype(held(value))>>::law(), law), true);
+  void expected(const char* name, const Value&, const char* law = "") {
+    describe<FormOfHeld<const Value>>(place_of(name, true), law);
   }
   template <class Value>
   void when(bool, const char* name, const Value&, const char* law = "") {
-    add(name, with(Form<Value>::law(), law), false);
+    describe<Form<Value>>(place_of(name, false), law);
   }
   void other(const char*) {}
-  void rest(const std::string&, bool is_lawful = true) { is_open_ = is_lawful; }
-
-  Json schema() const {
-    Json json{{"type", "object"}, {"required", required_}, {"properties", properties_}};
-    if (!is_open_) json["additionalProperties"] = false;
-    return json;
+  void rest(const std::string&, bool is_lawful = true) {
+    out_["additionalProperties"].set(is_lawful);
   }
 
  private:
-  static Json with(Json schema, const char* law) {
-    if (*law == '\0') return schema;
-    if (schema.contains("$ref")) return {{"allOf", {schema, Json::parse(law)}}};  // it stands alone
-    schema.update(Json::parse(law));
-    return schema;
+  JsonPlace place_of(const char* name, bool is_required) const {
+    if (is_required) out_["required"].next().set(name);
+    return out_["properties"][name];
   }
-  void add(const char* name, Json schema, bool is_required) {
-    properties_[name] = std::move(schema);
-    if (is_required) required_.insert(name);
+  template <class Described>
+  static void describe(JsonPlace place, const char* law) {
+    Described::law(place);
+    if (*law != '\0') place.restrict(law);
   }
 
-  Json properties_ = Json::object();
-  std::set<std::string> required_;
-  bool is_open_ = false;
+  JsonPlace out_;
 };
 
 // Structs that name their members.
 template <class Type>
-concept Declared = requires(Type& value, FieldSchema& field) { fields(value, field); };
+concept Declared = requires(Type& value, FieldSchema& field) {
+  fields(value, field);
+};
 
 template <Declared Type>
 struct Form<Type> {
-  static Json write(const Type& value) {
-    Json json = Json::object();
-    FieldWriter writer(json);
+  static void write(const Type& value, JsonPlace out) {
+    FieldWriter writer(out);
     fields(value, writer);
-    return json;
   }
   static void read(const JsonView& json, Type& value) {
     FieldReader reader(json);
     fields(value, reader);
   }
-  static Json law() {
+  static void law(JsonPlace out) {
     Type sample;
-    FieldSchema described;
+    FieldSchema described(out);
     fields(sample, described);
-    return described.schema();
   }
 };
 

@@ -9,62 +9,61 @@
 #include <vector>
 
 #include "core/grid.h"
-#include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/oracle.h"
 #include "core/records/fields.h"
 #include "core/status.h"
 
 namespace isoline {
 
-// A type that is one of JSON's own.
-template <class Type>
+// Types that are JSON's own.
+template <class Type, class Written = Type>
 struct PlainForm {
-  static Json write(const Type& value) { return value; }
+  static void write(const Type& value, JsonPlace out) { out.set(static_cast<Written>(value)); }
   static void read(const JsonView& json, Type& value) { json.get_to(value); }
 };
 template <>
 struct Form<bool> : PlainForm<bool> {
-  static Json law() { return {{"type", "boolean"}}; }
+  static void law(JsonPlace out) { out["type"].set("boolean"); }
 };
 template <>
-struct Form<int> : PlainForm<int> {
-  static Json law() { return {{"type", "integer"}}; }
+struct Form<int> : PlainForm<int, std::int64_t> {
+  static void law(JsonPlace out) { out["type"].set("integer"); }
 };
 template <>
 struct Form<std::int64_t> : PlainForm<std::int64_t> {
-  static Json law() { return {{"type", "integer"}}; }
+  static void law(JsonPlace out) { out["type"].set("integer"); }
 };
 template <>
 struct Form<std::uint64_t> : PlainForm<std::uint64_t> {
-  static Json law() { return {{"type", "integer"}, {"minimum", 0}}; }
+  static void law(JsonPlace out) { out.parse(R"({"type": "integer", "minimum": 0})"); }
 };
 template <>
-struct Form<std::string> : PlainForm<std::string> {
-  static Json law() { return {{"type", "string"}}; }
+struct Form<std::string> : PlainForm<std::string, std::string_view> {
+  static void law(JsonPlace out) { out["type"].set("string"); }
 };
 
+// Also infinite, or not a number.
 template <>
 struct Form<Real> {
-  static Json write(Real value) { return json_number(value); }
+  static void write(Real value, JsonPlace out) { out.set(value); }
   static void read(const JsonView& json, Real& value) { value = real_of(json); }
-  static Json law() { return {{"$ref", "#/definitions/number"}}; }
+  static void law(JsonPlace out) { out["$ref"].set("#/definitions/number"); }
 };
 
-inline constexpr const char* kSchemaDialect = "http://json-schema.org/draft-07/schema#";
-
-// The definition that the law of numbers refers to.
-inline Json number_definition() {
-  return {{"description", "a number, or one of the three that JSON cannot write"},
-          {"anyOf", {{{"type", "number"}}, {{"enum", {"inf", "-inf", "nan"}}}}}};
-}
+// What a whole schema has besides: its dialect, its title, and the definition that the law of
+// numbers refers to.
+void complete_schema(JsonPlace schema, const char* title);
 
 template <class Value>
 struct Form<std::vector<Value>> {
-  static Json write(const std::vector<Value>& values) {
-    Json list = Json::array();
-    for (const Value& value : values) list.push_back(Form<Value>::write(value));
-    return list;
+  static void write(const std::vector<Value>& values, JsonPlace out) {
+    if constexpr (std::is_same_v<Value, Real>) {
+      out.set(std::span<const Real>(values));
+    } else {
+      out.make_list();
+      for (const Value& value : values) Form<Value>::write(value, out.next());
+    }
   }
   static void read(const JsonView& json, std::vector<Value>& values) {
     if constexpr (std::is_same_v<Value, Real>) {
@@ -76,13 +75,16 @@ struct Form<std::vector<Value>> {
       for (const JsonView& each : json.values()) Form<Value>::read(each, values.emplace_back());
     }
   }
-  static Json law() { return {{"type", "array"}, {"items", Form<Value>::law()}}; }
+  static void law(JsonPlace out) {
+    out["type"].set("array");
+    Form<Value>::law(out["items"]);
+  }
 };
 
 template <class Value, std::size_t count>
 struct Form<std::array<Value, count>> {
-  static Json write(const std::array<Value, count>& values) {
-    return Form<std::vector<Value>>::write({values.begin(), values.end()});
+  static void write(const std::array<Value, count>& values, JsonPlace out) {
+    Form<std::vector<Value>>::write({values.begin(), values.end()}, out);
   }
   static void read(const JsonView& json, std::array<Value, count>& values) {
     std::vector<Value> list;
@@ -90,24 +92,23 @@ struct Form<std::array<Value, count>> {
     require(list.size() == count, "a list has the wrong length");
     std::ranges::copy(list, values.begin());
   }
-  static Json law() {
-    Json json = Form<std::vector<Value>>::law();
-    json.update({{"minItems", count}, {"maxItems", count}});
-    return json;
+  static void law(JsonPlace out) {
+    Form<std::vector<Value>>::law(out);
+    for (const char* bound : {"minItems", "maxItems"})
+      out[bound].set(static_cast<std::int64_t>(count));
   }
 };
 
 inline std::string key_text(const std::string& key) { return key; }
 inline std::string key_text(std::int64_t key) { return std::to_string(key); }
 inline void read_key(const std::string& text, std::string& key) { key = text; }
-inline void read_key(const std::string& text, std::int64_t& key) { key = std::stoll(text); }
+void read_key(const std::string& text, std::int64_t& key);  // UsageError where it is no number
 
 template <class Key, class Value>
 struct Form<std::map<Key, Value>> {
-  static Json write(const std::map<Key, Value>& values) {
-    Json json = Json::object();
-    for (const auto& [key, value] : values) json[key_text(key)] = Form<Value>::write(value);
-    return json;
+  static void write(const std::map<Key, Value>& values, JsonPlace out) {
+    out.make_object();
+    for (const auto& [key, value] : values) Form<Value>::write(value, out[key_text(key)]);
   }
   static void read(const JsonView& json, std::map<Key, Value>& values) {
     values.clear();
@@ -117,85 +118,60 @@ struct Form<std::map<Key, Value>> {
       Form<Value>::read(value, values[key]);
     }
   }
-  static Json law() {
-    return {{"type", "object"}, {"additionalProperties", Form<Value>::law()}};
+  static void law(JsonPlace out) {
+    out["type"].set("object");
+    Form<Value>::law(out["additionalProperties"]);
   }
 };
 
 // null where there is none.
 template <class Value>
 struct Form<std::optional<Value>> {
-  static Json write(const std::optional<Value>& value) {
-    return value ? Form<Value>::write(*value) : Json();
+  static void write(const std::optional<Value>& value, JsonPlace out) {
+    if (value)
+      Form<Value>::write(*value, out);
+    else
+      out.set_null();
   }
   static void read(const JsonView& json, std::optional<Value>& value) {
     value.reset();
     if (!json.is_null()) Form<Value>::read(json, value.emplace());
   }
-  static Json law() { return {{"anyOf", {Form<Value>::law(), {{"type", "null"}}}}}; }
+  static void law(JsonPlace out) {
+    const JsonPlace either = out["anyOf"];
+    Form<Value>::law(either.next());
+    either.next()["type"].set("null");
+  }
 };
 
 // By name; older records lack what was counted later.
 template <>
 struct Form<OracleCounts> {
-  static Json write(const OracleCounts& counts) {
-    Json json = Json::object();
-    for (std::size_t kind = 0; kind < kOracles; ++kind)
-      json[std::string(kOracleNames[kind])] = counts[kind];
-    return json;
-  }
-  static void read(const JsonView& json, OracleCounts& counts) {
-    for (std::size_t kind = 0; kind < kOracles; ++kind)
-      if (json.contains(kOracleNames[kind])) counts[kind] = json.at(kOracleNames[kind]);
-  }
-  static Json law() { return {{"$ref", "#/definitions/counts"}}; }
+  static void write(const OracleCounts& counts, JsonPlace out);
+  static void read(const JsonView& json, OracleCounts& counts);
+  static void law(JsonPlace out);
 };
 
 template <>
 struct Form<OptionValues> {
-  static Json write(const OptionValues& options) { return to_json(options); }
-  static void read(const JsonView& json, OptionValues& options) {
-    options = option_values_from(json.json());
-  }
-  static Json law() { return {{"type", "object"}}; }
+  static void write(const OptionValues& options, JsonPlace out);
+  static void read(const JsonView& json, OptionValues& options);
+  static void law(JsonPlace out) { out["type"].set("object"); }
 };
 
 template <>
 struct Form<Status> {
-  static Json write(Status status) { return name_of(status); }
-  static void read(const JsonView& json, Status& status) {
-    const auto found = status_of(json.get<std::string>());
-    require(found.has_value(), [&] { return "unknown status " + json.get<std::string>(); });
-    status = *found;
-  }
-  static Json law() {
-    Json names = Json::array();
-    for (const std::string_view name : kStatusNames)
-      if (name != name_of(Status::running)) names.push_back(name);  // it is never written
-    return {{"enum", names}};
-  }
+  static void write(Status status, JsonPlace out) { out.set(name_of(status)); }
+  static void read(const JsonView& json, Status& status);
+  static void law(JsonPlace out);
 };
 
 // A list of columns.
 template <>
 struct Form<Grid> {
-  static Json write(const Grid& grid) {
-    Json columns = Json::array();
-    for (Index j = 0; j < grid.columns(); ++j) columns.push_back(json_numbers(grid.column(j)));
-    return columns;
-  }
-  static void read(const JsonView& json, Grid& grid) {
-    std::vector<std::vector<Real>> columns;
-    Form<std::vector<std::vector<Real>>>::read(json, columns);
-    const std::size_t rows = columns.empty() ? 0 : columns[0].size();
-    std::vector<Real> values;
-    for (const std::vector<Real>& column : columns) {
-      require(column.size() == rows, "the columns of an array differ in length");
-      values.insert(values.end(), column.begin(), column.end());
-    }
-    grid = Grid(static_cast<Index>(rows), static_cast<Index>(columns.size()), std::move(values));
-  }
-  static Json law() { return Form<std::vector<std::vector<Real>>>::law(); }
+  static void write(const Grid& grid, JsonPlace out);
+  static void read(const JsonView& json, Grid& grid);
+  static void law(JsonPlace out) { Form<std::vector<std::vector<Real>>>::law(out); }
 };
 
 // A number that stands for "no limit" where it is the largest of its type: null.
@@ -205,17 +181,19 @@ struct Unlimited {
 };
 template <class Value>
 struct Form<Unlimited<Value>> {
-  using Number = std::remove_const_t<Value>;
-  static constexpr Number kNone = std::numeric_limits<Number>::max();
+  static constexpr auto kNone = std::numeric_limits<std::remove_const_t<Value>>::max();
 
-  static Json write(const Unlimited<Value>& limit) {
-    return limit.value < kNone ? Json(limit.value) : Json(nullptr);
+  static void write(const Unlimited<Value>& limit, JsonPlace out) {
+    if (limit.value < kNone)
+      out.set(limit.value);
+    else
+      out.set_null();
   }
   static void read(const JsonView& json, const Unlimited<Value>& limit) {
     limit.value = kNone;
     if (!json.is_null()) json.get_to(limit.value);
   }
-  static Json law() { return {{"type", {"integer", "null"}}}; }
+  static void law(JsonPlace out) { out.parse(R"({"type": ["integer", "null"]})"); }
 };
 
 // A list or an object kept as its text.
@@ -225,11 +203,11 @@ struct JsonAsText {
 };
 template <class Text>
 struct Form<JsonAsText<Text>> {
-  static Json write(const JsonAsText<Text>& value) { return Json::parse(value.text); }
+  static void write(const JsonAsText<Text>& value, JsonPlace out) { out.parse(value.text); }
   static void read(const JsonView& json, const JsonAsText<Text>& value) {
-    value.text = json.json().dump();
+    value.text = json.tree_text();
   }
-  static Json law() { return Json::object(); }
+  static void law(JsonPlace out) { out.make_object(); }
 };
 
 }  // namespace isoline

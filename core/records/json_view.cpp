@@ -128,6 +128,10 @@ std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
 
 std::string JsonView::text() const { return simdjson::minify(element_at(place_)); }
 
+std::string JsonView::tree_text() const { return json().dump(); }
+
+std::string json_of_text(const std::string& text) { return Json(text).dump(); }
+
 Json JsonView::json() const { return copy_of(element_at(place_)); }
 
 bool JsonView::is_null() const { return element_at(place_).is_null(); }
@@ -151,9 +155,12 @@ void JsonView::get_to(std::string& out) const {
   const element here = element_at(place_);
   out = checked(here.get_string(), "a text", here);
 }
-void JsonView::get_to(std::vector<std::int64_t>& out) const { read_all(element_at(place_), out, integer); }
+void JsonView::get_to(std::vector<std::int64_t>& out) const {
+  read_all(element_at(place_), out, integer);
+}
 void JsonView::get_to(std::vector<std::string>& out) const {
-  read_all(element_at(place_), out, [](const element& value) { return view_of(value).get<std::string>(); });
+  read_all(element_at(place_), out,
+           [](const element& value) { return view_of(value).get<std::string>(); });
 }
 Real real_of(const JsonView& value) { return real(element_at(value.place_)); }
 

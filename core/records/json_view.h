@@ -32,6 +32,7 @@ class JsonView {
   std::vector<JsonView> values() const;                         // of an array
   std::vector<std::pair<std::string, JsonView>> items() const;  // of an object
   std::string text() const;                                     // as JSON, without spaces
+  std::string tree_text() const;                                // as a tree of it writes itself
   nlohmann::json json() const;                                  // a copy that stays
 
   void get_to(bool& out) const;
@@ -58,6 +59,8 @@ class JsonView {
   friend Real real_of(const JsonView& value);
   friend std::vector<Real> reals_of(const JsonView& list);
 };
+
+std::string json_of_text(const std::string& text);  // a text as JSON, quoted
 
 Real real_of(const JsonView& value);  // also "inf", "-inf" and "nan"
 std::vector<Real> reals_of(const JsonView& list);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/records/forms.h"
 
 namespace isoline {
@@ -20,7 +22,11 @@ void fields(Like<Plan> auto& plan, auto& field) {
   field("cells", plan.cells);
 }
 
-Json to_json(const Plan& plan) { return Form<Plan>::write(plan); }
+Json to_json(const Plan& plan) {
+  Json json;
+  Form<Plan>::write(plan, JsonPlace(json));
+  return json;
+}
 
 Plan plan_from_text(const std::string& text, const std::string& origin) {
   JsonReader reader;
@@ -37,9 +43,9 @@ Plan plan_from_text(const std::string& text, const std::string& origin) {
 Plan plan_from_json(const Json& json) { return plan_from_text(json.dump(), "it"); }
 
 Json plan_schema() {
-  Json schema = Form<Plan>::law();
-  schema["$schema"] = kSchemaDialect;
-  schema["title"] = "isoline.plan/1: every cell ever planned in a result folder";
+  Json schema;
+  Form<Plan>::law(JsonPlace(schema));
+  complete_schema(JsonPlace(schema), "isoline.plan/1: every cell ever planned in a result folder");
   return schema;
 }
 

@@ -5,11 +5,11 @@
 #include <sys/utsname.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 #include <unordered_map>
 
-#include "core/decompose.h"
 #include "core/digest.h"
 #include "core/processor.h"
 #include "core/records/provenance_fields.h"
@@ -63,7 +63,7 @@ std::map<std::string, std::string> libraries() {
   std::istringstream list(ISOLINE_LIBRARIES);  // "Name version;Name version"
   for (std::string library; std::getline(list, library, ';');)
     versions[library.substr(0, library.find(' '))] = library.substr(library.find(' ') + 1);
-  versions["OpenBLAS"] = lapack_library();
+  versions["OpenBLAS"] += " " + library_kernel().name;
   return versions;
 }
 
@@ -107,7 +107,11 @@ Provenance::Provenance() {
   build = unknown;
 }
 
-Json to_json(const Provenance& provenance) { return Form<Provenance>::write(provenance); }
+Json to_json(const Provenance& provenance) {
+  Json json;
+  Form<Provenance>::write(provenance, JsonPlace(json));
+  return json;
+}
 
 // One copy of each build's part for all records that a thread reads.
 Provenance provenance_from(const JsonView& json) {
@@ -144,7 +148,7 @@ void set_program_tree(std::string commit, bool is_dirty) {
 
 std::string build_digest(int problem_revision, int optimizer_revision) {
   const Build& build = *this_build();
-  const Json libraries = Form<std::map<std::string, std::string>>::write(build.libraries);
+  const Json libraries(build.libraries);
   const CacheSizes caches = cache_sizes();
   return digest(fmt::format("{} {} {} {} {} {} {} {}", kHarnessRevision, problem_revision,
                             optimizer_revision, libraries.dump(), build.instruction_set, caches.l1,

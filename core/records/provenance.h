@@ -39,6 +39,7 @@ struct RunProvenance {
   std::string command;
   std::string other;
 
+  bool operator==(const RunProvenance&) const = default;
   // Nothing else ran beside it, as far as it is known.
   bool is_timed_alone() const { return is_exclusive.value_or(false) || concurrent_jobs <= 1; }
 };

@@ -40,20 +40,17 @@ void fields(Like<RunProvenance> auto& run, auto& field) {
 // One object of both, the run under a key of its own.
 template <>
 struct Form<Provenance> {
-  static Json write(const Provenance& provenance) {
-    Json json = Form<Build>::write(*provenance.build);
-    Json run = Form<RunProvenance>::write(provenance.run);
-    if (!run.empty()) json[kRunKey] = std::move(run);
-    return json;
+  static void write(const Provenance& provenance, JsonPlace out) {
+    Form<Build>::write(*provenance.build, out);
+    if (provenance.run != RunProvenance()) Form<RunProvenance>::write(provenance.run, out[kRunKey]);
   }
   static void read(const JsonView& json, Provenance& provenance) {
     provenance = provenance_from(json);
   }
-  static Json law() {
-    Json json = Form<Build>::law();
-    json["properties"][kRunKey] = Form<RunProvenance>::law();
-    json["required"].push_back(kRunKey);
-    return json;
+  static void law(JsonPlace out) {
+    Form<Build>::law(out);
+    Form<RunProvenance>::law(out["properties"][kRunKey]);
+    out["required"].next().set(kRunKey);
   }
 };
 

@@ -3,12 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/files.h"
 #include "core/records/record_fields.h"
 
 namespace isoline {
 
-Json to_json(const Record& record) { return Form<Record>::write(record); }
+Json to_json(const Record& record) {
+  Json json;
+  Form<Record>::write(record, JsonPlace(json));
+  return json;
+}
 
 Record record_from_text(const std::string& text, const std::string& origin) {
   static thread_local JsonReader reader;
@@ -29,16 +35,9 @@ Record read_record(const std::filesystem::path& path) {
 }
 
 Json run_schema() {
-  Json counts{{"type", "object"}, {"additionalProperties", false}, {"required", Json::array()}};
-  for (const OracleRow& oracle : kOracleTable) {
-    const std::string name(oracle.name);
-    counts["properties"][name] = {{"type", "integer"}, {"minimum", 0}};
-    if (oracle.is_in_every_record) counts["required"].push_back(name);
-  }
-  Json schema = Form<Record>::law();
-  schema["$schema"] = kSchemaDialect;
-  schema["title"] = "isoline.run/1: the record of one run";
-  schema["definitions"] = {{"number", number_definition()}, {"counts", counts}};
+  Json schema;
+  Form<Record>::law(JsonPlace(schema));
+  complete_schema(JsonPlace(schema), "isoline.run/1: the record of one run");
   return schema;
 }
 

@@ -1,7 +1,10 @@
 // Requests to JSON and back, and the digest that names a cell.
 #include "core/records/request.h"
 
+#include <nlohmann/json.hpp>
+
 #include "core/digest.h"
+#include "core/option_json.h"
 #include "core/records/request_fields.h"
 
 namespace isoline {
@@ -9,12 +12,14 @@ namespace isoline {
 bool asks_to_learn(const OptionValues& options) { return options.text("mode") == "learn"; }
 
 std::string cell_digest(const Request& request) {
+  Json budget;
+  Form<Budget>::write(request.budget, JsonPlace(budget));
   const Json asked{{"problem", request.problem.name},
                    {"problem_options", to_json(request.problem.options)},
                    {"optimizer", request.optimizer.name},
                    {"optimizer_options", to_json(request.optimizer.options)},
                    {"seed", request.seed},
-                   {"budget", Form<Budget>::write(request.budget)},
+                   {"budget", std::move(budget)},
                    {"threads", request.threads}};
   return digest(asked.dump());
 }
@@ -24,7 +29,11 @@ Request named(Request request) {
   return request;
 }
 
-Json to_json(const Request& request) { return Form<Request>::write(request); }
+Json to_json(const Request& request) {
+  Json json;
+  Form<Request>::write(request, JsonPlace(json));
+  return json;
+}
 
 Request request_from_json(const Json& json) {
   JsonReader reader;

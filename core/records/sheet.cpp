@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/digest.h"
 #include "core/records/forms.h"
 
@@ -24,8 +26,7 @@ void fields(Like<Landscape> auto& landscape, auto& field) {
   field("window", landscape.window);
   field("rows", rows);
   field("columns", columns);
-  field("spacing", landscape.spacing,
-        R"({"enum": ["logarithm", "fifth root", "powers of two"]})");
+  field("spacing", landscape.spacing, R"({"enum": ["logarithm", "fifth root", "powers of two"]})");
   field("loss", loss);
   if constexpr (std::remove_cvref_t<decltype(field)>::kReads) {
     require(rows >= 0 && columns >= 0 && static_cast<Index>(loss.size()) == rows * columns,
@@ -49,8 +50,7 @@ void fields(Like<MeasuredPrice> auto& price, auto& field) {
 void fields(Like<MeasuredPrices> auto& prices, auto& field) {
   field("build", prices.build);
   field("processor", prices.processor);
-  field("forward_seconds", prices.forward_seconds,
-        R"({"type": "number", "exclusiveMinimum": 0})");
+  field("forward_seconds", prices.forward_seconds, R"({"type": "number", "exclusiveMinimum": 0})");
   field("oracles", prices.oracles);
 }
 
@@ -83,7 +83,11 @@ std::string Sheet::file_name() const {
   return fmt::format("{}-{}-{}.json", kind, name, digest(spec));
 }
 
-Json to_json(const Sheet& sheet) { return Form<Sheet>::write(sheet); }
+Json to_json(const Sheet& sheet) {
+  Json json;
+  Form<Sheet>::write(sheet, JsonPlace(json));
+  return json;
+}
 
 Sheet sheet_from_text(const std::string& text, const std::string& origin) {
   JsonReader reader;
@@ -100,11 +104,10 @@ Sheet sheet_from_text(const std::string& text, const std::string& origin) {
 Sheet sheet_from_json(const Json& json) { return sheet_from_text(json.dump(), "it"); }
 
 Json sheet_schema() {
-  Json schema = Form<Sheet>::law();
-  schema["$schema"] = kSchemaDialect;
-  schema["title"] =
-      "isoline.component/1: what a reader needs to know of a problem or an optimizer";
-  schema["definitions"]["number"] = number_definition();
+  Json schema;
+  Form<Sheet>::law(JsonPlace(schema));
+  complete_schema(JsonPlace(schema),
+                  "isoline.component/1: what a reader needs to know of a problem or an optimizer");
   return schema;
 }
 

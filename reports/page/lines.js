@@ -24,8 +24,7 @@ const cssColour = (name) => getComputedStyle(document.documentElement).getProper
 // One colour a method in every chart; settings of the same method differ by dash and marker.
 const STYLES = (() => {
   const methods = new Map(), variants = new Map();
-  return DATA.optimizers.map((label) => {
-    const method = label.split('[')[0];
+  return DATA.methods.map((method) => {
     if (!methods.has(method)) methods.set(method, methods.size);
     const variant = variants.get(method) ?? 0;
     variants.set(method, variant + 1);

@@ -18,11 +18,9 @@ function tauName(target) {
 }
 
 // Methods by name: the audit has one row for all settings of a method.
-const methodOf = (label) => label.split(/[[,]/)[0];
-
 function hiddenMethods() {
-  const shown = new Set(shownOf('s').map((index) => methodOf(DATA.optimizers[index])));
-  return [...new Set(DATA.optimizers.map(methodOf))].filter((method) => !shown.has(method));
+  const shown = new Set(shownOf('s').map((index) => DATA.methods[index]));
+  return [...new Set(DATA.methods)].filter((method) => !shown.has(method));
 }
 
 const RULES = document.head.appendChild(document.createElement('style'));

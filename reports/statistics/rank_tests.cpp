@@ -3,6 +3,7 @@
 #include "reports/statistics/rank_tests.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -108,7 +109,31 @@ std::vector<Real> adjusted(const std::vector<Real>& p, bool from_above, Factor f
   return out;
 }
 
+// q at 0.05 over √2 for k optimizers: scipy.stats.studentized_range.ppf(0.95, k, inf) / 2**0.5.
+Real nemenyi_quantile(std::size_t k) {
+  constexpr std::array<Real, 13> kSmall = {0,     0,     1.960, 2.344, 2.569, 2.728, 2.850,
+                                           2.948, 3.031, 3.102, 3.164, 3.219, 3.268};
+  constexpr std::array<std::pair<std::size_t, Real>, 7> kLarge = {
+      {{15, 3.391}, {20, 3.544}, {30, 3.749}, {40, 3.888}, {60, 4.076}, {100, 4.302}, {400, 4.7}}};
+  if (k < kSmall.size()) return kSmall[k];
+  for (const auto& [size, quantile] : kLarge)
+    if (k <= size)
+      return quantile;  // of the next larger size: no gap is called resolvable that is not
+  return kLarge.back().second;
+}
+
 }  // namespace
+
+std::vector<Real> mid_ranks(const std::vector<Real>& values) {
+  std::vector<Real> ranks;
+  for (const std::size_t doubled : doubled_ranks(values)) ranks.push_back(Real(doubled) / 2);
+  return ranks;
+}
+
+Real least_gap(std::size_t optimizers, std::size_t problems) {
+  const Real k = Real(optimizers);
+  return nemenyi_quantile(optimizers) * std::sqrt(k * (k + 1) / (6 * Real(problems)));
+}
 
 Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b) {
   if (a.empty() || b.empty()) return 1;

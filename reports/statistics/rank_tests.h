@@ -7,6 +7,9 @@
 
 namespace isoline::reports {
 
+// Ranks, 1 the least; ties share the mean, infinite values the last ranks.
+std::vector<Real> mid_ranks(const std::vector<Real>& values);
+
 // The two-sided p of Mann and Whitney (1947), 2 min(P(U ≤ u), P(U ≥ u)), given the ties there are:
 // exact up to kExact values in all, by the normal approximation with continuity and ties beyond.
 Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b);
@@ -27,6 +30,9 @@ inline constexpr Real kConfidence = 0.95;
 // (Benjamini, Hochberg 1995); the chance of any false one below q is at most q (Holm 1979).
 std::vector<Real> benjamini_hochberg(const std::vector<Real>& p);
 std::vector<Real> holm(const std::vector<Real>& p);
+
+// The gap of mean ranks that Nemenyi's test (1963) resolves at 0.05.
+Real least_gap(std::size_t optimizers, std::size_t problems);
 
 inline constexpr std::size_t kExact = 100;  // values up to which distributions are counted out
 

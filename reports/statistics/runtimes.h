@@ -1,4 +1,4 @@
-// Statistics of runs to a target: expected running time, simulated restarts, areas, bootstraps.
+// Statistics of runs to a target: expected running time, simulated restarts, areas, digits.
 #pragma once
 
 #include <string>
@@ -7,8 +7,6 @@
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
-
-inline constexpr std::size_t kDraws = 1000;
 
 // What one run spent: up to the target if it got there, else all it had.
 struct Attempt {
@@ -29,30 +27,6 @@ std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const
 // steps: gap[i] holds from work[i] on.
 Real area_over_curve(const std::vector<Real>& work, const std::vector<Real>& gap, Real budget,
                      Real digits);
-
-// 95 % of the statistic over kDraws resamples, by percentiles. Efron (1979). Values may be
-// infinite.
-struct Interval {
-  Real low = kNever, high = kNever;
-};
-Interval bootstrap_median(const std::vector<Real>& values, const std::string& key);
-Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key);
-
-// Ratios of two sums over groups, as a share of problems is: value, and 95 % of kDraws resamples of
-// whole groups, for each component of the numerators.
-struct GroupSum {
-  std::vector<Real> sums;  // of the numerators
-  Real n = 0;              // of the denominator
-};
-struct Band {
-  std::vector<Real> value, low, high;
-};
-Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key);
-
-Real quantile(const std::vector<Real>& ascending, Real share);  // the nearest rank
-
-// Ranks of one problem's costs, 1 the least; ties share the mean, unsolved ones the last ranks.
-std::vector<Real> mid_ranks(const std::vector<Real>& costs);
 
 // γ = min(16, −log10((f − f_L) / (f₀ − f_L))), 16 where f ≤ f_L; −∞ where f is not finite.
 // Beiranvand, Hare, Lucet (2017).

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/array.h"
+#include "core/real.h"
 
 namespace isoline::reports {
 

@@ -225,7 +225,7 @@ TEST(Audit, FlagsAFalseDeclaration) {
 TEST(Audit, ACrashCostsItsOwnAuditAlone) {
   const auto all = audit_all(catalog_with_liars(), {"crasher", "gd"});
   ASSERT_EQ(all.size(), 2U);
-  EXPECT_NE(all[0].reason, "");
+  EXPECT_NE(all[0].reason.find("signal"), std::string::npos) << all[0].reason;
   EXPECT_EQ(all[1].reason, "");
   const Json schema = parse_json(std::string(builtin_schemas().at("audit")), "audit");
   EXPECT_EQ(schema_violations(audit_to_json(all), schema), std::vector<std::string>{});

@@ -116,19 +116,30 @@ TEST_F(Isolation, OtherCellsAreUntouchedByTheirNeighbours) {
   EXPECT_EQ(without_timings(to_json(record_of(sound))), alone);
 }
 
-TEST_F(Isolation, TextOfAProcessThatCrashesIsNothing) {
-  EXPECT_EQ(isolated_text([] { return std::string("whole"); }, 10), "whole");
-  EXPECT_FALSE(isolated_text(
-      []() -> std::string {
-        std::raise(SIGKILL);
-        return "x";
-      },
-      10));
-  EXPECT_FALSE(isolated_text(
-      []() -> std::string {
-        for (;;) pause();
-      },
-      0.2));
+TEST_F(Isolation, AProcessThatDoesNotEndWellHasNoTextButAReason) {
+  const IsolatedText whole = isolated_text([] { return std::string("whole"); }, 10);
+  EXPECT_EQ(whole.text, "whole");
+  EXPECT_EQ(whole.failure, "");
+  struct End {
+    std::function<std::string()> work;
+    double seconds;
+    std::string reason;
+  };
+  const std::vector<End> ends = {
+      {[]() -> std::string { throw std::runtime_error("for a reason"); }, 10, "for a reason"},
+      {[]() -> std::string { throw 7; }, 10, "no std::exception"},
+      {[]() -> std::string { throw std::bad_alloc(); }, 10, "memory"},
+      {[]() -> std::string { return std::raise(SIGKILL) == 0 ? "x" : "y"; }, 10, "signal 9"},
+      {[]() -> std::string { _exit(3); }, 10, "exit code 3"},
+      {[]() -> std::string {
+         for (;;) pause();
+       },
+       0.2, "took more than 0.2 s"}};
+  for (const End& end : ends) {
+    const IsolatedText found = isolated_text(end.work, end.seconds);
+    EXPECT_FALSE(found.text.has_value()) << end.reason;
+    EXPECT_NE(found.failure.find(end.reason), std::string::npos) << found.failure;
+  }
 }
 
 }  // namespace

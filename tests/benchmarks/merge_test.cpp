@@ -19,6 +19,7 @@
 namespace isoline::benchmarks {
 
 using reports::plan_of;
+using reports::record_of;
 using reports::ResultFolder;
 namespace {
 

@@ -29,10 +29,10 @@ Request request_of(const std::string& problem, const OptionValues& options) {
 }
 
 TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
-  for (const auto& [name, options] :
-       std::vector<std::pair<std::string, OptionValues>>{{"rosenbrock", {}},
-                                                 {"poisson", {{"N", 8}}},
-                                                 {"sine", {{"mode", "learn"}, {"batch", 4}}}}) {
+  for (const auto& [name, options] : std::vector<std::pair<std::string, OptionValues>>{
+           {"rosenbrock", {}},
+           {"poisson", {{"N", 8}}},
+           {"sine", {{"mode", "learn"}, {"batch", 4}}}}) {
     const Problem problem = make_problem(catalog(), request_of(name, options).problem, 0);
     const MeasuredPrices measured = measure_prices(problem, "b");
     EXPECT_GT(measured.forward_seconds, 0) << name;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "benchmarks/plan/filter.h"
 #include "benchmarks/plan/resources.h"
 #include "core/json.h"
 #include "core/option_json.h"
@@ -110,15 +111,75 @@ TEST(Suites, AUnknownKeyOrAnEmptySelectionIsAnError) {
   EXPECT_THROW(expand(catalog(), suite_from_json(empty, "here"), {}), UsageError);
 }
 
+// The name of a cell that commit 5990f5a gave it: its record is found again.
+TEST(Suites, NameACellAsEarlierVersionsDid) {
+  const Suite suite{.name = "mine",
+                    .title = "",
+                    .blocks = {{.problems = {"sine"},
+                                .optimizers = {"sip"},
+                                .budget = {.iterations = 100'000, .work = 2000}}}};
+  EXPECT_EQ(expand(catalog(), suite, {}).at(0).cell, "97c10fa6580650cd");
+}
+
+// --- filters
+
+std::set<std::string> left_by(const std::string& problems, const std::string& optimizers) {
+  const Suite suite{.name = "mine",
+                    .title = "",
+                    .blocks = {{.problems = {"sine[xi=1|32]", "square"},
+                                .optimizers = {"gd", "adam[rate=0.1]", "newton"},
+                                .seeds = {0, 1}}}};
+  std::set<std::string> left;
+  for (const Request& cell :
+       filtered(catalog(), expand(catalog(), suite, {}), problems, optimizers))
+    left.insert(cell.problem.spec + " x " + cell.optimizer.spec);
+  return left;
+}
+
+TEST(Filters, LeaveTheCellsOfWhatIsNamed) {
+  using Set = std::set<std::string>;
+  EXPECT_EQ(left_by("", "").size(), 9U);
+  EXPECT_EQ(left_by("square", "gd,newton"), (Set{"square x gd", "square x newton"}));
+  EXPECT_EQ(left_by("sine", "newton"), (Set{"sine x newton", "sine[xi=32] x newton"}));
+  EXPECT_EQ(left_by("sine[xi=32.0]", "adam"), (Set{"sine[xi=32] x adam[rate=0.1]"}));
+  EXPECT_EQ(left_by("square", "@first-order"), (Set{"square x gd", "square x adam[rate=0.1]"}));
+  EXPECT_EQ(left_by("square", "adam[lr=0.1]"), (Set{"square x adam[rate=0.1]"}));
+}
+
+TEST(Filters, ThatLeaveNothingOrNameWhatIsUnknownAreErrors) {
+  EXPECT_THROW(left_by("square", "adam[rate=0.2]"), UsageError);
+  EXPECT_THROW(left_by("heat", ""), UsageError);
+  EXPECT_THROW(left_by("", "adm"), UsageError);
+  EXPECT_THROW(left_by("sine[xii=1]", ""), UsageError);
+}
+
 // --- rates
+
+// What a value within another says of modes is no mode of the problem.
+TEST(Rates, AreForTheDefaultModeWhateverNestedOptionsSay) {
+  const Rates rates = Rates::from_json(
+      {{"rows",
+        {{{"problem", "sine"}, {"optimizer", "gd"}, {"options", {{"rate", 0.5}}}},
+         {{"problem", "sine[mode=learn]"}, {"optimizer", "gd"}, {"options", {{"rate", 0.25}}}}}}},
+      "here");
+  const auto rate = [&](const std::string& spec) {
+    const Rates::Row* row = rates.find(complete_problem(catalog(), parse_spec(spec)), "gd");
+    return row ? row->options.number("rate", 0) : 0;
+  };
+  EXPECT_EQ(rate("sine"), 0.5);
+  EXPECT_EQ(rate("sine[xi=3]"), 0.5);
+  EXPECT_EQ(rate("sine[mode=learn]"), 0.25);
+  EXPECT_EQ(rate("sine[network=mine[mode=odd]]"), 0.5);  // of a network that direct never makes
+}
 
 void expect_row_is_sound(const Json& row) {
   const std::string text =
       row.at("problem").get<std::string>() + " × " + row.at("optimizer").get<std::string>();
   const Spec problem = parse_spec(row.at("problem").get<std::string>());
   EXPECT_NO_THROW(complete_problem(catalog(), problem)) << text;
-  EXPECT_NO_THROW(complete_optimizer(catalog(), row.at("optimizer"),
-                                     option_values_from(row.at("options")))) << text;
+  EXPECT_NO_THROW(
+      complete_optimizer(catalog(), row.at("optimizer"), option_values_from(row.at("options"))))
+      << text;
   const Json& source = row.at("source");
   EXPECT_TRUE(source.contains("paper") || source.contains("grid")) << text;
   if (!source.contains("grid")) return;

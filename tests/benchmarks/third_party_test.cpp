@@ -86,7 +86,8 @@ TEST(ThirdParty, ComponentsArePlannedRunAndReportedLikeAllOthers) {
   }
   EXPECT_EQ(theirs, 3U);
   matrix.store.plan("extended", cells);
-  const std::string page = markdown_report(compare_optimizers(read_study({matrix.folder.path()})));
+  const std::string page =
+      markdown_report(document_of(compare_optimizers(read_study({matrix.folder.path()}))));
   for (const char* name : {"twist", "sign-descent"})
     EXPECT_NE(page.find(name), std::string::npos) << name;
 }

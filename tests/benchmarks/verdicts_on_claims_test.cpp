@@ -8,7 +8,7 @@
 
 #include "benchmarks/plan/claim_cells.h"
 #include "core/random.h"
-#include "reports/claims/claims.h"
+#include "reports/report.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {

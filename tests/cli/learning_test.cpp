@@ -9,7 +9,6 @@
 
 namespace isoline::benchmarks {
 
-using networks::Network;
 namespace {
 
 namespace fs = std::filesystem;

@@ -82,6 +82,89 @@ TEST_F(Run, DryRunPrintsThePlanAndTouchesNothing) {
   EXPECT_TRUE(contains(after.out, "6 cells: 3 cached, 1 inapplicable, 2 to run")) << after.out;
 }
 
+TEST_F(Run, ADryRunOfManyCellsSaysTheTotalFirstAndListsTwenty) {
+  const std::string matrix = "./isoline run --problem square --optimizer gd,newton --seeds 15 ";
+  const Finished result = shell(matrix + "--dry-run");
+  EXPECT_TRUE(result.out.starts_with("30 cells: 0 cached, 0 inapplicable, 30 to run"))
+      << result.out;
+  EXPECT_EQ(count_lines(result.out), 23U) << result.out;
+  EXPECT_TRUE(contains(result.out, "… and 10 more; --all lists them\n")) << result.out;
+  EXPECT_EQ(count_lines(shell(matrix + "--dry-run --all").out), 32U);
+}
+
+// The folders under results/, in order.
+std::vector<std::string> result_folders(const fs::path& at) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(at / "results"))
+    names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST_F(Run, AMatrixOfOnesOwnGoesToAFolderNamedByItsPlan) {
+  const std::string matrix = "./isoline run --problem square --optimizer newton --quiet ";
+  EXPECT_EQ(shell(matrix + "--iterations 5").exit_code, 0);
+  const std::vector<std::string> first = result_folders(shell.folder());
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_TRUE(first[0].starts_with("square-newton-")) << first[0];
+  EXPECT_EQ(shell(matrix + "--iterations 5").exit_code, 0);
+  EXPECT_EQ(result_folders(shell.folder()), first) << "the same plan has the same folder";
+  EXPECT_EQ(shell(matrix + "--iterations 6").exit_code, 0);
+  EXPECT_EQ(result_folders(shell.folder()).size(), 2U) << "another plan has another";
+  for (const std::string& name : result_folders(shell.folder()))
+    EXPECT_EQ(count_records(shell.folder() / "results" / name), 1U) << name;
+}
+
+TEST_F(Run, ProblemsAndOptimizersKeepTheirPartOfASuite) {
+  const std::string part = "./isoline run notebook --optimizer newton --problem square ";
+  const Finished result = shell(part + "--no-report --out out");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  ASSERT_GE(count_records(out), 1U);
+  const std::string whole = shell("./isoline run notebook --dry-run --all").out;
+  for (const auto& entry : fs::directory_iterator(out / "runs")) {
+    const Json request = read_json(entry.path()).at("request");
+    EXPECT_EQ(request.at("problem").at("name"), "square");
+    EXPECT_EQ(request.at("optimizer").at("name"), "newton");
+    // Its cells are the suite's own, budget and all: they are found again in a run of the whole.
+    EXPECT_TRUE(contains(shell("./isoline run notebook --out out --dry-run").out, " cached"));
+  }
+  EXPECT_LT(count_records(out), count_lines(whole));
+  const std::string folder = shell(part + "--dry-run").out;
+  EXPECT_TRUE(contains(folder, "result folder: results/notebook-square-newton-")) << folder;
+}
+
+TEST_F(Run, TheRecordedCommandRepeatsTheRunInAShell) {
+  const std::string words = "run --problem square --optimizer 'gd[rate=0.01]' --iterations 3 ";
+  ASSERT_EQ(shell("./isoline " + words + "--no-report --out \"it's here\"").exit_code, 0);
+  const fs::path folder = shell.folder() / "it's here";
+  ASSERT_EQ(count_records(folder), 1U);
+  const auto record = read_json(fs::directory_iterator(folder / "runs")->path());
+  const auto command = record.at("provenance").at("run").at("command").get<std::string>();
+  const Finished again = shell("./" + command + " --dry-run");
+  EXPECT_EQ(again.exit_code, 0) << command << "\n" << again.err;
+  EXPECT_TRUE(contains(again.out, "1 cells: 1 cached")) << command << "\n" << again.out;
+}
+
+TEST_F(Run, AReportOfAFolderWithoutRecordsIsAnErrorAndWritesNothing) {
+  fs::create_directories(out / "runs");
+  const Finished result = shell("./isoline report out");
+  EXPECT_EQ(result.exit_code, 1) << result.out;
+  EXPECT_TRUE(contains(result.err, "no records in out")) << result.err;
+  EXPECT_EQ(count_lines(result.err), 1U) << result.err;
+  EXPECT_FALSE(fs::exists(out / "report"));
+}
+
+TEST_F(Run, TuningStoresItsPlanAndSheetsLikeEveryRun) {
+  const Finished tuned = shell(
+      "./isoline tune square --optimizer gd --grid rate=1e-2..1e-1x2 --tuning-seeds =100 --work 50 "
+      "--out out");
+  EXPECT_EQ(tuned.exit_code, 0) << tuned.err;
+  EXPECT_EQ(count_records(out), 2U);
+  EXPECT_EQ(read_json(out / "plan.json").at("cells").size(), 2U);
+  EXPECT_EQ(shell("./isoline validate out").exit_code, 0);
+  EXPECT_EQ(shell("./isoline report out").exit_code, 0);
+}
+
 TEST_F(Run, ProgressInAPipeIsPlainLinesOnStandardError) {
   const Finished result = shell(kMatrix);
   EXPECT_TRUE(contains(result.err, "cells 3/3")) << result.err;

@@ -10,7 +10,6 @@
 
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/record.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {

@@ -14,14 +14,29 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run", "report", "list", "describe", "check", "audit", "validate", "tune", "train", "infer",
-        "merge", "compare", "claims", "completion"}) {
+       {"run", "report", "compare", "baseline", "merge", "claims", "list", "describe", "check",
+        "audit", "validate", "tune", "train", "infer", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_EQ(help.err, "") << verb;
     EXPECT_GE(count_lines(help.out), 4U) << verb;
   }
+}
+
+TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
+  const std::string completion = Shell()("./isoline completion bash").out;
+  EXPECT_TRUE(contains(completion,
+                       "\"run report compare baseline merge claims list describe check audit "
+                       "validate tune train infer completion  --help --version\""))
+      << completion;
+}
+
+TEST(Help, OfTuneAsksForTheProblemsOnce) {
+  const std::string help = Shell()("./isoline tune --help").out;
+  EXPECT_FALSE(contains(help, "REQUIRED")) << help;
+  EXPECT_TRUE(contains(help, "SPEC")) << help;
+  EXPECT_TRUE(contains(help, "--problem")) << help;
 }
 
 TEST(Help, VersionIsOneLine) {
@@ -36,40 +51,48 @@ struct Mistake {
   std::string command, sentence;
 };
 
+const std::vector<Mistake> kMistakes = {
+    {"rnu", "did you mean 'run'"},
+    {"run quik", "did you mean 'quick'"},
+    {"run --problem rosenbrok", "did you mean 'rosenbrock'"},
+    {"run --optimizer ceres-ml", "did you mean 'ceres-lm'"},
+    {"run --problem square --optimizer 'adam[beta3=1]'", "did you mean 'beta"},
+    {"run --problem 'sine[xi=-3]' --optimizer gd", "sine: xi must be in"},
+    {"run --problem 'sine[xi=two]' --optimizer gd", "xi"},
+    {"run --problem 'sine[xi=1' --optimizer gd", "leaves a bracket open"},
+    {"run --problem square --optimizer gd --seeds 5..3", "5..3"},
+    {"run --problem square --optimizer gd --seeds many", "many"},
+    {"run --problem square --optimizer gd --time soon", "soon"},
+    {"run --problem square --optimizer gd --memory lots", "2GB, got 'lots'"},
+    {"run --problem square --optimizer gd --jobs 0", "--jobs"},
+    {"run --problem square --optimizer gd --target 2", "--target"},
+    {"run --problem square --optimizer gd --iterations -1", "--iterations"},
+    {"run --problem square --optimizer gd --itertions 5", "--itertions"},
+    {"run notebook --optimizer ceres-lm", "ceres-lm"},
+    {"run notebook --problem brown-dennis", "brown-dennis"},
+    {"run notebook --optimizer adma", "did you mean 'adam'"},
+    {"run quick --all", "--dry-run"},
+    {"tune", "name the problems, as SPEC or by --problem"},
+    {"tune square --problem square", "--problem"},
+    {"report .", "no records in .: `isoline run"},
+    {"run --rates nowhere.json", "nowhere.json"},
+    {"describe nwton", "did you mean 'newton'"},
+    {"check rosenbrok", "did you mean 'rosenbrock'"},
+    {"validate nowhere", "nowhere"},
+    {"report nowhere", "nowhere"},
+    {"compare nowhere .", "nowhere"},
+    {"compare . . --tolerance -1", "--tolerance"},
+    {"compare . . --json --markdown", "--json"},
+    {"merge nowhere --out results", "nowhere"},
+    {"merge .", "--out"},
+    {"claims notebok", "did you mean 'notebook'"},
+    {"claims --no-run --out nowhere", "nowhere"},
+    {"completion fish", "fish"},
+    {"list problms", "problms"}};
+
 TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
   const Shell shell;
-  for (const auto& [command, sentence] : std::vector<Mistake>{
-           {"rnu", "did you mean 'run'"},
-           {"run quik", "did you mean 'quick'"},
-           {"run --problem rosenbrok", "did you mean 'rosenbrock'"},
-           {"run --optimizer ceres-ml", "did you mean 'ceres-lm'"},
-           {"run --problem square --optimizer 'adam[beta3=1]'", "did you mean 'beta"},
-           {"run --problem 'sine[xi=-3]' --optimizer gd", "sine: xi must be in"},
-           {"run --problem 'sine[xi=two]' --optimizer gd", "xi"},
-           {"run --problem 'sine[xi=1' --optimizer gd", "leaves a bracket open"},
-           {"run --problem square --optimizer gd --seeds 5..3", "5..3"},
-           {"run --problem square --optimizer gd --seeds many", "many"},
-           {"run --problem square --optimizer gd --time soon", "soon"},
-           {"run --problem square --optimizer gd --memory lots", "lots"},
-           {"run --problem square --optimizer gd --jobs 0", "--jobs"},
-           {"run --problem square --optimizer gd --target 2", "--target"},
-           {"run --problem square --optimizer gd --iterations -1", "--iterations"},
-           {"run --problem square --optimizer gd --itertions 5", "--itertions"},
-           {"run quick --problem square", "not both"},
-           {"run --rates nowhere.json", "nowhere.json"},
-           {"describe nwton", "did you mean 'newton'"},
-           {"check rosenbrok", "did you mean 'rosenbrock'"},
-           {"validate nowhere", "nowhere"},
-           {"report nowhere", "nowhere"},
-           {"compare nowhere .", "nowhere"},
-           {"compare . . --tolerance -1", "--tolerance"},
-           {"compare . . --json --markdown", "--json"},
-           {"merge nowhere --out results", "nowhere"},
-           {"merge .", "--out"},
-           {"claims notebok", "did you mean 'notebook'"},
-           {"claims --no-run --out nowhere", "nowhere"},
-           {"completion fish", "fish"},
-           {"list problms", "problms"}}) {
+  for (const auto& [command, sentence] : kMistakes) {
     const Finished result = shell("./isoline " + command);
     EXPECT_EQ(result.exit_code, 1) << command << ": " << result.err;
     EXPECT_EQ(result.out, "") << command;
@@ -99,6 +122,27 @@ TEST(Describe, TellsEveryComponentInWordsAndInJson) {
     EXPECT_EQ(parse_json(json.out, name).at("schema"), "isoline.component/1") << name;
     EXPECT_EQ(json.err, "") << name;
   }
+}
+
+TEST(Describe, TellsTheGivenValueBesideTheDefault) {
+  const Shell shell;
+  const std::string given = shell("./isoline describe 'adam[rate=0.1]'").out;
+  EXPECT_TRUE(contains(given, "rate                          0.1  ")) << given;
+  EXPECT_TRUE(contains(given, "(default: 0.001)")) << given;
+  EXPECT_FALSE(contains(shell("./isoline describe adam").out, "(default:"));
+  const std::string network = shell("./isoline describe 'mlp[layers=6-6]'").out;
+  EXPECT_TRUE(contains(network, " 6-6  ")) << network;
+  EXPECT_EQ(shell("./isoline describe 'adam[rate=-1]'").exit_code, 1);
+}
+
+TEST(Describe, TellsEveryPrivilegeThatAMethodCanHave) {
+  const Shell shell;
+  EXPECT_TRUE(contains(shell("./isoline describe sip").out,
+                       "Privileges  exact inverse of the physics; damped inverse of the physics; "
+                       "estimate by how the data were made\n"));
+  EXPECT_TRUE(contains(shell("./isoline describe 'sip[inverse=newton]'").out,
+                       "Privileges  exact Hessian\n"));
+  EXPECT_TRUE(contains(shell("./isoline describe adam").out, "Privileges  none\n"));
 }
 
 TEST(List, NamesEverythingInWordsAndInJson) {

@@ -62,6 +62,14 @@ TEST(Files, AFullDiskIsAnErrorAndLeavesNothingBehind) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
+// What is told to be written is on the disk, or an error says that it may not be.
+TEST(Files, AFlushThatCannotBeIsAnError) {
+  const TemporaryFolder owned;
+  EXPECT_NO_THROW(flush_all(owned.path()));
+  EXPECT_THROW(flush_all(owned.path() / "absent"), std::runtime_error);
+  EXPECT_THROW(write_unflushed(owned.path() / "absent" / "a.json", "{}"), std::runtime_error);
+}
+
 TEST(Files, WhatIsNoJsonNamesItsOrigin) {
   try {
     parse_json("{\"a\": ", "suite.json");

@@ -47,7 +47,9 @@ TEST(Options, TextAndNumbersMeanTheSame) {
             complete({{"rate", 1e-3}, {"count", 7}, {"bold", true}}));
 }
 
-TEST(Options, LearningRateIsAnAliasOfRate) { EXPECT_EQ(complete({{"lr", 0.25}}).number("rate", 0), 0.25); }
+TEST(Options, LearningRateIsAnAliasOfRate) {
+  EXPECT_EQ(complete({{"lr", 0.25}}).number("rate", 0), 0.25);
+}
 
 TEST(Options, TheStructIsReadBack) {
   const auto sample = read_options<Sample>(complete({{"rate", 2}, {"form", "paper"}}));
@@ -78,12 +80,8 @@ TEST(Options, AreEqualInWhateverOrderTheyWereGiven) {
 }
 
 TEST(Options, SurviveTheRoundTripThroughJson) {
-  const OptionValues all{{"rate", 1e-3},
-                         {"whole", 2.0},
-                         {"count", 7},
-                         {"bold", true},
-                         {"form", "paper"},
-                         {"least", -INFINITY}};
+  const OptionValues all{{"rate", 1e-3}, {"whole", 2.0},    {"count", 7},
+                         {"bold", true}, {"form", "paper"}, {"least", -INFINITY}};
   const Json json = to_json(all);
   EXPECT_EQ(json.dump(),
             R"({"bold":true,"count":7,"form":"paper","least":"-inf","rate":0.001,"whole":2.0})");

@@ -115,6 +115,31 @@ TEST(Record, TimesAreLeftOutOfComparisons) {
   EXPECT_NE(without_timings(to_json(other)), without_timings(to_json(sample())));
 }
 
+// Records are found again by it, so it may not change: of two records that commit 5990f5a wrote.
+TEST(Cell, HasTheNameThatEarlierVersionsGaveIt) {
+  const Json direct = Json::parse(R"({
+    "budget": {"iterations": 100000, "seconds": "inf", "target": 1e-10, "work": 2000},
+    "optimizer": {"name": "sip", "revision": 2, "spec": "sip", "options": {
+      "inner-steps": 1, "inverse": "auto", "inverse-evaluations": 200, "max-loss-change": 0.2,
+      "network-optimizer": "auto", "network-steps": 1, "proxy": "l2", "step": 1.0}},
+    "problem": {"name": "sine", "revision": 1, "spec": "sine", "options": {
+      "batch": 100, "data": 0, "form": "code", "gamma": 10.0, "mode": "direct",
+      "network": "mlp[layers=32-64-32]", "phi": 45.0, "xi": 10.0}},
+    "rates": "", "seed": 0, "threads": 1})");
+  EXPECT_EQ(request_from_json(direct).cell, "97c10fa6580650cd");
+  EXPECT_FALSE(request_from_json(direct).problem.is_learned);
+  EXPECT_EQ(to_json(request_from_json(direct)), direct);
+  Json learned = direct;
+  learned.merge_patch(Json::parse(R"({
+    "budget": {"iterations": 10000, "target": 0.0, "work": null},
+    "optimizer": {"options": {"inverse": "newton", "network-optimizer": "adam[rate=1e-3]",
+                              "proxy": "l1"}},
+    "problem": {"options": {"mode": "learn", "xi": 32.0}}})"));
+  learned["budget"]["work"] = nullptr;  // a merge takes it for an erasure
+  EXPECT_EQ(request_from_json(learned).cell, "6fb30fb6a3608d73");
+  EXPECT_TRUE(request_from_json(learned).problem.is_learned);
+}
+
 TEST(Cell, DependsOnAllThatIsAskedAndNothingElse) {
   const Request asked = sample().request;
   Request other = asked;

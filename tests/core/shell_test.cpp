@@ -22,8 +22,8 @@ TEST(Shell, WordsAreQuotedOnlyWhereTheyMustBe) {
 
 // What `sh` makes of it, each word on a line of its own.
 std::string read_back(const std::string& command) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(
-      popen(("printf '<%s>' " + command).c_str(), "r"), pclose);
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("printf '<%s>' " + command).c_str(), "r"),
+                                                   pclose);
   std::string text;
   for (int letter = std::fgetc(pipe.get()); letter != EOF; letter = std::fgetc(pipe.get()))
     text += static_cast<char>(letter);
@@ -31,9 +31,9 @@ std::string read_back(const std::string& command) {
 }
 
 TEST(Shell, ReadsEveryWordBackAsItWas) {
-  const std::vector<const char*> words = {"it's",  "a b",      "$HOME", "`date`", "\\",  "\"", "*",
-                                          "~",     "a;b",      "#",     "",       "–ξ’", "'",  "!x",
-                                          "(a|b)", "two\nlines"};
+  const std::vector<const char*> words = {"it's", "a b", "$HOME", "`date`",    "\\", "\"",
+                                          "*",    "~",   "a;b",   "#",         "",   "–ξ’",
+                                          "'",    "!x",  "(a|b)", "two\nlines"};
   std::string expected;
   for (const char* word : words) expected += std::string("<") + word + ">";
   EXPECT_EQ(read_back(shell_command(words)), expected);

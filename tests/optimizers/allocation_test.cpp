@@ -56,7 +56,8 @@ TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
   register_problems(problems);
   for (const auto& [problem_name, problem_entry] : problems) {
     if (transforms(problem_name)) continue;
-    const OptionValues options = complete_options(problem_entry.options, problem_name, OptionValues());
+    const OptionValues options =
+        complete_options(problem_entry.options, problem_name, OptionValues());
     const Problem problem = problem_entry.make(options, Draw(0, problem_name));
     for (const auto& [name, entry] : optimizers()) {
       if (entry.family != Family::first_order) continue;

@@ -1,7 +1,6 @@
 // What every optimizer must hold, over the registry.
 #include <gtest/gtest.h>
 
-
 #include "run.h"
 #include "trial_problems.h"
 

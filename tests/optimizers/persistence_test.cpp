@@ -2,7 +2,6 @@
 // bit.
 #include <gtest/gtest.h>
 
-
 #include "run.h"
 #include "trial_problems.h"
 

@@ -1,7 +1,6 @@
 // First steps of the gradient rules, worked by hand from their formulas, ∇L = (4, −0.5) throughout.
 #include <gtest/gtest.h>
 
-
 #include "run.h"
 
 namespace isoline::optimizers {
@@ -67,7 +66,8 @@ TEST(Rules, FirstStepOfAdadeltaIsMadeByEpsilon) {
 
 TEST(Rules, DefaultsAreThoseOfPyTorch) {
   const auto standard = [](const std::string& name, const char* option) {
-    const OptionValues options = complete_options(optimizers().at(name).options, name, OptionValues());
+    const OptionValues options =
+        complete_options(optimizers().at(name).options, name, OptionValues());
     return std::get<Real>(options.at(option));
   };
   EXPECT_EQ(standard("adam", "epsilon"), 1e-8);

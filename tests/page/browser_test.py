@@ -87,12 +87,11 @@ class Page(unittest.TestCase):
 
     def test_every_optimizer_has_a_section_with_its_formula(self):
         sections = self.browser.run("return document.querySelectorAll('article.optimizer').length")
-        typeset = self.browser.run("return document.querySelectorAll("
-                                   "'article.optimizer p.formula').length")
+        formulas = self.browser.run("return [...document.querySelectorAll("
+                                    "'article.optimizer p.formula')].map((one) => one.textContent)")
         self.assertEqual(sections, len(self.json["optimizers"]))
-        self.assertEqual(typeset, sections)
-        self.assertGreater(self.browser.run("return document.querySelector("
-                                            "'article.problem math mfrac').clientHeight"), 0)
+        self.assertEqual(len(formulas), sections)
+        self.assertTrue(all(formula.strip() for formula in formulas))
 
     def test_an_optimizer_left_out_is_nowhere_to_be_seen(self):
         out = self.optimizer("newton")

@@ -1,37 +1,49 @@
 // What a repository keeps of results holds later results to the same standard as the records do.
-#include "reports/gate/baseline.h"
+#include "reports/compare/baseline.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/records/schema.h"
-#include "reports/gate/gate.h"
+#include "reports/compare/gate.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
 namespace {
 
+using Changes = std::map<std::uint64_t, std::function<void(Record&)>>;  // by seed
+
 // Eight cells on one problem with a minimum, four on one without, and one pair that makes no sense.
-void fill(const ResultFolder& folder, const std::function<void(Record&)>& change) {
+void fill(const ResultFolder& folder, const Changes& changes = {}) {
   for (std::uint64_t seed = 0; seed < 13; ++seed) {
     Record record = record_of({.seed = seed, .hits = 20 + seed, .status = Status::budget});
-    if (seed >= 8) record.minimum.reset(), record.hits.reset();
+    if (seed >= 8) {
+      record.minimum.reset();
+      record.hits.reset();
+    }
     if (seed == 12) record.status = Status::inapplicable;
-    if (seed == 5) change(record);
+    if (const auto change = changes.find(seed); change != changes.end()) change->second(record);
     folder.add(record);
   }
+}
+
+Study study_with(const Changes& changes) {
+  const ResultFolder folder;
+  fill(folder, changes);
+  return read_study({folder.path()});
 }
 
 GateResult held_to_baseline(const std::function<void(Record&)>& change,
                             const GateOptions& options = {}) {
   const ResultFolder before, after;
-  fill(before, [](Record&) {});
-  fill(after, change);
-  before.add_file("baseline.json", baseline_json(read_study({before.path()})));
+  fill(after, {{5, change}});
+  before.add_file("baseline.json", baseline_json(study_with({})));
   return compare_results(before.path() / "baseline.json", after.path(), options);
 }
 
@@ -76,18 +88,24 @@ TEST(Baseline, TellsAnotherPathFromTheSame) {
 }
 
 TEST(Baseline, IsALineACellAndKeepsToItsSchema) {
-  const ResultFolder folder;
-  fill(folder, [](Record&) {});
-  const std::string text = baseline_json(read_study({folder.path()}));
+  const Changes moved = {{5, [](Record& record) { record.summary.loss *= 1.5; }},
+                         {6, [](Record& record) { record.status = Status::diverged; }}};
+  const std::string text = baseline_json(study_with({}), {study_with(moved)});
   EXPECT_EQ(std::ranges::count(text, '\n'), 3 + 13 + 2);
   const Json schema =
       read_json(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas/baseline.json");
-  EXPECT_EQ(schema_violations(parse_json(text, "baseline"), schema), std::vector<std::string>());
+  const Json json = parse_json(text, "baseline");
+  EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>());
+  EXPECT_EQ(json["perturbations"], 1);
+  EXPECT_EQ(json["cells"][5]["perturbed"],
+            (Json{{"moved", 0.5}, {"statuses", {"budget"}}, {"reached", {1, 1, 0}}}));
+  EXPECT_EQ(json["cells"][6]["perturbed"]["moved"], "inf");
+  EXPECT_FALSE(json["cells"][7].contains("perturbed")) << "nothing moved";
 }
 
 TEST(Baseline, StandsOnTheLeftOfAResultFolder) {
   const ResultFolder folder;
-  fill(folder, [](Record&) {});
+  fill(folder);
   const auto file = folder.path() / "baseline.json";
   folder.add_file("baseline.json", baseline_json(read_study({folder.path()})));
   EXPECT_THROW(compare_results(folder.path(), file, {}), UsageError);

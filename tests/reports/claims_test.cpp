@@ -1,12 +1,12 @@
 // Verdicts on claims against figures worked out by hand, and what false claims come to.
-#include "reports/claims/claims.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "reports/comparison.h"
+#include "reports/page/page.h"
+#include "reports/report.h"
+#include "reports/sections/verdicts.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -167,7 +167,8 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
   EXPECT_EQ(kept.contrast->measured->value, 20);
   EXPECT_EQ(refuted.measured->value, 10);
   EXPECT_EQ(refuted.verdict, Verdict::not_reproduced);
-  EXPECT_NE(claims_terminal({refuted}).find("Held against the value"), std::string::npos);
+  EXPECT_NE(terminal_section(claims_section({refuted})).find("Held against the value"),
+            std::string::npos);
   EXPECT_EQ(claims_json({refuted})[0].at("contrast").at("measured").at("value"), 20);
 }
 
@@ -211,10 +212,13 @@ TEST(Quantities, AFailedRunCountsAsInfinite) {
 }
 
 TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
+  const Study study;
   const std::vector<Judgement> judgements = {judgement_of({}, adam_and_sip())};
   EXPECT_EQ(measured_text(judgements[0]), "10 (10–30), n = 3");
+  const Section section = claims_section(judgements);
+  const Document document = document_of(compare_optimizers(study), judgements);
   for (const std::string& text :
-       {claims_html(judgements), claims_markdown(judgements), claims_terminal(judgements)}) {
+       {section_html(section), markdown_report(document), terminal_section(section)}) {
     for (const char* part : {"reproduced", "One is ahead of the other.", "10–30", "±5 %"})
       EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
     EXPECT_NE(text.find("Of 1 claims 1 are reproduced, 0 partly, 0 not; 0 cannot be compared."),
@@ -222,7 +226,7 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
         << text;
   }
   EXPECT_EQ(claims_json(judgements)[0].at("measured").at("value"), 10);
-  EXPECT_EQ(claims_markdown({}), "");
+  EXPECT_TRUE(claims_section({}).is_empty());
 }
 
 }  // namespace

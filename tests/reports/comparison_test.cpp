@@ -1,5 +1,5 @@
 // What a comparison makes of result folders: denominators, missing cells, builds, broken files.
-#include "reports/comparison.h"
+#include "reports/read/comparison.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "reports/reached.h"
-#include "reports/readings.h"
-#include "reports/wording.h"
+#include "reports/read/curves.h"
+#include "reports/read/reached.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -159,6 +160,22 @@ TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
             "1 optimizer on 1 problem (2 settings), 1 seed, 2 runs");
 }
 
+// "sine-x" sorts between "sine" and "sine[xi=32]", which are of one name all the same. On sine the
+// two are even, on sine-x a is ahead: in no draw of names is it behind. Were the settings of sine
+// drawn apart, b would lead where only its own is drawn.
+TEST(Comparison, SettingsOfOneProblemAreDrawnTogetherWhateverStandsBetweenThem) {
+  const Study study = study_of({{"sine", "a", 1},
+                                {"sine", "b", 100},
+                                {"sine-x", "a", 1},
+                                {"sine-x", "b", 2},
+                                {"sine[xi=32]", "a", 100},
+                                {"sine[xi=32]", "b", 1}});
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(c.names, 2U);
+  EXPECT_EQ(c.optimizers[c.leader->optimizer].label, "a");
+  EXPECT_EQ(c.leader->stays_first, 1);
+}
+
 TEST(Comparison, RatesFromAFileDoNotSplitAMethod) {
   Record tuned = record_of({.problem = "heat", .optimizer = "gd[rate=0.5]"});
   Record other = record_of({.problem = "square", .optimizer = "gd[rate=0.1]"});
@@ -168,6 +185,7 @@ TEST(Comparison, RatesFromAFileDoNotSplitAMethod) {
   const Comparison comparison = compare_optimizers(study);
   ASSERT_EQ(comparison.optimizers.size(), 1U);
   EXPECT_EQ(comparison.optimizers[0].label, "gd");
+  EXPECT_EQ(comparison.optimizers[0].method, "gd");
 }
 
 // f_L = 0.01, the least of both runs; goal at 1e-1: 0.01 + 0.1 · (1 − 0.01) = 0.109, which the
@@ -183,7 +201,7 @@ TEST(Comparison, WithoutADeclaredMinimumTheBestKnownIsOne) {
   study.runs = {a, b};
   const BestKnown best(study);
   EXPECT_NEAR(best.minimum(b), 0.01, 1e-15);
-  isoline::Run run{.record = &study.runs[1]};
+  reports::Run run{.record = &study.runs[1]};
   fill_reached(run, best);
   EXPECT_EQ(run.work[0], 10);
   EXPECT_EQ(run.work[1], kNever);

@@ -1,5 +1,5 @@
 // Marching squares on shapes whose isolines are known.
-#include "reports/html/contour.h"
+#include "reports/page/contour.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // Equivalent forward solves: raw counts at measured prices, and what does not depend on them.
-#include "reports/statistics/costs.h"
+#include "reports/read/costs.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/gate/subject.h"
+#include "reports/compare/subject.h"
 #include "reports/report.h"
-#include "reports/tables/tables.h"
+#include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -93,7 +93,7 @@ TEST(Costs, ChangeNoFigureThatResultsAreComparedBy) {
   EXPECT_NE(one.cell(0, 0).cost[kTightest].median, other.cell(0, 0).cost[kTightest].median);
   EXPECT_EQ(one.cell(0, 0).work[kTightest].median, other.cell(0, 0).work[kTightest].median);
   const auto subjects = [](const Comparison& c) {
-    return subjects_of_report(parse_json(json_report(c), "report.json"));
+    return subjects_of_report(parse_json(json_report(document_of(c)), "report.json"));
   };
   const auto left = subjects(one), right = subjects(other);
   ASSERT_EQ(left.size(), 1U);
@@ -109,13 +109,13 @@ TEST(Costs, StandBesideTheRawCounts) {
   study.runs = {counted()};
   study.sheets = {priced("square", 2.5)};
   const Comparison c = compare_optimizers(study);
-  const StatisticTable table = calls_table(c);
+  const Table table = calls_table(c);
   const auto column = std::ranges::find(table.columns, "pullback") - table.columns.begin();
   EXPECT_EQ(table.rows[0][static_cast<std::size_t>(column)].text, "30");
   EXPECT_NE(table.reading.find("60 declared forward solves, 105 in"), std::string::npos)
       << table.reading;
   EXPECT_NE(prices_table(c).rows[0].back().text.find("1 : 2.5 [2.5–2.5]"), std::string::npos);
-  const Json cell = parse_json(json_report(c), "report.json").at("cells")[0];
+  const Json cell = parse_json(json_report(document_of(c)), "report.json").at("cells")[0];
   EXPECT_EQ(cell.at("costs").at("1e-6").at("median"), 105);
   EXPECT_EQ(cell.at("calls").at("pullback"), Json::array({30}));
 }

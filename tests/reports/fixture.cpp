@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/files.h"
 #include "core/json.h"
 #include "core/ladder.h"
+#include "core/spec.h"
 
 namespace isoline::reports {
 
@@ -48,8 +50,6 @@ Curve curve_of(const PlainRun& run) {
   return curve;
 }
 
-std::string name_in(const std::string& spec) { return spec.substr(0, spec.find('[')); }
-
 }  // namespace
 
 ResultFolder::ResultFolder() {
@@ -74,8 +74,8 @@ void ResultFolder::add_file(const std::string& name, const std::string& text) co
 
 Record record_of(const PlainRun& run) {
   Record record;
-  record.request.problem = {.name = name_in(run.problem), .spec = run.problem};
-  record.request.optimizer = {.name = name_in(run.optimizer), .spec = run.optimizer};
+  record.request.problem = {.name = name_of_spec(run.problem), .spec = run.problem};
+  record.request.optimizer = {.name = name_of_spec(run.optimizer), .spec = run.optimizer};
   record.request.problem.options.set("spec", run.problem);  // tells the cells apart
   record.request.optimizer.options.set("spec", run.optimizer);
   record.request.seed = run.seed;

@@ -7,7 +7,7 @@
 
 #include "core/records/record.h"
 #include "core/records/sheet.h"
-#include "reports/study.h"
+#include "reports/read/study.h"
 
 namespace isoline::reports {
 

@@ -8,9 +8,9 @@
 
 #include "core/json.h"
 #include "core/records/schema.h"
+#include "reports/formats/escape.h"
 #include "reports/report.h"
-#include "reports/text.h"
-#include "reports/wording.h"
+#include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -80,12 +80,11 @@ TEST(Escape, EachFormatHasItsOwn) {
   EXPECT_EQ(latex_text("50 % & x_1 \\ é"), "50 \\% \\& x\\_1 \\textbackslash{} ?");
   EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
   EXPECT_EQ(csv_field("=1+1"), "\"'=1+1\"");
-  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
 }
 
 TEST(Html, HostileNamesStayText) {
   const Study study = hostile_study();
-  const std::string page = html_report(compare_optimizers(study));
+  const std::string page = html_report(document_of(compare_optimizers(study)));
   EXPECT_FALSE(has(page, "<b>&|"));
   EXPECT_FALSE(has(page, "</script><!--@all"));
   EXPECT_TRUE(has(page, "&lt;b&gt;&amp;|&quot;x&quot;"));
@@ -94,7 +93,7 @@ TEST(Html, HostileNamesStayText) {
 
 TEST(Html, AsksNothingOfTheNetwork) {
   const Study study = hostile_study();
-  const std::string page = html_report(compare_optimizers(study));
+  const std::string page = html_report(document_of(compare_optimizers(study)));
   for (const char* asking : {"src=", "@import", "url(", "fetch(", "XMLHttpRequest", "href=\"http"})
     EXPECT_FALSE(has(page, asking)) << asking;
 }
@@ -102,7 +101,8 @@ TEST(Html, AsksNothingOfTheNetwork) {
 TEST(Markdown, HostileNamesBreakNoRow) {
   const Study study = hostile_study();
   std::size_t expected = 0;  // bars of the table's first line
-  for (const std::string& line : lines_of(markdown_report(compare_optimizers(study)))) {
+  for (const std::string& line :
+       lines_of(markdown_report(document_of(compare_optimizers(study))))) {
     std::size_t bars = 0;
     for (std::size_t i = 0; i < line.size() && line.starts_with("|"); ++i)
       bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
@@ -113,7 +113,7 @@ TEST(Markdown, HostileNamesBreakNoRow) {
 
 TEST(Latex, HostileNamesKeepTheTableWhole) {
   const Study study = hostile_study();
-  const std::string tex = latex_report(compare_optimizers(study));
+  const std::string tex = latex_report(document_of(compare_optimizers(study)));
   int depth = 0;
   for (std::size_t i = 0; i < tex.size(); ++i) {
     if (tex[i] == '\\') {
@@ -131,7 +131,7 @@ TEST(Latex, HostileNamesKeepTheTableWhole) {
 TEST(Csv, EveryRowHasAllFields) {
   Study study = hostile_study();
   study.plan.cells.push_back({"missing-cell", "square", "gd,x", 3});
-  const auto lines = lines_of(csv_report(compare_optimizers(study)));
+  const auto lines = lines_of(csv_report(document_of(compare_optimizers(study))));
   ASSERT_EQ(lines.size(), 3U);
   for (const std::string& line : lines) EXPECT_EQ(fields(line), fields(lines[0])) << line;
   EXPECT_TRUE(has(lines[2], "missing-cell"));
@@ -143,7 +143,7 @@ TEST(Terminal, ALargeStudyIsSummedUp) {
   const ResultFolder folder;
   write_sample_study(folder.path(), {.problems = 20, .optimizers = 33, .seeds = 2, .points = 20});
   const Study study = read_study({folder.path()});
-  const auto lines = lines_of(terminal_table(compare_optimizers(study)));
+  const auto lines = lines_of(terminal_table(document_of(compare_optimizers(study))));
   EXPECT_LE(lines.size(), 90U);
   for (const std::string& line : lines)
     EXPECT_LE(std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; }), 100) << line;
@@ -155,19 +155,19 @@ TEST(Terminal, NoEscapeSequencePasses) {
                            .hits = 1,
                            .status = Status::failed,
                            .message = "\x1b]0;owned\x07"})};
-  EXPECT_FALSE(has(terminal_table(compare_optimizers(study)), "\x1b"));
+  EXPECT_FALSE(has(terminal_table(document_of(compare_optimizers(study))), "\x1b"));
 }
 
 // Work to 1e-6 is index 30 · 4567 = 137010; the median of one run is itself.
 TEST(Formats, AllPrintTheSameFigure) {
   Study study;
   study.runs = {record_of({.work_per_hit = 4567})};
-  const Comparison comparison = compare_optimizers(study);
+  const Document document = document_of(compare_optimizers(study));
   for (const std::string& text :
-       {html_report(comparison), markdown_report(comparison), latex_report(comparison),
-        csv_report(comparison), terminal_table(comparison)})
+       {html_report(document), markdown_report(document), latex_report(document),
+        csv_report(document), terminal_table(document)})
     EXPECT_TRUE(has(text, "137010"));
-  const Json json = parse_json(json_report(comparison), "report");
+  const Json json = parse_json(json_report(document), "report");
   EXPECT_EQ(json["schema"], "isoline.report/1");
   EXPECT_EQ(json["cells"][0]["figures"]["work"]["1e-6"]["median"], 137010);
 }
@@ -176,12 +176,12 @@ TEST(Formats, APartialStudySaysSoInAll) {
   Study study;
   study.runs = {record_of({})};
   study.plan = plan_of({study.runs[0], record_of({.seed = 1})});
-  const Comparison comparison = compare_optimizers(study);
+  const Document document = document_of(compare_optimizers(study));
   for (const std::string& text :
-       {html_report(comparison), markdown_report(comparison), terminal_table(comparison)})
+       {html_report(document), markdown_report(document), terminal_table(document)})
     EXPECT_TRUE(has(text, "1 of 2 cells, missing"));
-  EXPECT_TRUE(has(latex_report(comparison), "1 of 2 cells"));
-  EXPECT_TRUE(has(csv_report(comparison), ",missing,"));
+  EXPECT_TRUE(has(latex_report(document), "1 of 2 cells"));
+  EXPECT_TRUE(has(csv_report(document), ",missing,"));
 }
 
 TEST(Json, ConformsToItsSchema) {
@@ -190,7 +190,7 @@ TEST(Json, ConformsToItsSchema) {
   const Json schema =
       read_json(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas/report.json");
   for (const Study& study : {read_study({folder.path()}), hostile_study(), Study{}}) {
-    const Json report = parse_json(json_report(compare_optimizers(study)), "report");
+    const Json report = parse_json(json_report(document_of(compare_optimizers(study))), "report");
     EXPECT_EQ(schema_violations(report, schema), std::vector<std::string>());
   }
 }
@@ -198,23 +198,48 @@ TEST(Json, ConformsToItsSchema) {
 TEST(Formats, AnEmptyFolderIsReported) {
   const ResultFolder folder;
   const Study study = read_study({folder.path()});
-  write_report(compare_optimizers(study), folder.path() / "report");
-  for (const char* name : {"index.html", "report.md", "report.tex", "report.csv", "report.json"})
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "report" / name)) << name;
+  write_report(document_of(compare_optimizers(study)), folder.path() / "report");
+  for (const Format& format : kFormats)
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "report" / format.file)) << format.file;
+}
+
+// Whatever a section says, every format that lays sections out says too.
+TEST(Formats, EverySectionIsInEachOfThem) {
+  Study study = study_of({{"p", "a", 1}, {"p", "b", 2}, {"q", "a", 1}, {"q", "b", 0}});
+  study.unreadable = {{"torn.json", "no JSON"}};
+  study.audits = {{.name = "a", .spec = "a", .reason = "it has no step"}};
+  const Document document = document_of(compare_optimizers(study), {{.sentence = "It is so."}});
+  const std::string page = html_report(document), markdown = markdown_report(document),
+                    latex = latex_report(document);
+  for (const Section& section : document.sections) {
+    if (section.is_empty()) continue;
+    EXPECT_TRUE(has(markdown, "## " + markdown_text(section.title))) << section.id;
+    EXPECT_FALSE(terminal_section(section).empty()) << section.id;
+    for (const Table& table : section.tables) {
+      EXPECT_TRUE(table.title.empty() || has(markdown, markdown_text(table.title))) << table.id;
+      if (table.rows.empty()) continue;
+      const std::string name = table.rows[0][0].text;
+      EXPECT_TRUE(has(page, html_text(name))) << table.id;
+      EXPECT_TRUE(has(markdown, "| " + markdown_text(name))) << table.id;
+      EXPECT_TRUE(table.is_wordy() || has(latex, "    " + latex_text(name) + " & ")) << table.id;
+    }
+  }
 }
 
 TEST(Formats, TheSameStudyGivesTheSameBytes) {
   const ResultFolder folder;
   write_sample_study(folder.path(), {.problems = 3, .optimizers = 12, .seeds = 2, .points = 20});
   const Study first = read_study({folder.path()}), second = read_study({folder.path()});
-  EXPECT_EQ(html_report(compare_optimizers(first)), html_report(compare_optimizers(second)));
-  EXPECT_EQ(json_report(compare_optimizers(first)), json_report(compare_optimizers(second)));
+  EXPECT_EQ(html_report(document_of(compare_optimizers(first))),
+            html_report(document_of(compare_optimizers(second))));
+  EXPECT_EQ(json_report(document_of(compare_optimizers(first))),
+            json_report(document_of(compare_optimizers(second))));
 }
 
 TEST(Rerun, TheCommandAsksForTheCell) {
   Request request = record_of({.problem = "sine[xi=32]", .seed = 7}).request;
   EXPECT_EQ(rerun_command(request),
-            "./isoline run --problem 'sine[xi=32]' --optimizer 'gd' --seeds =7 --iterations 1000 "
+            "./isoline run --problem 'sine[xi=32]' --optimizer gd --seeds =7 --iterations 1000 "
             "--rates none");
   request.budget.work = 500;
   EXPECT_TRUE(has(rerun_command(request), " --work 500"));

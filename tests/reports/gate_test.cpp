@@ -1,5 +1,5 @@
 // The gate: what is worse is caught, what is the same passes, what cannot be compared says so.
-#include "reports/gate/gate.h"
+#include "reports/compare/gate.h"
 
 #include <gtest/gtest.h>
 
@@ -175,11 +175,12 @@ TEST(Gate, ReportsAreComparedToo) {
   const ResultFolder before, after;
   fill(before, [](Record&) {});
   fill(after, [](Record& record) {
-    record.hits->work.assign(51, -1), record.hits->iteration.assign(51, -1);
+    record.hits->work.assign(51, -1);
+    record.hits->iteration.assign(51, -1);
   });
   for (const ResultFolder* folder : {&before, &after}) {
     const Study study = read_study({folder->path()});
-    folder->add_file("report.json", json_report(compare_optimizers(study)));
+    folder->add_file("report.json", json_report(document_of(compare_optimizers(study))));
   }
   const auto old_report = before.path() / "report.json", report = after.path() / "report.json";
   EXPECT_EQ(compare_results(old_report, old_report, {}).exit_code, 0);

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/statistics/orders.h"
 #include "reports/statistics/rank_tests.h"
+#include "reports/statistics/resampling.h"
 #include "reports/statistics/runtimes.h"
 
 namespace isoline::reports {

@@ -1,10 +1,9 @@
 // Who is ahead and by how much, against counts by hand.
-#include "reports/statistics/lead.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "reports/read/leaders.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

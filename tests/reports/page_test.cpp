@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
-#include "reports/html/targets.h"
+#include "core/json.h"
+#include "reports/read/reached.h"
 #include "reports/report.h"
-#include "reports/text.h"
+#include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -58,12 +60,42 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
   for (const char* problem : {"a", "b"})
     for (const char* optimizer : {"gd", "newton"})
       study.runs.push_back(record_of({.problem = problem, .optimizer = optimizer}));
-  const std::string page = html_report(compare_optimizers(study));
+  const std::string page = html_report(document_of(compare_optimizers(study)));
   for (const char* part :
        {"<article class=problem id=problem-1 data-p=1>",
         "<article class=optimizer id=optimizer-1 data-s=1>", "<tr data-p=1 data-s=1><th>b",
         "<th scope=col data-p=1>", "<a href=\"#optimizer-1\" data-s=1>"})
     EXPECT_TRUE(has(page, part)) << part;
+}
+
+// Two labels of one method have one colour, and one row of the audit: the page is told, it cuts no
+// label.
+TEST(Page, IsToldTheMethodOfEachOptimizer) {
+  Record tuned = record_of({.optimizer = "gd[rate=0.5]"});
+  tuned.request.rates = "learn-tuned.json";
+  Study study;
+  study.runs = {record_of({.optimizer = "gd[rate=0.1]"}), tuned};
+  const std::string page = html_report(document_of(compare_optimizers(study)));
+  EXPECT_TRUE(has(page, "gd, tuned"));
+  EXPECT_TRUE(has(page, "\"methods\":[\"gd\",\"gd\"]"));
+  const std::filesystem::path scripts = ISOLINE_SOURCE_DIR "/reports/page";
+  for (const auto& file : std::filesystem::directory_iterator(scripts)) {
+    if (file.path().extension() != ".js") continue;
+    for (const char* cut : {"split('[", "split(/[[", "indexOf('["})
+      EXPECT_FALSE(has(read_text(file.path()), cut)) << file.path();
+  }
+}
+
+TEST(Page, ShowsFormulasAsTheyAreWritten) {
+  Study study;
+  study.runs = {record_of({})};
+  study.sheets = {{.kind = "problem",
+                   .name = "square",
+                   .spec = "square",
+                   .formula = "P(x) = x₁² / ‖x̃‖, Λ^(−κ) < 1",
+                   .options_text = "[]"}};
+  EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))),
+                  "<p class=formula>P(x) = x₁² / ‖x̃‖, Λ^(−κ) &lt; 1</p>"));
 }
 
 TEST(Page, TenThousandRecordsStayBelowEightMegabytes) {
@@ -76,7 +108,7 @@ TEST(Page, TenThousandRecordsStayBelowEightMegabytes) {
                                       .hits = 20 + (7 * p + 3 * s) % 32,
                                       .work_per_hit = static_cast<std::int64_t>(5 + p + 11 * s)}));
   EXPECT_EQ(study.runs.size(), 10'000U);
-  EXPECT_LT(html_report(compare_optimizers(study)).size(), kMost);
+  EXPECT_LT(html_report(document_of(compare_optimizers(study))).size(), kMost);
 }
 
 }  // namespace

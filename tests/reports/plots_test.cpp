@@ -1,6 +1,4 @@
 // The plots of the statistics: hand-computed numbers, and figures that every reader can use.
-#include "reports/plots/plots.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +6,9 @@
 #include <regex>
 
 #include "core/json.h"
+#include "reports/page/page.h"
 #include "reports/report.h"
+#include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -35,8 +35,9 @@ Real height(const PlotSeries& line, Real x) {
 
 TEST(Plots, ProfilesAreThoseOfTheComparison) {
   const Comparison c = compare_optimizers(four_problems());
-  const auto plot = profile_plot(c);
-  ASSERT_TRUE(plot.has_value());
+  const Plots plots = profile_plot(c);
+  ASSERT_EQ(plots.size(), 1U);
+  const Plot* plot = &plots[0];
   ASSERT_EQ(plot->series.size(), 2U);
   EXPECT_EQ(height(plot->series[0], 1), 0.75);
   EXPECT_EQ(height(plot->series[0], 64), 0.75);
@@ -47,7 +48,7 @@ TEST(Plots, ProfilesAreThoseOfTheComparison) {
   EXPECT_EQ(height(plot->series[1], 16), 1);
   for (const PlotSeries& line : plot->series)
     for (std::size_t i = 0; i < line.x.size(); ++i) {
-      EXPECT_EQ(line.y[i], c.profiles[kTightest].share(line.optimizer, line.x[i]));
+      EXPECT_EQ(line.y[i], c.profiles[kTightest].share(*line.optimizer, line.x[i]));
       EXPECT_LE(line.low[i], line.y[i]);
       EXPECT_GE(line.high[i], line.y[i]);
     }
@@ -56,13 +57,13 @@ TEST(Plots, ProfilesAreThoseOfTheComparison) {
 // Four problems drawn with replacement: the chance that none is one of the three on which a is best
 // is 4⁻⁴ = 0.4 %, that at most one is, 5 %, that all four are, 32 %. So 95 % reach from ¼ to 1.
 TEST(Plots, BandsAreThoseOfProblemsDrawnAnew) {
-  const auto plot = profile_plot(compare_optimizers(four_problems()));
-  EXPECT_EQ(plot->series[0].low[0], 0.25);
-  EXPECT_EQ(plot->series[0].high[0], 1);
+  const Plot plot = profile_plot(compare_optimizers(four_problems())).at(0);
+  EXPECT_EQ(plot.series[0].low[0], 0.25);
+  EXPECT_EQ(plot.series[0].high[0], 1);
 }
 
 TEST(Plots, PairsAreTheLeaderAgainstEachRivalAlone) {
-  const std::vector<Plot> plots = pairwise_plots(compare_optimizers(four_problems()));
+  const Plots plots = pairwise_plots(compare_optimizers(four_problems()));
   ASSERT_EQ(plots.size(), 1U);
   EXPECT_NE(plots[0].reading.find("a needs less on 3 of 4 problems, b on 1; 0 ties."),
             std::string::npos)
@@ -71,8 +72,9 @@ TEST(Plots, PairsAreTheLeaderAgainstEachRivalAlone) {
 
 // log2 of 1/16, 1/4, 1/2 and, where a never gets there, the end of the scale.
 TEST(Plots, RatiosAreSortedDoublings) {
-  const auto plot = log_ratio_plot(compare_optimizers(four_problems()));
-  ASSERT_TRUE(plot.has_value());
+  const Plots plots = log_ratio_plot(compare_optimizers(four_problems()));
+  ASSERT_EQ(plots.size(), 1U);
+  const Plot* plot = &plots[0];
   const std::vector<Real> doublings = {-4, -2, -1, 10};
   ASSERT_EQ(plot->series[0].y.size(), doublings.size());
   for (std::size_t i = 0; i < doublings.size(); ++i)
@@ -83,18 +85,18 @@ TEST(Plots, RatiosAreSortedDoublings) {
 
 // Work 30, 30, 30 of a: nothing within 10 forward solves, three of four within 100.
 TEST(Plots, DataProfilesCountForwardSolves) {
-  const auto plot = data_profile_plot(compare_optimizers(four_problems()));
-  EXPECT_EQ(height(plot->series[0], 10), 0);
-  EXPECT_EQ(height(plot->series[0], 100), 0.75);
+  const Plot plot = data_profile_plot(compare_optimizers(four_problems())).at(0);
+  EXPECT_EQ(height(plot.series[0], 10), 0);
+  EXPECT_EQ(height(plot.series[0], 100), 0.75);
 }
 
 // 10 digits on three problems, 9/5 of a digit on s: after 10 hits the loss is 10^(−0.2 · 9).
 TEST(Plots, AccuracyProfilesFallWithTheDigits) {
-  const auto plot = accuracy_plot(compare_optimizers(four_problems()));
-  EXPECT_EQ(height(plot->series[0], 1.75), 1);
-  EXPECT_EQ(height(plot->series[0], 2), 0.75);
-  EXPECT_EQ(height(plot->series[0], 9.75), 0.75);
-  EXPECT_EQ(height(plot->series[0], 10.25), 0);
+  const Plot plot = accuracy_plot(compare_optimizers(four_problems())).at(0);
+  EXPECT_EQ(height(plot.series[0], 1.75), 1);
+  EXPECT_EQ(height(plot.series[0], 2), 0.75);
+  EXPECT_EQ(height(plot.series[0], 9.75), 0.75);
+  EXPECT_EQ(height(plot.series[0], 10.25), 0);
 }
 
 // Of two seeds one meets target j at 2 j, the other the first ten of 51 alone, and stops after 20.
@@ -102,8 +104,8 @@ TEST(Plots, RuntimesRestartUntilTheTargetIsMet) {
   Study study;
   study.runs = {record_of({.seed = 0, .work_per_hit = 2}),
                 record_of({.seed = 1, .hits = 10, .work_per_hit = 2, .status = Status::budget})};
-  const auto plot = runtime_plot(compare_optimizers(study));
-  const PlotSeries& line = plot->series[0];
+  const Plot plot = runtime_plot(compare_optimizers(study)).at(0);
+  const PlotSeries& line = plot.series[0];
   // After k bad attempts, each with chance ½, target j is met at 20 k + 2 j.
   Real expected = 10;
   for (int j = 10; j <= 50; ++j)
@@ -112,18 +114,20 @@ TEST(Plots, RuntimesRestartUntilTheTargetIsMet) {
   EXPECT_NEAR(height(line, 100), expected / 51, 0.05);
   EXPECT_NEAR(height(line, 1e9), 1, 1e-3);
   EXPECT_NEAR(height(line, 10), 6 / 51.0, 1e-12);  // targets 0 … 5, at 2 j
-  EXPECT_EQ(height(runtime_plot(compare_optimizers(four_problems()))->series[1], 1e9), 1);
+  EXPECT_EQ(height(runtime_plot(compare_optimizers(four_problems())).at(0).series[1], 1e9), 1);
 }
 
 TEST(Plots, AreFiguresForEveryReader) {
   const ResultFolder folder;
   write_sample_study(folder.path(), {.problems = 8, .optimizers = 9, .seeds = 3, .points = 30});
   const Study study = read_study({folder.path()});
-  const Comparison c = compare_optimizers(study);
-  ASSERT_GE(c.plots.size(), 10U);
-  const std::string page = html_report(c);
+  const Document document = document_of(compare_optimizers(study));
+  const Comparison& c = document.comparison;
+  const Section& section = document.section("statistics");
+  ASSERT_GE(section.plots.size(), 10U);
+  const std::string page = html_report(document);
   static const std::regex subject("data-s=([0-9]+)"), place("data-p=([0-9]+)"), wild("nan|inf");
-  for (const Plot& plot : c.plots) {
+  for (const Plot& plot : section.plots) {
     const std::string svg = plot_svg(plot), html = plot_html(plot);
     EXPECT_FALSE(plot.reading.empty()) << plot.id;
     EXPECT_NE(plot.caption.find("fail"), std::string::npos) << plot.id << ": " << plot.caption;
@@ -144,21 +148,22 @@ TEST(Plots, AreFiguresForEveryReader) {
 }
 
 TEST(Plots, HaveTheirNumbersInTheReport) {
-  const Comparison c = compare_optimizers(four_problems());
-  const Json plots = parse_json(json_report(c), "report").at("statistics").at("plots");
-  ASSERT_EQ(plots.size(), c.plots.size());
+  const Document document = document_of(compare_optimizers(four_problems()));
+  const Json written = parse_json(json_report(document), "report").at("statistics").at("plots");
+  const std::vector<Plot>& plots = document.section("statistics").plots;
+  ASSERT_EQ(written.size(), plots.size());
   for (std::size_t i = 0; i < plots.size(); ++i)
-    for (std::size_t s = 0; s < c.plots[i].series.size(); ++s)
-      for (std::size_t k = 0; k < c.plots[i].series[s].y.size(); ++k) {
-        const Real drawn = c.plots[i].series[s].y[k];
+    for (std::size_t s = 0; s < plots[i].series.size(); ++s)
+      for (std::size_t k = 0; k < plots[i].series[s].y.size(); ++k) {
+        const Real drawn = plots[i].series[s].y[k];
         if (std::isnan(drawn)) continue;
-        EXPECT_EQ(real_of(plots[i].at("series")[s].at("y")[k]), drawn) << c.plots[i].id;
+        EXPECT_EQ(real_of(written[i].at("series")[s].at("y")[k]), drawn) << plots[i].id;
       }
 }
 
 TEST(Plots, OfNothingAreNone) {
   const Study none;
-  EXPECT_TRUE(compare_optimizers(none).plots.empty());
+  EXPECT_TRUE(statistics_section(compare_optimizers(none)).plots.empty());
 }
 
 }  // namespace

@@ -39,7 +39,10 @@ TEST(MannWhitney, IsExactGivenTheTies) {
 TEST(MannWhitney, HasTheLeastPThatItsSizeAllows) {
   const auto apart = [](std::size_t m) {
     Sample a, b;
-    for (std::size_t i = 0; i < m; ++i) a.push_back(Real(i)), b.push_back(1000 + Real(i));
+    for (std::size_t i = 0; i < m; ++i) {
+      a.push_back(Real(i));
+      b.push_back(1000 + Real(i));
+    }
     return mann_whitney_p(a, b);
   };
   EXPECT_NEAR(apart(4), 2 / 70.0, kRounding);  // 2 / C(2m, m)
@@ -49,7 +52,10 @@ TEST(MannWhitney, HasTheLeastPThatItsSizeAllows) {
 
 TEST(MannWhitney, CrossesToTheApproximationWithoutAStep) {
   Sample a, b;  // interleaved but for a shift of four places
-  for (int i = 0; i < 50; ++i) a.push_back(2 * i), b.push_back(2 * i + 9);
+  for (int i = 0; i < 50; ++i) {
+    a.push_back(2 * i);
+    b.push_back(2 * i + 9);
+  }
   const Real exact = mann_whitney_p(a, b);
   a.push_back(50.5);
   EXPECT_NEAR(mann_whitney_p(a, b), exact, 0.02);  // one value of a hundred in the middle

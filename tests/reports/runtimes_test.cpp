@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "reports/statistics/rank_tests.h"
+#include "reports/statistics/resampling.h"
+
 namespace isoline::reports {
 namespace {
 

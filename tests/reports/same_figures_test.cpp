@@ -9,7 +9,6 @@
 
 #include "core/json.h"
 #include "reports/report.h"
-#include "reports/tables/formats.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -56,7 +55,7 @@ Rows of_json(const Json& table) {
 // Escaped bars stand in names alone, before the first that separates.
 Rows of_markdown(const std::string& report, const std::string& title) {
   Rows rows;
-  std::istringstream lines(between(report, "\n### " + title + "\n", "\n### "));
+  std::istringstream lines(between(report, "\n### " + title + "\n", "\n##"));
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("| ")) continue;
     rows.push_back(numbers_in(
@@ -122,21 +121,21 @@ class SameFigures : public testing::Test {
   SameFigures() {
     write_sample_study(folder_.path(), {.problems = 9, .optimizers = 9, .seeds = 3, .points = 30});
     study_ = read_study({folder_.path()});
-    comparison_ = compare_optimizers(study_);
-    json_ = parse_json(json_report(comparison_), "report.json");
+    document_ = document_of(compare_optimizers(study_));
+    json_ = parse_json(json_report(document_), "report.json");
   }
 
   const Json& tables() const { return json_.at("statistics").at("tables"); }
 
   ResultFolder folder_;
   Study study_;
-  Comparison comparison_;
+  Document document_;
   Json json_;
 };
 
 TEST_F(SameFigures, AreInEveryFormat) {
-  const std::string html = html_report(comparison_), markdown = markdown_report(comparison_),
-                    latex = latex_report(comparison_), csv = statistics_csv(comparison_);
+  const std::string html = html_report(document_), markdown = markdown_report(document_),
+                    latex = latex_report(document_), csv = statistics_csv(document_);
   std::size_t count = 0;
   for (const Json& table : tables()) {
     const std::string id = table.at("id"), title = table.at("title");

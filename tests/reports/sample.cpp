@@ -9,6 +9,7 @@
 #include "core/digest.h"
 #include "core/json.h"
 #include "core/ladder.h"
+#include "core/spec.h"
 #include "tests/reports/fixture.h"
 #include "tests/reports/sample_parts.h"
 
@@ -159,7 +160,7 @@ Provenance provenance() {
 
 Sheet sheet_of(const std::string& kind, const std::string& spec) {
   return {.kind = kind,
-          .name = spec.substr(0, spec.find('[')),
+          .name = name_of_spec(spec),
           .spec = spec,
           .title = kind == "problem" ? "A physical inverse problem" : "A method of descent",
           .formula = kind == "problem" ? "P(x) = (x₁, x₂²),  L = ‖P(x)‖²" : "θ ← θ − η ∇L",

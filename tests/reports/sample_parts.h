@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 
+#include "core/array.h"
 #include "core/records/sheet.h"
 
 namespace isoline::reports {

@@ -29,7 +29,7 @@ TEST(Report, OfTenThousandCellsIsWholeAndItsPageBelowEightMegabytes) {
   EXPECT_EQ(study.plan.cells.size(), std::size_t{kProblems * kOptimizers});
   EXPECT_GT(study.runs.size(), study.plan.cells.size() - 100);  // a few are missing on purpose
   EXPECT_TRUE(study.unreadable.empty());
-  write_report(compare_optimizers(study), folder / "report");
+  write_report(document_of(compare_optimizers(study)), folder / "report");
   EXPECT_LT(std::filesystem::file_size(folder / "report" / "index.html"), kMostBytes);
   const std::string csv = read_text(folder / "report" / "report.csv");
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),

@@ -75,7 +75,9 @@ TEST(Report, OfThousandsOfRecordsCountsEachOnceAndKeepsFailuresInEveryDenominato
   Tally all;
   for (const auto& row : comparison.cells)
     for (const Cell& cell : row) {
-      all.runs += cell.runs.size(), all.failed += cell.failed, all.planned += cell.planned;
+      all.runs += cell.runs.size();
+      all.failed += cell.failed;
+      all.planned += cell.planned;
       EXPECT_EQ(cell.runs.size(), kSize.seeds);
       if (!cell.is_measured()) continue;
       for (const Spread& work : cell.work) EXPECT_EQ(work.n, kSize.seeds);
@@ -92,8 +94,9 @@ TEST(Report, OfThousandsOfRecordsGivesEachARowAndStatesTheSameNumberOfFailuresEv
   const std::filesystem::path& folder = owned.path();
   write_synthetic_study(folder, kSize);
   const Study study = read_study({folder});
-  const Comparison comparison = compare_optimizers(study);
-  write_report(comparison, folder / "report");
+  const Document document = document_of(compare_optimizers(study));
+  const Comparison& comparison = document.comparison;
+  write_report(document, folder / "report");
   EXPECT_EQ(lines_of(read_text(folder / "report/report.csv")), kSize.records() + 1);  // a header
   const Json report = read_json(folder / "report/report.json");
   EXPECT_EQ(report.at("failures").size(), comparison.failures.size());

@@ -1,12 +1,10 @@
 // The tables of statistics: hand-computed cases, and the same figure in every format.
-#include "reports/tables/tables.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "reports/report.h"
-#include "reports/tables/formats.h"
+#include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -16,7 +14,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-std::string at(const StatisticTable& table, const std::string& row, const std::string& column) {
+std::string at(const Table& table, const std::string& row, const std::string& column) {
   const auto i = std::ranges::find(table.columns, column) - table.columns.begin();
   for (const auto& cells : table.rows)
     if (cells[0].text == row) return cells.at(static_cast<std::size_t>(i)).text;
@@ -34,7 +32,7 @@ TEST(Tables, MeanRanksShareTiesAndCountFailuresLast) {
                                 {"r", "a", 1},
                                 {"r", "b", 0},
                                 {"r", "c", 2}});
-  const StatisticTable table = rank_table(compare_optimizers(study));
+  const Table table = rank_table(compare_optimizers(study));
   EXPECT_EQ(at(table, "a", "mean rank"), "1.5");
   EXPECT_EQ(at(table, "b", "mean rank"), "2");
   EXPECT_EQ(at(table, "c", "mean rank"), "2.5");
@@ -83,7 +81,7 @@ TEST(Tables, LeavingOneOutFindsTheFlipThatItCauses) {
                                  {"q", "a", 16},
                                  {"q", "b", 1},
                                  {"q", "c", 0}});
-  const StatisticTable table = flip_table(compare_optimizers(turned));
+  const Table table = flip_table(compare_optimizers(turned));
   EXPECT_EQ(at(table, "c", "pairs turned round"), "1") << table.reading;
   EXPECT_EQ(at(table, "c", "first without it"), "a");
 }
@@ -96,14 +94,14 @@ TEST(Tables, PairwiseProfilesKnowNoThirdMethod) {
                                 {"q", "a", 16},
                                 {"q", "b", 1},
                                 {"q", "c", 0}});
-  const StatisticTable table = pairwise_table(compare_optimizers(study));
+  const Table table = pairwise_table(compare_optimizers(study));
   EXPECT_EQ(at(table, "a", "b"), "0.67 : 0.50 (n 2)");
 }
 
 // Work 30, 300 and never: a third within 100, two thirds within 1000.
 TEST(Tables, DataProfileCountsForwardSolvesAndKeepsFailures) {
   const Study study = study_of({{"p", "a", 1}, {"q", "a", 10}, {"r", "a", 0}});
-  const StatisticTable table = data_profile_table(compare_optimizers(study));
+  const Table table = data_profile_table(compare_optimizers(study));
   EXPECT_EQ(at(table, "a", "≤ 10"), "0 %");
   EXPECT_EQ(at(table, "a", "≤ 100"), "33 %");
   EXPECT_EQ(at(table, "a", "≤ 1000"), "67 %");
@@ -130,7 +128,7 @@ TEST(Tables, ExpectedRunningTimeCountsWhatFailedRunsSpent) {
   Study study;
   study.runs = {record_of({.seed = 0, .work_per_hit = 2}),
                 record_of({.seed = 1, .hits = 10, .work_per_hit = 2, .status = Status::budget})};
-  const StatisticTable table = restart_table(compare_optimizers(study));
+  const Table table = restart_table(compare_optimizers(study));
   EXPECT_TRUE(at(table, "gd", "square").starts_with("80 [60–")) << at(table, "gd", "square");
   EXPECT_TRUE(at(table, "gd", "square").ends_with("(1/2)")) << at(table, "gd", "square");
 }
@@ -138,7 +136,7 @@ TEST(Tables, ExpectedRunningTimeCountsWhatFailedRunsSpent) {
 // Every tenth of the 51 targets costs 10 more: by 100 all are met, by 10 the first 6 of 51.
 TEST(Tables, RuntimeDistributionCountsTargets) {
   const Study study = study_of({{"p", "a", 2}});
-  const StatisticTable table = anytime_table(compare_optimizers(study));
+  const Table table = anytime_table(compare_optimizers(study));
   EXPECT_EQ(at(table, "a", "≤ 10"), "12 %");
   EXPECT_EQ(at(table, "a", "≤ 100"), "100 %");
   EXPECT_EQ(at(table, "a", "n runs"), "1");
@@ -148,10 +146,11 @@ TEST(Tables, EveryFormatPrintsTheSameFigures) {
   const ResultFolder folder;
   write_sample_study(folder.path(), {.problems = 5, .optimizers = 6, .seeds = 3, .points = 30});
   const Study study = read_study({folder.path()});
-  const Comparison c = compare_optimizers(study);
-  const std::string html = html_report(c), markdown = markdown_report(c), latex = latex_report(c);
+  const Document document = document_of(compare_optimizers(study));
+  const std::string html = html_report(document), markdown = markdown_report(document),
+                    latex = latex_report(document);
   std::size_t count = 0;
-  for (const StatisticTable& table : statistic_tables(c)) {
+  for (const Table& table : document.section("statistics").tables) {
     EXPECT_FALSE(table.reading.empty()) << table.id;
     EXPECT_TRUE(std::ranges::any_of(table.columns,
                                     [](const std::string& name) { return name == "failed"; }) ||

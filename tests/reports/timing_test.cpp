@@ -1,5 +1,5 @@
 // Verdicts on time, over simulated jobs whose noise is drawn from streams: no clock is read.
-#include "reports/gate/timing.h"
+#include "reports/compare/timing.h"
 
 #include <gtest/gtest.h>
 

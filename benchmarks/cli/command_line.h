@@ -1,0 +1,14 @@
+// How verbs and their arguments are written on a command line.
+#pragma once
+
+#include <string>
+
+namespace isoline::benchmarks {
+
+class Session;
+
+// Runs the verb that the arguments name and returns its exit code; says what is wrong with them
+// where they name none. `program` is what the user called.
+int parse_and_run(const std::string& program, int count, char** arguments, Session& session);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,34 @@
+// isoline compare BASE NEW: what got worse, what got better.
+#include <fmt/format.h>
+
+#include "benchmarks/cli/on_terminal.h"
+#include "benchmarks/cli/verbs.h"
+#include "core/errors.h"
+#include "reports/compare/gate.h"
+
+namespace isoline::benchmarks {
+
+using reports::compare_results;
+using reports::gate_json;
+using reports::gate_markdown;
+using reports::gate_terminal;
+using reports::GateOptions;
+using reports::GateResult;
+using reports::kMostTimed;
+
+int compare_verb(const CompareArguments& given, Session&) {
+  require(given.timed.size() <= kMostTimed, [&] {
+    return fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed,
+                       given.timed.size());
+  });
+  GateOptions options{.timed = given.timed, .is_common_only = given.is_common_only};
+  if (given.tolerance >= 0) options.tolerance = given.tolerance;
+  if (given.noise >= 0) options.least_noise = given.noise;
+  options.listener = on_terminal("reading records");
+  const GateResult result = compare_results(given.before, given.after, options);
+  const auto text = given.as_json ? gate_json : given.as_markdown ? gate_markdown : gate_terminal;
+  fmt::print("{}", text(result));
+  return result.exit_code;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,59 @@
+// isoline completion bash: a script for the shell, with the names of problems and optimizers.
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "benchmarks/cli/verbs.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+// Names come from the program at each completion, so that new components are known at once.
+constexpr const char* kBash = R"(# bash completion for isoline:  source <(./isoline completion bash)
+_isoline() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} verb=${COMP_WORDS[1]}
+  local program=${COMP_WORDS[0]} list="" prefix=""
+  case $before in
+    --problem) list=$("$program" list problems --names 2>/dev/null) ;;
+    --optimizer) list=$("$program" list optimizers --names 2>/dev/null) ;;
+    --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
+    --rates) COMPREPLY=($(compgen -W "builtin none" -- "$word") $(compgen -f -- "$word")); return ;;
+  esac
+  if [[ -n $list ]]; then
+    [[ $word == *,* ]] && prefix=${word%,*},
+    COMPREPLY=($(compgen -P "$prefix" -W "$list" -- "${word##*,}"))
+    return
+  fi
+  if [[ $COMP_CWORD -eq 1 ]]; then
+    COMPREPLY=($(compgen -W "@VERBS@ --help --version" -- "$word"))
+    return
+  fi
+  case $word in
+    -*) list=$("$program" "$verb" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u) ;;
+    *) case $verb in
+         run) list=$("$program" list suites --names 2>/dev/null) ;;
+         describe) list=$("$program" list all --names 2>/dev/null) ;;
+         check) list=$("$program" list problems --names 2>/dev/null) ;;
+         claims) list=$("$program" claims --list 2>/dev/null | grep -oE '^ *[a-z0-9-]+') ;;
+         list) list="problems optimizers suites all" ;;
+         completion) list=bash ;;
+         *) COMPREPLY=($(compgen -f -- "$word")); return ;;
+       esac ;;
+  esac
+  COMPREPLY=($(compgen -W "$list" -- "$word"))
+}
+complete -o nosort -F _isoline isoline ./isoline
+)";
+
+}  // namespace
+
+int completion_verb(const CompletionArguments& given, Session&) {
+  constexpr std::string_view kPlace = "@VERBS@";
+  std::string verbs, script = kBash;
+  for (const std::string& verb : given.verbs) verbs += verb + " ";
+  script.replace(script.find(kPlace), kPlace.size(), verbs);
+  fmt::print("{}", script);
+  return kGood;
+}
+
+}  // namespace isoline::benchmarks

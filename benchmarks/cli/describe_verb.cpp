@@ -1,0 +1,109 @@
+// isoline describe NAME: what a component is, in words.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/cli/session.h"
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/run/sheets.h"
+#include "core/json.h"
+#include "core/option_json.h"
+#include "core/spec.h"
+#include "networks/network.h"
+
+namespace isoline::benchmarks {
+
+using networks::network_registry;
+using networks::NetworkEntry;
+namespace {
+
+// What was asked for, found in the catalog.
+struct Described {
+  Sheet sheet;
+  OptionTable table;
+  OptionValues options;  // as given, the rest at their defaults
+};
+
+Described described(const Catalog& catalog, const Spec& spec) {
+  if (catalog.problems.contains(spec.name)) {
+    const Component problem = complete_problem(catalog, spec);
+    return {problem_sheet(catalog, problem), catalog.problems.at(spec.name).options,
+            problem.options};
+  }
+  if (catalog.optimizers.contains(spec.name)) {
+    const Component optimizer = complete_optimizer(catalog, spec);
+    return {optimizer_sheet(catalog, optimizer), catalog.optimizers.at(spec.name).options,
+            optimizer.options};
+  }
+  std::vector<std::string> known = catalog.problems.names();
+  for (const auto& names : {catalog.optimizers.names(), network_registry().names()})
+    known.insert(known.end(), names.begin(), names.end());
+  throw UsageError(unknown_name("component", spec.name, known));
+}
+
+std::string law_of(const OptionField& field) {
+  if (!field.choices.empty()) return fmt::format("{}", fmt::join(field.choices, "|"));
+  const bool is_number =
+      std::holds_alternative<Real>(field.standard) || std::holds_alternative<Index>(field.standard);
+  return is_number ? text_of(field.range) : "";
+}
+
+void print_options(const OptionTable& table, const OptionValues& values) {
+  fmt::print("{}", table.empty() ? "\nIt has no options.\n" : "\nOptions\n");
+  for (const OptionField& field : table) {
+    const std::string value = text_of(values.at(field.name)), standard = text_of(field.standard);
+    fmt::print("  {:20} {:>12}  {:22} {}{}\n", field.name, value, law_of(field), field.doc,
+               value == standard ? "" : fmt::format(" (default: {})", standard));
+  }
+}
+
+void print(const NetworkEntry& network, const OptionValues& options, bool as_json) {
+  if (as_json) {
+    const Json json{{"kind", "network"},      {"name", network.name},
+                    {"title", network.title}, {"source", network.source},
+                    {"note", network.note},   {"options", describe_options(network.options)}};
+    return fmt::print("{}\n", json.dump(2));
+  }
+  fmt::print("{}: {} (network)\n\nSource      {}\n", network.name, network.title, network.source);
+  if (!network.note.empty()) fmt::print("Note        {}\n", network.note);
+  print_options(network.options, options);
+}
+
+void print(const Sheet& sheet) {
+  const bool is_problem = sheet.kind == "problem";
+  fmt::print("{}: {} ({})\n\n  {}\n\nSource      {}\n", sheet.name, sheet.title, sheet.kind,
+             sheet.formula, sheet.source);
+  if (!sheet.note.empty()) fmt::print("Note        {}\n", sheet.note);
+  if (is_problem)
+    fmt::print("Size        {} unknowns, {} residuals\nInverse     {}\n", sheet.unknowns,
+               sheet.residuals, sheet.inverse);
+  else
+    fmt::print("Family      {}\n", sheet.family);
+  fmt::print("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", "));
+  if (!is_problem)
+    fmt::print("Privileges  {}\n", sheet.privileges.empty()
+                                       ? "none"
+                                       : fmt::format("{}", fmt::join(sheet.privileges, "; ")));
+}
+
+}  // namespace
+
+int describe_verb(const DescribeArguments& given, Session& session) {
+  const Spec spec = parse_spec(given.name);
+  if (network_registry().contains(spec.name)) {
+    const NetworkEntry& network = network_registry().at(spec.name);
+    print(network, complete_options(network.options, spec.name, options_of(spec)), given.as_json);
+    return kGood;
+  }
+  const Described found = described(session.catalog(), spec);
+  if (given.as_json) {
+    fmt::print("{}\n", to_json(found.sheet).dump(2));
+    return kGood;
+  }
+  print(found.sheet);
+  print_options(found.table, found.options);
+  return kGood;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,65 @@
+// isoline list: what there is.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/cli/session.h"
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/suite.h"
+#include "core/json.h"
+#include "networks/network.h"
+
+namespace isoline::benchmarks {
+
+using networks::network_registry;
+namespace {
+
+Json listing(Session& session, const std::string& kind) {
+  Json all = Json::object();
+  if (kind == "all" || kind == "problems")
+    for (const auto& [name, entry] : session.catalog().problems)
+      all["problems"].push_back({{"name", name}, {"title", entry.title}, {"source", entry.source}});
+  if (kind == "all" || kind == "networks")
+    for (const auto& [name, entry] : network_registry())
+      all["networks"].push_back({{"name", name}, {"title", entry.title}, {"source", entry.source}});
+  if (kind == "all" || kind == "optimizers")
+    for (const auto& [name, entry] : session.catalog().optimizers)
+      all["optimizers"].push_back({{"name", name},
+                                   {"title", entry.title},
+                                   {"family", name_of(entry.family)},
+                                   {"source", entry.source}});
+  if (kind == "all" || kind == "suites")
+    for (const auto& [name, text] : builtin_suites())
+      all["suites"].push_back({{"name", name}, {"title", read_suite(name).title}});
+  return all;
+}
+
+void print(const Json& all, bool names_only) {
+  for (const auto& [kind, entries] : all.items()) {
+    if (!names_only) fmt::print("{} {}\n", entries.size(), kind);
+    for (const Json& entry : entries) {
+      const auto name = entry.at("name").get<std::string>();
+      if (names_only)
+        fmt::print("{}\n", name);
+      else
+        fmt::print("  {:24} {}\n", name, entry.at("title").get<std::string>());
+    }
+    if (!names_only) fmt::print("\n");
+  }
+  if (!names_only) fmt::print("isoline describe NAME tells more of each.\n");
+}
+
+}  // namespace
+
+int list_verb(const ListArguments& given, Session& session) {
+  const Json all = listing(session, given.kind);
+  if (given.as_json)
+    fmt::print("{}\n", all.dump(2));
+  else
+    print(all, given.names_only);
+  return kGood;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,35 @@
+// The one call of the report from the command line, with the claims that the runs decide.
+#include "benchmarks/cli/reporting.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/cli/session.h"
+
+namespace isoline::benchmarks {
+
+using reports::compare_optimizers;
+using reports::Document;
+using reports::document_of;
+using reports::judge;
+using reports::Judgement;
+using reports::Study;
+using reports::terminal_table;
+using reports::write_report;
+
+std::vector<Judgement> judged(const std::vector<Claim>& claims, const std::vector<Record>& runs) {
+  return judge(json_of(claims), runs);
+}
+
+void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,
+                     bool quiet) {
+  std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
+  std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
+  const Document document = document_of(compare_optimizers(study), std::move(claims));
+  write_report(document, out);
+  if (!quiet)
+    fmt::print("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string());
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,139 @@
+// isoline run: the whole matrix, then its report.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+
+#include "benchmarks/audit/audit.h"
+#include "benchmarks/cli/on_terminal.h"
+#include "benchmarks/cli/reporting.h"
+#include "benchmarks/cli/session.h"
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/filter.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/preview.h"
+#include "benchmarks/run/run_plan.h"
+#include "benchmarks/run/soundness.h"
+#include "core/spec.h"
+
+namespace isoline::benchmarks {
+
+using reports::read_study;
+using reports::Study;
+namespace {
+
+namespace fs = std::filesystem;
+
+// What is to be run, under which name, and where.
+struct Undertaking {
+  std::string name;
+  std::vector<Request> requests;
+  fs::path folder;
+};
+
+void override_blocks(const RunArguments& given, Suite& suite) {
+  for (MatrixBlock& block : suite.blocks) {
+    if (!given.seeds.empty()) block.seeds = parse_seeds(given.seeds);
+    if (given.iterations > 0) block.budget.iterations = given.iterations;
+    if (given.work > 0) block.budget.work = given.work;
+    if (given.target >= 0) block.budget.target = given.target;
+    if (!given.time.empty()) block.budget.seconds = parse_duration(given.time);
+    if (given.threads > 0) block.threads = given.threads;
+  }
+}
+
+// A suite, whole or the part of it that --problem and --optimizer keep; or a matrix of these alone.
+// Only a whole suite goes to the folder of its name: a part there would pass for the whole.
+Undertaking undertaking_of(const RunArguments& given, const Catalog& catalog) {
+  const bool is_limited = !given.problem.empty() || !given.optimizer.empty();
+  const bool is_suite = !given.suite.empty() || !is_limited;
+  Suite suite;
+  if (is_suite) {
+    suite = read_suite(given.suite.empty() ? "quick" : given.suite);
+  } else {
+    suite.name = "custom";
+    suite.blocks = {{.problems = {given.problem.empty() ? "*" : given.problem},
+                     .optimizers = {given.optimizer.empty() ? "*" : given.optimizer}}};
+  }
+  override_blocks(given, suite);
+  Undertaking all{suite.name, expand(catalog, suite, Rates::named(given.rates)), given.out};
+  if (is_suite && is_limited)
+    all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
+  if (!all.folder.empty()) return all;
+  const std::string title = is_suite ? suite.name : "";
+  all.folder = fs::path("results") / (is_limited ? folder_name_of(all.requests, title) : title);
+  return all;
+}
+
+std::string fate_of(const PreviewedCell& cell) {
+  if (cell.is_cached) return "cached";
+  return cell.why_inapplicable.empty() ? "run" : "inapplicable: " + cell.why_inapplicable;
+}
+
+void print_plan(const Undertaking& all, int jobs, bool lists_all, Session& session) {
+  constexpr std::size_t kMost = 20;
+  const std::vector<PreviewedCell> cells = preview(session.catalog(), all.requests, all.folder);
+  double seconds = 0;
+  std::size_t cached = 0, inapplicable = 0;
+  for (const PreviewedCell& cell : cells) {
+    cached += cell.is_cached;
+    inapplicable += !cell.is_cached && !cell.why_inapplicable.empty();
+    seconds += cell.seconds;
+  }
+  fmt::print("{} cells: {} cached, {} inapplicable, {} to run, about {} with {} at a time\n",
+             cells.size(), cached, inapplicable, cells.size() - cached - inapplicable,
+             duration_text(seconds / jobs), jobs);
+  fmt::print("result folder: {}\n", all.folder.string());
+  const std::size_t listed = lists_all ? cells.size() : std::min(kMost, cells.size());
+  for (std::size_t i = 0; i < listed; ++i) {
+    const Request& request = *cells[i].request;
+    fmt::print("{:28} {:44} seed {:<4} {}\n", request.problem.spec, request.optimizer.spec,
+               request.seed, fate_of(cells[i]));
+  }
+  if (listed < cells.size()) fmt::print("… and {} more; --all lists them\n", cells.size() - listed);
+}
+
+// The properties at default options of all optimizers that ever ran in this folder.
+std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const Study& study) {
+  std::set<std::string> names;
+  for (const Record& record : study.runs)
+    if (const std::string& name = record.request.optimizer.name; catalog.optimizers.contains(name))
+      names.insert(name);
+  return audit_all(catalog, {names.begin(), names.end()});
+}
+
+void report_on(const fs::path& out, bool quiet, Session& session) {
+  Study study = read_study({out});
+  if (study.runs.empty()) return;  // interrupted before the first record
+  study.audits = audit_of(session.catalog(), study);
+  write_audit(study.audits, out / "audit.json");
+  if (!quiet) fmt::print("\n");
+  write_and_print(study, out / "report", session, quiet);
+}
+
+}  // namespace
+
+int run_verb(const RunArguments& given, Session& session) {
+  const Catalog& catalog = session.catalog();
+  const Undertaking all = undertaking_of(given, catalog);
+  RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
+                     .force = given.force,
+                     .exclusive = given.exclusive,
+                     .repeat = given.repeat,
+                     .command = session.command()};
+  if (given.exclusive) options.jobs = 1;
+  if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
+  if (!given.quiet) options.progress = Progress::style_of(STDERR_FILENO);
+  if (given.is_dry) {
+    require_sound(catalog, all.requests);
+    print_plan(all, options.jobs, given.lists_all, session);
+    return kGood;
+  }
+  const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options);
+  print_outcome(outcome, given.quiet);
+  if (!given.no_report) report_on(all.folder, given.quiet, session);
+  return exit_code_of(outcome);
+}
+
+}  // namespace isoline::benchmarks

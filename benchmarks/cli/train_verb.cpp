@@ -1,0 +1,95 @@
+// isoline train PROBLEM --out FILE: trains one network and keeps it, for `isoline infer`.
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "benchmarks/cli/session.h"
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/execute.h"
+#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/soundness.h"
+#include "benchmarks/run/trained.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+Request request_of(const TrainArguments& given, const Catalog& catalog) {
+  const Spec problem_spec = parse_spec(given.problem), spec = parse_spec(given.optimizer);
+  OptionValues options = options_of(problem_spec);
+  if (!options.contains("mode")) options.set("mode", "learn");
+  const Component problem = complete_problem(catalog, problem_spec.name, options);
+  require(problem.is_learned, "train: mode=direct leaves nothing to train");
+  const Rates rates = Rates::builtin();
+  return named({.problem = problem,
+                .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
+                .seed = given.seed,
+                .budget = {.iterations = given.iterations, .target = 0},
+                .threads = given.threads,
+                .rates = ""});
+}
+
+bool is_trained(const Trace& trace) {
+  return trace.status == Status::budget || trace.status == Status::converged;
+}
+
+// In the worker: the run, then the network with its statistics.
+void train_and_write(const Catalog& catalog, const Request& request, const std::string& out,
+                     Trace& trace) {
+  Vector theta;
+  execute(catalog, request, trace, {}, &theta);
+  if (!is_trained(trace)) return;
+  const Problem problem = make_problem(catalog, request.problem, request.seed);
+  write_network({.problem = request.problem,
+                 .optimizer = request.optimizer,
+                 .seed = request.seed,
+                 .iterations = trace.last.iteration,
+                 .loss = trace.last.loss,
+                 .x_error = trace.last.x_error,
+                 .theta = theta,
+                 .statistics = averaged_statistics(problem, theta, trace.last.iteration)},
+                out);
+}
+
+void show(const Trace& trace, std::int64_t iterations, const char* end) {
+  fmt::print(stderr, "\riteration {} of {}, loss {:.3g}, error in x {:.3g}   {}",
+             trace.last.iteration, iterations, trace.last.loss, trace.last.x_error, end);
+}
+
+// How far it has come, as a line that each call overwrites.
+void watch(Worker& worker, std::int64_t iterations, bool is_shown) {
+  while (!worker.poll()) {
+    constexpr int kMilliseconds = 200;
+    pollfd ending{worker.descriptor(), POLLIN, 0};
+    ::poll(&ending, 1, kMilliseconds);
+    if (is_shown) show(worker.trace(), iterations, "");
+  }
+  if (is_shown) show(worker.trace(), iterations, "\n");
+}
+
+}  // namespace
+
+int train_verb(const TrainArguments& given, Session& session) {
+  const Request request = request_of(given, session.catalog());
+  require_sound(session.catalog(), {request});
+  Worker worker;
+  constexpr double kForever = 1e9;
+  worker.start([&](Trace& trace) { train_and_write(session.catalog(), request, given.out, trace); },
+               {.hard_seconds = kForever, .memory_bytes = std::int64_t{8} << 30}, request.threads);
+  watch(worker, given.iterations, !given.quiet && isatty(STDERR_FILENO) != 0);
+  const Trace& trace = worker.trace();
+  require(trace.status != Status::inapplicable, [&] {
+    return fmt::format("{} cannot train {}: {}", request.optimizer.spec, request.problem.spec,
+                       trace.message);
+  });
+  if (!is_trained(trace)) {
+    fmt::print(stderr, "isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message);
+    return kWorse;
+  }
+  fmt::print("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n", given.out,
+             request.problem.spec, request.optimizer.spec, trace.last.iteration, trace.last.loss,
+             trace.last.x_error);
+  return kGood;
+}
+
+}  // namespace isoline::benchmarks

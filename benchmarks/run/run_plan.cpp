@@ -1,0 +1,63 @@
+// A plan stored, sheeted and run; and what its folder is called.
+#include "benchmarks/run/run_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "benchmarks/run/sheets.h"
+#include "benchmarks/run/soundness.h"
+#include "core/digest.h"
+#include "core/records/plan.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
+  std::vector<PlannedCell> cells;
+  for (const Request& request : requests)
+    cells.push_back({request.cell, request.problem.spec, request.optimizer.spec, request.seed});
+  return cells;
+}
+
+// The distinct names in order, "-a-b"; or how many there are, "-17-problems".
+std::string names_of(const std::vector<Request>& requests, Component Request::*component,
+                     const char* many) {
+  constexpr std::size_t kMostNamed = 3;
+  std::vector<std::string> names;
+  for (const Request& request : requests)
+    if (const std::string& name = (request.*component).name;
+        std::ranges::find(names, name) == names.end())
+      names.push_back(name);
+  if (names.size() > kMostNamed) return fmt::format("-{}-{}", names.size(), many);
+  std::string text;
+  for (const std::string& name : names) text += "-" + name;
+  return text;
+}
+
+}  // namespace
+
+Outcome run_plan(const Catalog& catalog, const std::string& name,
+                 const std::vector<Request>& requests, const std::filesystem::path& folder,
+                 const RunOptions& options) {
+  require_sound(catalog, requests);
+  Store store(folder);
+  store.plan(name, planned_cells(requests));
+  write_sheets(catalog, requests, store);
+  return run_all(catalog, requests, store, options);
+}
+
+std::string folder_name_of(const std::vector<Request>& requests, const std::string& title) {
+  constexpr std::size_t kDigits = 8;
+  std::vector<std::string> cells;
+  for (const Request& request : requests) cells.push_back(request.cell);
+  std::ranges::sort(cells);  // the order of the words on the command line does not matter
+  std::string all;
+  for (const std::string& cell : cells) all += cell;
+  const std::string names = title + names_of(requests, &Request::problem, "problems") +
+                            names_of(requests, &Request::optimizer, "optimizers");
+  return fmt::format("{}-{}", names.substr(names.starts_with('-') ? 1 : 0),
+                     digest(all).substr(0, kDigits));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,23 @@
+// A plan from its first file to its last record: what `run`, `claims` and `tune` have in common.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "benchmarks/run/runner.h"
+
+namespace isoline::benchmarks {
+
+// UsageError, and nothing written, where a component of the plan cannot be made. Else the plan is
+// stored in the folder before anything runs, so that a part never passes for the whole; then the
+// sheets of its components; then its cells are run.
+Outcome run_plan(const Catalog& catalog, const std::string& name,
+                 const std::vector<Request>& requests, const std::filesystem::path& folder,
+                 const RunOptions& options);
+
+// A folder name that says what is planned and differs where the cells do:
+// "square-rosenbrock-gd-1a2b3c4d". `title` opens it where there is one.
+std::string folder_name_of(const std::vector<Request>& requests, const std::string& title = "");
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,25 @@
+// What a gate remembers of results: a line a cell, small enough to stand in a repository.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/compare/subject.h"
+
+namespace isoline::reports {
+
+inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
+
+struct Baseline {
+  std::vector<Subject> subjects;
+  BestKnown minima;  // where a problem declares none
+};
+
+// Keeps what is compared bit for bit (status, build, digest of the trace, final figures, work to
+// the tolerances of the tables), and neither curves nor times. `perturbed` holds runs of the same
+// cells from starts perturbed in the last bit, a study a perturbation: how far they moved is kept.
+std::string baseline_json(const Study& study, const std::vector<Study>& perturbed = {});
+
+Baseline baseline_from_json(const Json& json);  // UsageError where it is no such file
+
+}  // namespace isoline::reports

@@ -1,0 +1,94 @@
+// Judges chaotic results by their status and their coarse targets.
+#include "reports/compare/chaos.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+using Reached = std::array<bool, kTolerances.size()>;
+
+Reached reached_by(const Subject& subject) {
+  Reached reached{};
+  for (std::size_t t = 0; t < reached.size(); ++t) {
+    const std::string name = work_quantity(kTolerances[t].tau, kNever).name;
+    const auto at = std::ranges::find(subject.quantities, name, &Quantity::name);
+    reached[t] = at != subject.quantities.end() && at->value < kNever;
+  }
+  return reached;
+}
+
+Difference difference_in(const Subject& subject, Change change) {
+  return {.change = change,
+          .key = subject.key,
+          .title = subject.title,
+          .what = "",
+          .before = "",
+          .after = "",
+          .relative = 0,
+          .note = "chaotic: judged by status and coarse targets"};
+}
+
+std::optional<Difference> status_difference(const Subject& before, const Subject& after) {
+  std::set<std::string> seen(before.perturbed->states.begin(), before.perturbed->states.end());
+  seen.insert(before.state);
+  if (seen.contains(after.state)) return std::nullopt;
+  int least = before.badness, most = before.badness;
+  for (const std::string& state : before.perturbed->states) {
+    const int badness = badness_of(status_named(state));
+    least = std::min(least, badness);
+    most = std::max(most, badness);
+  }
+  const Change change = after.badness > most    ? Change::worse
+                        : after.badness < least ? Change::better
+                                                : Change::changed;
+  Difference difference = difference_in(before, change);
+  difference.what = "status";
+  difference.before = joined({seen.begin(), seen.end()}, " or ");
+  difference.after = after.state;
+  if (change != Change::changed) difference.relative = change == Change::worse ? kNever : -kNever;
+  return difference;
+}
+
+}  // namespace
+
+Perturbed perturbed_of(const Subject& unperturbed, const std::vector<Subject>& perturbed) {
+  Perturbed found;
+  for (const Subject& subject : perturbed) {
+    found.moved = std::max(found.moved, movement(unperturbed, subject));
+    found.states.push_back(subject.state);
+    const Reached reached = reached_by(subject);
+    for (std::size_t t = 0; t < reached.size(); ++t) found.reached[t] += reached[t];
+  }
+  return found;
+}
+
+bool is_chaotic(const Subject& subject, const std::optional<Real>& tolerance) {
+  return tolerance && subject.perturbed && subject.perturbed->moved > *tolerance;
+}
+
+std::vector<Difference> coarse_differences(const Subject& before, const Subject& after) {
+  std::vector<Difference> all;
+  if (auto difference = status_difference(before, after)) all.push_back(std::move(*difference));
+  const Reached then = reached_by(before), now = reached_by(after);
+  const Perturbed& others = *before.perturbed;
+  for (std::size_t t = 0; t < now.size(); ++t) {
+    const bool by_all = then[t] && others.reached[t] == others.states.size();
+    const bool by_none = !then[t] && others.reached[t] == 0;
+    if (now[t] ? !by_none : !by_all) continue;
+    Difference difference = difference_in(before, now[t] ? Change::better : Change::worse);
+    difference.what = fmt::format("target {}", kTolerances[t].name);
+    difference.before = now[t] ? "missed" : "reached";
+    difference.after = now[t] ? "reached" : "missed";
+    difference.relative = now[t] ? -kNever : kNever;
+    all.push_back(std::move(difference));
+  }
+  return all;
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,63 @@
+// Words for changes, ratios and counts.
+#include "reports/compare/gate_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+// "+5 %", "12×" for more than tenfold; empty where no ratio says anything.
+std::string relative_text(Real relative) {
+  constexpr Real kTimes = 9;
+  if (relative == 0 || std::abs(relative) == kNever) return "";
+  if (relative > kTimes) return fmt::format("{:.3g}×", 1 + relative);
+  return fmt::format("{}{:.3g} %", relative > 0 ? "+" : "−", 100 * std::abs(relative));
+}
+
+}  // namespace
+
+const char* name_of(Change change) {
+  if (change == Change::changed) return "changed";
+  return change == Change::worse ? "worse" : "better";
+}
+
+const char* name_of_time(int change) {
+  if (change == 0) return "same";
+  return change > 0 ? "slower" : "faster";
+}
+
+std::string remainder_text(const Difference& difference) {
+  const std::string relative = relative_text(difference.relative);
+  if (relative.empty() || difference.note.empty()) return relative + difference.note;
+  return relative + ", " + difference.note;
+}
+
+std::string ratio_text(const RatioEstimate& ratio) {
+  return fmt::format("{:.3g}× ({:.3g} to {:.3g})", ratio.ratio, ratio.low, ratio.high);
+}
+
+std::string noise_text(const TimeVerdict& time) { return fmt::format("±{}", percent(time.noise)); }
+
+std::string headline_of(const GateResult& result) {
+  const auto count = [&](Change change) {
+    return std::ranges::count(result.differences, change, &Difference::change);
+  };
+  return fmt::format(
+      "{} cells in both: {} equal, {} chaotic, {} not comparable; differences: {} worse, {} better, "
+      "{} changed",
+      result.joined, result.equal, result.chaotic, result.incomparable.size(), count(Change::worse),
+      count(Change::better), count(Change::changed));
+}
+
+std::vector<std::string> lines_of(const std::vector<Incomparable>& all) {
+  std::vector<std::string> lines;
+  for (const Incomparable& one : all) lines.push_back(one.title + ": " + one.reason);
+  return lines;
+}
+
+}  // namespace isoline::reports

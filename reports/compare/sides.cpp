@@ -1,0 +1,98 @@
+// Reads the two sides of a comparison: result folders, a baseline, reports.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+#include "core/json.h"
+#include "reports/compare/baseline.h"
+#include "reports/compare/gate.h"
+#include "reports/formats/formats.h"
+
+namespace isoline::reports {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Side {
+  fs::path path;
+  Json file;  // null of a result folder
+
+  bool is_folder() const { return file.is_null(); }
+  bool is_baseline() const {
+    return file.is_object() && file.value("schema", "") == kBaselineSchema;
+  }
+};
+
+Side side_of(const fs::path& path) {
+  require(fs::exists(path),
+          [&] { return fmt::format("no result folder, baseline or report: {}", path.string()); });
+  return {path, fs::is_directory(path) ? Json() : read_json(path)};
+}
+
+void remark_on(const Study& study, const std::filesystem::path& path,
+               std::vector<std::string>& remarks) {
+  if (!study.unreadable.empty())
+    remarks.push_back(
+        fmt::format("{} files of {} could not be read", study.unreadable.size(), path.string()));
+  if (study.superseded > 0)
+    remarks.push_back(
+        fmt::format("{} older records of {} are left aside for newer builds of their "
+                    "cells",
+                    study.superseded, path.string()));
+}
+
+GateResult compare_reports(const Side& before, const Side& after, const GateOptions& options) {
+  const auto subjects_in = [](const Side& side) {
+    if (!side.is_folder()) return subjects_of_report(side.file);
+    const Study study = read_study({side.path});
+    return subjects_of_report(
+        parse_json(json_report(document_of(compare_optimizers(study))), side.path.string()));
+  };
+  GateResult result = compare_subjects(subjects_in(before), subjects_in(after), options);
+  result.remarks.push_back("reports hold no repetitions: time is judged on record folders only");
+  return result;
+}
+
+GateResult compare_with_baseline(const Side& before, const fs::path& after,
+                                 const GateOptions& options) {
+  const Baseline baseline = baseline_from_json(before.file);
+  const Study study = read_study({after}, options.listener);
+  GateResult result =
+      compare_subjects(baseline.subjects, subjects_of(study, baseline.minima), options);
+  result.remarks.push_back("a baseline holds no times: none is judged");
+  remark_on(study, after, result.remarks);
+  return result;
+}
+
+GateResult compare_folders(const fs::path& before, const fs::path& after,
+                           const GateOptions& options) {
+  std::vector<std::string> remarks;
+  std::optional<BestKnown> reference;
+  const auto subjects_in = [&](const fs::path& folder) {
+    const Study study = read_study({folder}, options.listener);  // one at a time is in memory
+    remark_on(study, folder, remarks);
+    if (!reference) reference.emplace(study);
+    return subjects_of(study, *reference);
+  };
+  const std::vector<Subject> old_subjects = subjects_in(before);
+  GateResult result = compare_subjects(old_subjects, subjects_in(after), options);
+  result.remarks.insert(result.remarks.end(), remarks.begin(), remarks.end());
+  return result;
+}
+
+}  // namespace
+
+GateResult compare_results(const fs::path& before, const fs::path& after,
+                           const GateOptions& options) {
+  const Side old = side_of(before), now = side_of(after);
+  if (old.is_baseline() || now.is_baseline()) {
+    require(old.is_baseline() && now.is_folder(),
+            "a baseline is compared with a result folder: isoline compare BASELINE RESULTS");
+    return compare_with_baseline(old, after, options);
+  }
+  if (old.is_folder() && now.is_folder()) return compare_folders(before, after, options);
+  return compare_reports(old, now, options);
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,93 @@
+// Escapes foreign text for each format.
+#include "reports/formats/escape.h"
+
+#include <algorithm>
+#include <span>
+
+namespace isoline::reports {
+namespace {
+
+struct Escape {
+  char letter;
+  std::string_view text;
+};
+
+constexpr Escape kHtml[] = {
+    {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+
+// An @ would notify a stranger on a forge, a # link to some issue.
+constexpr Escape kMarkdown[] = {{'&', "&amp;"}, {'<', "&lt;"},  {'>', "&gt;"}, {'@', "&#64;"},
+                                {'#', "&#35;"}, {'\\', "\\\\"}, {'|', "\\|"},  {'`', "\\`"},
+                                {'*', "\\*"},   {'_', "\\_"},   {'[', "\\["},  {']', "\\]"},
+                                {'~', "\\~"},   {'$', "\\$"}};
+
+// A bracket or star after \\ would be its argument.
+constexpr Escape kLatex[] = {{'\\', "\\textbackslash{}"},
+                             {'^', "\\textasciicircum{}"},
+                             {'~', "\\textasciitilde{}"},
+                             {'<', "\\textless{}"},
+                             {'>', "\\textgreater{}"},
+                             {'|', "\\textbar{}"},
+                             {'"', "''"},
+                             {'[', "{[}"},
+                             {']', "{]}"},
+                             {'*', "{*}"},
+                             {'{', "\\{"},
+                             {'}', "\\}"},
+                             {'$', "\\$"},
+                             {'&', "\\&"},
+                             {'#', "\\#"},
+                             {'_', "\\_"},
+                             {'%', "\\%"}};
+
+// Control characters become blanks: no text from a record breaks a line or a cell.
+std::string escaped(std::string_view text, std::span<const Escape> escapes) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 8);
+  for (const char letter : text) {
+    const auto at = std::ranges::find(escapes, letter, &Escape::letter);
+    const auto byte = static_cast<unsigned char>(letter);
+    if (at != escapes.end())
+      out += at->text;
+    else
+      out += byte < ' ' || byte == 127 ? ' ' : letter;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string html_text(std::string_view text) { return escaped(text, kHtml); }
+
+std::string markdown_text(std::string_view text) { return escaped(text, kMarkdown); }
+
+std::string latex_text(std::string_view text) {
+  std::string ascii;  // pdflatex stops at a character that its fonts lack
+  for (const char letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (byte < 0x80)
+      ascii += letter;
+    else if (byte >= 0xC0)
+      ascii += '?';
+  }
+  return escaped(ascii, kLatex);
+}
+
+std::string csv_field(std::string_view text) {
+  std::string field = escaped(text, {});
+  const bool is_formula = !field.empty() && std::string_view("=+-@").find(field[0]) < 4;
+  if (is_formula) field.insert(0, 1, '\'');  // a spreadsheet would run it
+  if (field.find_first_of(",\"'") == std::string::npos) return field;
+  std::string quoted = "\"";
+  for (const char letter : field) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  return quoted + '"';
+}
+
+std::string terminal_text(std::string_view text) {
+  std::string safe(text);
+  for (char& letter : safe)
+    if (static_cast<unsigned char>(letter) < ' ' || letter == 127) letter = '?';
+  return safe;
+}
+
+}  // namespace isoline::reports

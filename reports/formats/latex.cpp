@@ -1,0 +1,117 @@
+// The tables of a report in LaTeX, in the style of booktabs, ready to paste; wide and long ones in
+// several, so that each fits a page of an article.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "reports/formats/escape.h"
+#include "reports/formats/formats.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr std::size_t kMostColumns = 7;  // beside the names of the rows
+constexpr std::size_t kMostRows = 45;
+constexpr std::size_t kLongHeading = 10;  // characters: longer ones are turned upright
+
+// The marks of a table in the letters that LaTeX has.
+std::string marked_text(std::string_view text) {
+  struct Mark {
+    std::string_view letter, command;
+  };
+  constexpr Mark kMarks[] = {
+      {"✗", "$\\times$"}, {"–", "--"},        {"≤", "$\\le$"},
+      {"≥", "$\\ge$"},    {"−", "$-$"},       {"†", "\\textsuperscript{\\textdagger}"},
+      {"₀", "$_0$"},      {"×", "$\\times$"}, {"é", "\\'e"},
+      {"µ", "$\\mu$"},    {"±", "$\\pm$"},    {"→", "$\\to$"},
+      {"°", "$^\\circ$"}, {"α", "$\\alpha$"}, {"’", "'"}};
+  std::string out, plain;
+  while (!text.empty()) {
+    const auto* mark =
+        std::ranges::find_if(kMarks, [&](const Mark& one) { return text.starts_with(one.letter); });
+    if (mark == std::end(kMarks)) {
+      plain += text.front();
+      text.remove_prefix(1);
+      continue;
+    }
+    out += latex_text(plain) + std::string(mark->command);
+    plain.clear();
+    text.remove_prefix(mark->letter.size());
+  }
+  return out + latex_text(plain);
+}
+
+std::string cell_text(const TableCell& cell) {
+  std::string text = marked_text(cell.text);
+  if (cell.is_best) text = fmt::format("\\textbf{{{}}}", text);
+  if (!cell.remark.empty()) text += fmt::format("\\,{{\\tiny {}}}", marked_text(cell.remark));
+  return text;
+}
+
+std::string heading_text(const Table& table, std::size_t column) {
+  const std::string text = marked_text(table.columns[column]);
+  const bool is_upright =
+      table.align_of(column) == 'r' && table.columns[column].size() > kLongHeading;
+  return is_upright ? fmt::format("\\rotatebox{{90}}{{{}}}", text) : text;
+}
+
+std::string caption_of(const Table& table, const Part& part) {
+  std::string text;
+  if (!table.title.empty()) text += marked_text(table.title) + ". ";
+  if (!table.reading.empty()) text += marked_text(table.reading) + " ";
+  text += marked_text(table.caption);
+  for (std::size_t i = part.first; i < part.last && i < table.meanings.size(); ++i)
+    text += fmt::format("{}: {}. ", marked_text(table.columns[i]), marked_text(table.meanings[i]));
+  return text;
+}
+
+std::string row_text(const Table& table, const Part& part, const std::vector<TableCell>& row) {
+  std::string text = "    " + cell_text(row[0]);
+  for (std::size_t i = 1; i < table.names; ++i) text += " & " + cell_text(row[i]);
+  if (row.size() < table.columns.size())
+    return text + fmt::format(" & \\multicolumn{{{}}}{{l}}{{{}}}", part.last - part.first,
+                              cell_text(row.back()));
+  for (std::size_t i = part.first; i < part.last; ++i) text += " & " + cell_text(row[i]);
+  return text;
+}
+
+using Rows = std::span<const std::vector<TableCell>>;
+
+std::string part_text(const Table& table, const Part& part, Rows rows, const std::string& caption) {
+  std::string align, heading;
+  const auto add = [&](std::size_t column) {
+    align += table.align_of(column);
+    heading += (column == 0 ? "    " : " & ") + heading_text(table, column);
+  };
+  for (std::size_t i = 0; i < table.names; ++i) add(i);
+  for (std::size_t i = part.first; i < part.last; ++i) add(i);
+  std::string text = fmt::format(
+      "\\begin{{table}}[p]\n  \\centering\n  \\scriptsize\n  \\setlength{{\\tabcolsep}}{{3pt}}\n"
+      "  \\caption{{{}}}\n  \\begin{{tabular}}{{{}}}\n    \\toprule\n{} \\\\\n    \\midrule\n",
+      caption, align, heading);
+  for (const auto& row : rows) text += row_text(table, part, row) + " \\\\\n";
+  return text + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n\n";
+}
+
+}  // namespace
+
+// A table of sentences or commands does not fit a page.
+std::string latex_report(const Document& document) {
+  std::string text = "% \\usepackage{booktabs,graphicx}\n", first = document.headline + ". ", last;
+  if (!document.incomplete.empty())
+    last = fmt::format(" \\textbf{{Incomplete: {} of {} cells.}}", document.comparison.answered,
+                       document.comparison.planned);
+  for (const Section& section : document.sections)
+    for (const Table& table : section.tables)
+      for (std::size_t row = 0; row < table.rows.size() && !table.is_wordy(); row += kMostRows)
+        for (const Part& part : parts_of(table, kMostColumns)) {
+          const std::string caption = latex_text(first) + caption_of(table, part) + last;
+          const std::size_t rows = std::min(kMostRows, table.rows.size() - row);
+          text += part_text(table, part, Rows(table.rows).subspan(row, rows), caption);
+          first.clear();
+        }
+  return text;
+}
+
+}  // namespace isoline::reports

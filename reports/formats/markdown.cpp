@@ -1,0 +1,86 @@
+// The report as Markdown, short enough for the summary of a CI job.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/formats/escape.h"
+#include "reports/formats/formats.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr std::size_t kMostRows = 60;  // of a table, so that a summary stays a summary
+
+std::string cell_text(const TableCell& cell) {
+  std::string text = markdown_text(cell.text);
+  if (cell.is_best) text = "**" + text + "**";
+  if (!cell.remark.empty()) text += fmt::format(" ({})", markdown_text(cell.remark));
+  return text;
+}
+
+// Columns [first, last) beside the names of the rows.
+std::string part_text(const Table& table, const Part& part) {
+  const auto line = [&](const auto& of_column) {
+    std::string text = "|";
+    for (std::size_t i = 0; i < table.names; ++i) text += of_column(i);
+    for (std::size_t i = part.first; i < part.last; ++i) text += of_column(i);
+    return text + "\n";
+  };
+  std::string text =
+      line([&](std::size_t i) { return " " + markdown_text(table.columns[i]) + " |"; });
+  text += line([&](std::size_t i) { return table.align_of(i) == 'r' ? "---:|" : "---|"; });
+  for (std::size_t row = 0; row < std::min(table.rows.size(), kMostRows); ++row)
+    text += line([&](std::size_t i) {
+      const auto& cells = table.rows[row];
+      return i < cells.size() ? " " + cell_text(cells[i]) + " |" : "";
+    });
+  return text + "\n";
+}
+
+std::string table_text(const Table& table) {
+  std::string text;
+  if (!table.title.empty()) text += fmt::format("### {}\n\n", markdown_text(table.title));
+  if (!table.reading.empty()) text += markdown_text(table.reading) + "\n\n";
+  if (table.rows.empty()) return text;
+  if (table.is_folded) text += "<details><summary>Table</summary>\n\n";
+  const std::size_t most = table.most_columns > 0 ? table.most_columns : table.columns.size();
+  Table whole = table;
+  whole.parts.clear();
+  for (const Part& part : parts_of(whole, most)) text += part_text(table, part);
+  if (table.rows.size() > kMostRows)
+    text += fmt::format("{} more rows are in the page.\n\n", table.rows.size() - kMostRows);
+  for (std::size_t i = 1; i < table.meanings.size(); ++i)
+    text +=
+        fmt::format("{}: {}. ", markdown_text(table.columns[i]), markdown_text(table.meanings[i]));
+  if (!table.caption.empty()) text += markdown_text(table.caption);
+  return text + (table.is_folded ? "\n\n</details>\n\n" : "\n\n");
+}
+
+std::string section_text(const Section& section) {
+  if (section.is_empty()) return "";
+  std::string text = fmt::format("\n## {}\n\n", markdown_text(section.title));
+  if (!section.lead.empty()) text += markdown_text(section.lead) + "\n\n";
+  for (const Reading& reading : section.readings)
+    text += fmt::format(
+        "- {}{}\n",
+        reading.title.empty() ? "" : fmt::format("**{}:** ", markdown_text(reading.title)),
+        markdown_text(reading.text));
+  if (!section.readings.empty()) text += "\n";
+  for (const Table& table : section.tables) text += table_text(table);
+  return text;
+}
+
+}  // namespace
+
+std::string markdown_report(const Document& document) {
+  std::string text =
+      fmt::format("# Isoline report\n\n{}. Status: {}.\n\n", document.headline, document.statuses);
+  if (!document.incomplete.empty())
+    text += fmt::format("> **Incomplete: {}**\n\n", markdown_text(document.incomplete));
+  for (const std::string& remark : document.remarks)
+    text += fmt::format("- {}\n", markdown_text(remark));
+  for (const Section& section : document.sections) text += section_text(section);
+  return text;
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,197 @@
+// All aggregates as JSON, schema isoline.report/1. `figures` are the same for the same build, so
+// that two reports can be compared; times are not, nor costs, which are at measured prices.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/digest.h"
+#include "core/json.h"
+#include "reports/formats/formats.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+Json to_json(const Spread& spread) {
+  return {{"median", json_number(spread.median)},
+          {"low", json_number(spread.low)},
+          {"high", json_number(spread.high)},
+          {"n", spread.n},
+          {"unsolved", spread.unsolved}};
+}
+
+Json to_json(const std::map<Status, std::size_t>& statuses) {
+  Json json = Json::object();
+  for (const auto& [status, count] : statuses) json[std::string(name_of(status))] = count;
+  return json;
+}
+
+Json by_tolerance(const std::array<Spread, kTolerances.size()>& spreads) {
+  Json json = Json::object();
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    json[std::string(kTolerances[t].name)] = to_json(spreads[t]);
+  return json;
+}
+
+// Which requests stand behind a pair, so that two reports compare like with like.
+std::string asked_digest(const Comparison& c, const Cell& cell) {
+  std::set<std::string> cells;
+  for (const std::size_t run : cell.runs) cells.insert(c.runs[run].record->cell);
+  return digest(joined({cells.begin(), cells.end()}, " "));
+}
+
+std::set<std::string> builds_of(const Comparison& c, const Cell& cell) {
+  std::set<std::string> builds;
+  for (const std::size_t run : cell.runs) builds.insert(c.runs[run].record->build);
+  return builds;
+}
+
+// Raw counts until the tightest tolerance was met, of each run that met it, by oracle and seed.
+Json calls_json(const Comparison& c, const Cell& cell) {
+  Json json = Json::object();
+  for (const std::size_t index : cell.runs) {
+    const Run& run = c.runs[index];
+    if (run.work[kTightest] == kNever) continue;
+    const OracleCounts counts = counts_at(*run.record, run.work[kTightest]);
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      json[std::string(kOracleNames[kind])].push_back(counts[kind]);
+  }
+  for (auto it = json.begin(); it != json.end();)
+    if (std::ranges::all_of(*it, [](const Json& count) { return count == 0; }))
+      it = json.erase(it);
+    else
+      ++it;
+  return json;
+}
+
+Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
+  const Cell& cell = c.cell(p, s);
+  Json json{{"problem", c.problems[p].spec}, {"optimizer", c.optimizers[s].label},
+            {"planned", cell.planned},       {"runs", cell.runs.size()},
+            {"failed", cell.failed},         {"statuses", to_json(cell.statuses)},
+            {"privileges", cell.privileges}, {"asked", asked_digest(c, cell)},
+            {"builds", builds_of(c, cell)}};
+  if (!cell.inapplicable.empty()) json["inapplicable"] = cell.inapplicable;
+  if (!cell.is_measured()) return json;
+  json["figures"] = {{"work", by_tolerance(cell.work)}, {"loss", to_json(cell.loss)}};
+  if (cell.x_error.n > 0) json["figures"]["x_error"] = to_json(cell.x_error);
+  json["costs"] = by_tolerance(cell.cost);
+  json["calls"] = calls_json(c, cell);
+  json["times"] = {{"seconds", by_tolerance(cell.seconds)}, {"timed_alone", cell.is_timed_alone}};
+  return json;
+}
+
+Json profiles_json(const Comparison& c) {
+  Json json = Json::object();
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+    const Profile& profile = c.profiles[t];
+    Json lines = Json::object();
+    for (std::size_t s = 0; s < profile.solvers.size(); ++s)
+      lines[c.optimizers[s].label] = {{"problems", profile.solvers[s].problems},
+                                      {"ratios", profile.solvers[s].ratios}};
+    json[std::string(kTolerances[t].name)] = {{"optimizers", lines},
+                                              {"reading", profile_reading(c, t)}};
+  }
+  return json;
+}
+
+Json standing_json(const Standing& standing) {
+  return {{"solved", standing.solved},
+          {"wins", standing.wins},
+          {"reached", standing.reached},
+          {"typical", json_number(standing.typical)},
+          {"score", standing.score}};
+}
+
+// Best first.
+Json standings_json(const Comparison& c) {
+  Json list = Json::array();
+  for (const OptimizerAxis& optimizer : c.optimizers) {
+    Json json{{"optimizer", optimizer.label},       {"family", optimizer.family()},
+              {"privileges", optimizer.privileges}, {"planned", optimizer.planned},
+              {"applicable", optimizer.applicable}, {"runs", optimizer.runs},
+              {"failed", optimizer.failed}};
+    for (std::size_t t = 0; t < kTolerances.size(); ++t)
+      json["standings"][std::string(kTolerances[t].name)] = standing_json(optimizer.standings[t]);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json leader_json(const Comparison& c, const std::optional<Leader>& leader) {
+  if (!leader) return nullptr;
+  return {{"optimizer", c.optimizers[leader->optimizer].label},
+          {"stays_first", leader->stays_first}};
+}
+
+Json missing_json(const Comparison& c) {
+  Json list = Json::array();
+  for (const PlannedCell& cell : c.missing)
+    list.push_back({{"cell", cell.cell},
+                    {"problem", cell.problem},
+                    {"optimizer", cell.optimizer},
+                    {"seed", cell.seed}});
+  return list;
+}
+
+Json failures_json(const Comparison& c) {
+  Json list = Json::array();
+  for (const std::size_t run : c.failures) {
+    const Record& record = *c.runs[run].record;
+    list.push_back({{"cell", record.cell},
+                    {"status", name_of(record.status)},
+                    {"message", record.message},
+                    {"command", rerun_command(record.request)}});
+  }
+  return list;
+}
+
+Json audit_json(const Document& document) {
+  Json json = audit_to_json(document.comparison.study->audits);
+  json["readings"] = Json::array();
+  for (const Reading& reading : document.section("audit").readings)
+    json["readings"].push_back({{"property", reading.title}, {"sentence", reading.text}});
+  return json;
+}
+
+Json verdict_json(const Document& document) {
+  Json sentences = Json::array();
+  for (const Reading& reading : document.section("standings").readings)
+    sentences.push_back(reading.text);
+  return sentences;
+}
+
+}  // namespace
+
+std::string json_report(const Document& document) {
+  const Comparison& c = document.comparison;
+  Json cells = Json::array(), unreadable = Json::array();
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (c.cell(p, s).planned > 0) cells.push_back(cell_json(c, p, s));
+  for (const Unreadable& file : c.study->unreadable)
+    unreadable.push_back({{"file", file.file.filename().string()}, {"reason", file.reason}});
+  const Json json{{"schema", kReportSchema},
+                  {"suites", c.study->plan.suites},
+                  {"planned", c.planned},
+                  {"answered", c.answered},
+                  {"missing", missing_json(c)},
+                  {"statuses", to_json(c.statuses)},
+                  {"seeds", c.seeds},
+                  {"superseded", c.study->superseded},
+                  {"unreadable", unreadable},
+                  {"failures", failures_json(c)},
+                  {"verdict", verdict_json(document)},
+                  {"claims", claims_json(document.claims)},
+                  {"audit", audit_json(document)},
+                  {"leader", leader_json(c, c.leader)},
+                  {"open_leader", leader_json(c, c.open_leader)},
+                  {"optimizers", standings_json(c)},
+                  {"profiles", profiles_json(c)},
+                  {"statistics", statistics_json(document)},
+                  {"cells", cells}};
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,255 @@
+// Plain text within a hundred columns: the standings and the best of each problem, of a small study
+// every cell; and any section.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/formats/escape.h"
+#include "reports/formats/formats.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr std::size_t kWidest = 100;    // columns
+constexpr std::size_t kFewCells = 40;   // so many are shown in full
+constexpr std::size_t kMostNames = 40;  // characters of a name before it is cut
+
+// Characters, not bytes: what a column holds.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char letter) { return (static_cast<unsigned char>(letter) & 0xC0) != 0x80; }));
+}
+
+std::string left(std::string text, std::size_t width) {
+  while (width_of(text) < width) text += ' ';
+  return text;
+}
+std::string right(std::string text, std::size_t width) {
+  const std::size_t own = width_of(text);
+  return std::string(width > own ? width - own : 0, ' ') + std::move(text);
+}
+
+std::string name_of_spec(const std::string& spec) {
+  std::string name = terminal_text(shown_spec(spec));
+  return name.size() > kMostNames ? name.substr(0, kMostNames - 3) + "..." : name;
+}
+
+std::string label_of(const OptimizerAxis& optimizer) {
+  return name_of_spec(optimizer.label) + (optimizer.privileges.empty() ? "" : " †");
+}
+
+std::size_t widest_label(const Comparison& c) {
+  std::size_t width = 10;
+  for (const OptimizerAxis& each : c.optimizers) width = std::max(width, width_of(label_of(each)));
+  return width;
+}
+
+// Breaks between words.
+std::string wrapped(const std::string& text) {
+  std::string out;
+  std::size_t column = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    if (column > 0 && column + 1 + width_of(word) > kWidest) {
+      out += "\n";
+      column = 0;
+    }
+    out += (column > 0 ? " " : "") + word;
+    column += width_of(word) + (column > 0 ? 1 : 0);
+    at = end + 1;
+  }
+  return out + "\n";
+}
+
+std::string standings(const Comparison& c) {
+  const std::size_t width = widest_label(c);
+  std::string text = "\n" + left("", width + 4) +
+                     "  solved  best on  x least      runs  failed  solved at 1e-3  at 1e-1\n";
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const OptimizerAxis& optimizer = c.optimizers[s];
+    const Standing& standing = optimizer.tightest();
+    text += fmt::format("{:>2}  {}", s + 1, left(label_of(optimizer), width));
+    text += right(fmt::format("{}/{}", standing.solved, optimizer.planned), 8);
+    text += right(standing.wins == 0 ? "." : std::to_string(standing.wins), 9);
+    text += right(standing.typical == kNever ? "✗" : fmt::format("{:.3g}", standing.typical), 9);
+    text += right(fmt::format("{}/{}", standing.reached, optimizer.runs), 10);
+    text += right(optimizer.failed == 0 ? "." : std::to_string(optimizer.failed), 8);
+    text += right(std::to_string(optimizer.standings[1].solved), 16);
+    text += right(std::to_string(optimizer.standings[0].solved), 9) + "\n";
+  }
+  return text + "\n" +
+         wrapped(
+             "Ranked by their performance profiles at 1e-6, the share of the first loss that may "
+             "be left. solved: problems where the median over seeds gets there, of those given to "
+             "it; best on: with the least work of all; x least: median over problems of its work "
+             "over the least, ✗ if it solves fewer than half; runs: that get there; failed: "
+             "errors, crashes, time or memory limits.");
+}
+
+// "sine             sip † 2", two a line where they fit.
+std::string best_of_each(const Comparison& c) {
+  std::vector<std::string> lines;
+  std::size_t width = 0, longest = 0;
+  for (const ProblemAxis& problem : c.problems)
+    width = std::max(width, width_of(name_of_spec(problem.spec)));
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const std::vector<std::size_t> order = ranking(c, p);
+    const bool is_solved = !order.empty() && c.cell(p, order[0]).work[kTightest].is_solved();
+    const std::string best = is_solved
+                                 ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
+                                               figure(c.cell(p, order[0]).work[kTightest].median))
+                                 : "nobody";
+    lines.push_back("  " + left(name_of_spec(c.problems[p].spec), width) + "  " + best);
+    longest = std::max(longest, width_of(lines.back()));
+  }
+  const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
+  std::string text = "\nLeast median work to 1e-6, in forward solves\n";
+  for (std::size_t i = 0; i < half; ++i) {
+    const bool is_pair = half < lines.size() && i + half < lines.size();
+    text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";
+  }
+  return text;
+}
+
+std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size_t width) {
+  const Cell& cell = c.cell(p, s);
+  std::string line = "  " + left(label_of(c.optimizers[s]), width);
+  if (cell.runs.empty()) return line + "  missing\n";
+  if (!cell.is_measured()) return line + "  n/a: " + terminal_text(cell.inapplicable) + "\n";
+  const Spread& work = cell.work[kTightest];
+  line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6);
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    line += right(reached_figure(cell.work[t].median) + (cell.is_best[t] ? "*" : " "), 8);
+  const Spread& seconds = cell.seconds[kTightest];
+  const bool is_marked = !cell.is_timed_alone && seconds.is_solved();
+  line += right(milliseconds(seconds.median) + (is_marked ? "≈" : " "), 9);
+  return line + right(reached_figure(cell.loss.median), 11) + "  " + status_text(cell.statuses) +
+         "\n";
+}
+
+std::string every_cell(const Comparison& c) {
+  const std::size_t width = widest_label(c);
+  std::string text;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    text +=
+        fmt::format("\n{}\n{}", terminal_text(shown_spec(c.problems[p].spec)), left("", width + 2));
+    text += "  runs  to 1e-1    1e-3    1e-6       ms        loss  status\n";
+    for (const std::size_t s : ranking(c, p)) text += line_of(c, p, s, width);
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
+  }
+  std::string marks =
+      "Median work in forward solves until 1e-1, 1e-3, 1e-6 of the first loss is left; runs: that "
+      "reach 1e-6; ms to 1e-6; final loss. * least of its problem, ✗ not reached by half of the "
+      "runs, n/a: makes no sense";
+  if (c.is_any_timed_together) marks += ", ≈ timed beside other runs";
+  return text + "\n" + wrapped(marks + ".");
+}
+
+std::string failure_lines(const Comparison& c) {
+  constexpr std::size_t kMost = 10;
+  std::vector<std::string> lines;
+  for (const std::size_t run : c.failures) {
+    const Record& record = *c.runs[run].record;
+    lines.push_back(fmt::format("{}: {} / {} / seed {}: {}", name_of(record.status),
+                                record.request.problem.spec, record.request.optimizer.spec,
+                                record.request.seed, record.message));
+  }
+  for (const Unreadable& file : c.study->unreadable)
+    lines.push_back(fmt::format("unreadable: {}: {}", file.file.string(), file.reason));
+  std::string text;
+  for (std::size_t i = 0; i < lines.size() && i < kMost; ++i)
+    text += terminal_text(lines[i]) + "\n";
+  if (lines.size() > kMost) text += fmt::format("and {} more\n", lines.size() - kMost);
+  return text.empty() ? "" : "\n" + text;
+}
+
+// Columns [first, last) of a table below each other, as wide as they must be.
+std::string block(const Table& table, const Part& part) {
+  std::vector<std::vector<std::string>> lines(1);
+  const auto add = [&](const std::string& text) { lines.back().push_back(terminal_text(text)); };
+  for (std::size_t i = 0; i < table.names; ++i) add(table.columns[i]);
+  for (std::size_t i = part.first; i < part.last; ++i) add(table.columns[i]);
+  const std::size_t whole = lines[0].size();
+  for (const auto& row : table.rows) {
+    lines.emplace_back();
+    for (std::size_t i = 0; i < table.names; ++i) add(row[i].text);
+    if (row.size() < table.columns.size()) add(row.back().text);
+    for (std::size_t i = part.first; i < part.last && row.size() == table.columns.size(); ++i)
+      add(row[i].text);
+  }
+  std::vector<std::size_t> widths(whole, 0);
+  for (const auto& line : lines)
+    for (std::size_t i = 0; i < line.size() && (i == 0 || line.size() == whole); ++i)
+      widths[i] = std::max(widths[i], width_of(line[i]));
+  std::string text;
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i)
+      text += i + 1 < line.size() ? left(line[i], widths[i]) + "  " : line[i];
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += "\n";
+  }
+  return text + "\n";
+}
+
+// A row of sentences as a paragraph.
+std::string paragraph(const Table& table, std::size_t row) {
+  const auto& cells = table.rows[row];
+  const std::string id = row < table.row_topics.size() ? table.row_topics[row].id : "";
+  std::string text =
+      fmt::format("{}{}\n", id.empty() ? "" : id + ": ", terminal_text(cells[0].text));
+  if (!cells[0].remark.empty()) text += "  " + terminal_text(cells[0].remark) + "\n";
+  for (std::size_t i = 1; i < cells.size(); ++i)
+    if (!cells[i].text.empty())
+      text += fmt::format("  {}: {}\n", table.columns[i], terminal_text(cells[i].text));
+  return text;
+}
+
+std::string table_text(const Table& table) {
+  std::string text = table.title.empty() ? "" : terminal_text(table.title) + "\n";
+  if (!table.reading.empty()) text += wrapped(terminal_text(table.reading));
+  if (table.is_wordy())
+    for (std::size_t row = 0; row < table.rows.size(); ++row) text += paragraph(table, row);
+  else
+    for (const Part& part : parts_of(table, table.columns.size())) text += block(table, part);
+  for (std::size_t i = 1; i < table.meanings.size(); ++i)
+    text += fmt::format("  {}: {}\n", table.columns[i], table.meanings[i]);
+  return text + (table.caption.empty() ? "" : wrapped(table.caption));
+}
+
+}  // namespace
+
+std::string terminal_section(const Section& section) {
+  std::string text;
+  for (const Table& table : section.tables) text += table_text(table) + "\n";
+  for (const Reading& reading : section.readings)
+    text +=
+        wrapped((reading.title.empty() ? "" : reading.title + ": ") + terminal_text(reading.text));
+  if (!section.lead.empty()) text += wrapped(section.lead);
+  return section.is_empty() ? section.otherwise + "\n" : text;
+}
+
+std::string terminal_table(const Document& document) {
+  const Comparison& c = document.comparison;
+  std::size_t cells = 0;
+  for (const auto& row : c.cells)
+    cells += static_cast<std::size_t>(
+        std::ranges::count_if(row, [](const Cell& cell) { return cell.planned > 0; }));
+  const bool has_privileges = std::ranges::any_of(
+      c.optimizers, [](const OptimizerAxis& optimizer) { return !optimizer.privileges.empty(); });
+  std::string text = document.headline + "\n";
+  if (!document.incomplete.empty())
+    text += wrapped("INCOMPLETE: " + terminal_text(document.incomplete));
+  if (cells <= kFewCells)
+    text += every_cell(c);
+  else
+    text += standings(c) + best_of_each(c) + "\n";
+  for (const Reading& sentence : document.section("standings").readings)
+    text += wrapped(terminal_text(sentence.text));
+  if (has_privileges) text += "† sees what others do not.\n";
+  return text + failure_lines(c);
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,187 @@
+// One section an optimizer: formula, requirements, options, wins and failures, read in a sentence.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/json.h"
+#include "reports/formats/escape.h"
+#include "reports/page/page.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+std::string list_html(const std::vector<std::string>& words) { return html_text(joined(words)); }
+
+std::string problem_link(const Comparison& c, std::size_t p, const std::string& remark) {
+  return fmt::format("<li data-p={0}><a href=\"#problem-{0}\">{1}</a>{2}</li>", p,
+                     html_text(shown_spec(c.problems[p].spec)),
+                     remark.empty() ? "" : " <small>" + html_text(remark) + "</small>");
+}
+
+// Its problems by what became of them, each list in order of the problems.
+struct Deeds {
+  std::string won, unsolved, failed, inapplicable;
+};
+
+Deeds deeds_of(const Comparison& c, std::size_t s) {
+  Deeds deeds;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const Cell& cell = c.cell(p, s);
+    if (cell.runs.empty()) continue;
+    if (!cell.is_measured()) {
+      deeds.inapplicable += problem_link(c, p, cell.inapplicable);
+      continue;
+    }
+    const Spread& work = cell.work[kTightest];
+    if (cell.is_best[kTightest])
+      deeds.won += problem_link(c, p, fmt::format("{} forward solves", figure(work.median)));
+    if (cell.failed > 0) {
+      const Record* failed = nullptr;
+      for (const std::size_t run : cell.runs)
+        if (is_failure(c.runs[run].record->status)) failed = c.runs[run].record;
+      deeds.failed += problem_link(
+          c, p, fmt::format("{} of {} runs: {}", cell.failed, cell.runs.size(), failed->message));
+    } else if (!work.is_solved()) {
+      deeds.unsolved +=
+          problem_link(c, p,
+                       fmt::format("{}; final loss {} at best", status_text(cell.statuses),
+                                   figure(cell.loss.low)));
+    }
+  }
+  return deeds;
+}
+
+std::string row(const char* term, const std::string& content) {
+  return content.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>", term, content);
+}
+std::string list_row(const char* term, const std::string& items) {
+  return items.empty() ? "" : row(term, "<ul>" + items + "</ul>");
+}
+
+// "0.01", or "0.001 to 14.7, 9 values" where a table of rates or a sweep chose by problem.
+std::string values_of(const Comparison& c, std::size_t s, const std::string& option) {
+  std::vector<OptionValue> values;
+  for (const auto& problem : c.cells)
+    for (const std::size_t run : problem[s].runs) {
+      const OptionValues& options = c.runs[run].record->request.optimizer.options;
+      if (const OptionValue* at = options.find(option)) values.push_back(*at);
+    }
+  std::ranges::sort(values);
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  const auto text = [](const OptionValue& value) {
+    if (const Real* number = std::get_if<Real>(&value)) return figure(*number);
+    if (const Index* number = std::get_if<Index>(&value)) return figure(Real(*number));
+    return text_of(value);
+  };
+  if (values.empty()) return "";
+  if (values.size() == 1) return text(values[0]);
+  if (values.front().index() < 2)  // numbers
+    return fmt::format("{} to {}, {} values", text(values.front()), text(values.back()),
+                       values.size());
+  std::vector<std::string> words;
+  for (const OptionValue& value : values) words.push_back(text(value));
+  return joined(words);
+}
+
+std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet) {
+  const Json options =
+      sheet.options_text.empty() ? Json() : parse_json(sheet.options_text, "sheet");
+  if (!options.is_array() || options.empty()) return "";
+  const auto text_at = [](const Json& option, const char* key) {
+    const auto at = option.find(key);
+    if (at == option.end()) return std::string();
+    return at->is_string()   ? at->get<std::string>()
+           : at->is_number() ? figure(at->get<Real>())
+                             : at->dump();
+  };
+  std::string rows;
+  for (const Json& option : options)
+    rows += fmt::format("<tr><th scope=row>{}<td>{}<td>{}<td class=text>{}<td class=text>{}\n",
+                        html_text(text_at(option, "name")), html_text(text_at(option, "default")),
+                        html_text(values_of(c, s, text_at(option, "name"))),
+                        html_text(text_at(option, "doc")), html_text(text_at(option, "range")));
+  return fmt::format(
+      "<details><summary>Options</summary><div class=scroll tabindex=0 role=region "
+      "aria-label=\"Options of {}\"><table><thead><tr><th scope=col>option<th scope=col>default"
+      "<th scope=col>in these runs<th scope=col>what it is<th scope=col>range<tbody>{}</table>"
+      "</div></details>",
+      html_text(sheet.name), rows);
+}
+
+// What its figures amount to.
+std::string reading(const Comparison& c, std::size_t s) {
+  const OptimizerAxis& axis = c.optimizers[s];
+  const Standing& standing = axis.tightest();
+  if (axis.runs == 0) return axis.applicable == 0 ? "It applies to none of these problems." : "";
+  std::string text =
+      fmt::format("Ranked {} of {}: solves {} of {} problem{} to 1e-6", s + 1, c.optimizers.size(),
+                  standing.solved, axis.planned, axis.planned == 1 ? "" : "s");
+  if (standing.wins > 0) text += fmt::format(", {} with the least work of all", standing.wins);
+  if (standing.typical < kNever)
+    text += fmt::format(", typically for {:.3g}× the least work", standing.typical);
+  return text + fmt::format("; {} of {} runs get there{}.", standing.reached, axis.runs,
+                            axis.failed > 0 ? fmt::format(", {} failed", axis.failed) : "");
+}
+
+std::string sheet_html(const OptimizerAxis& axis) {
+  if (axis.sheet == nullptr) return "";
+  const Sheet& sheet = *axis.sheet;
+  std::string html =
+      fmt::format("<p class=about>{} <cite>{}</cite></p><p class=formula>{}</p>",
+                  html_text(sheet.title), html_text(sheet.source), html_text(sheet.formula));
+  if (!sheet.note.empty()) html += fmt::format("<p class=note>{}</p>", html_text(sheet.note));
+  return html;
+}
+
+std::string optimizer_html(const Comparison& c, std::size_t s) {
+  const OptimizerAxis& axis = c.optimizers[s];
+  const Deeds deeds = deeds_of(c, s);
+  std::string html = fmt::format(
+      "<article class=optimizer id=optimizer-{0} data-s={0}><h3>{1}{2}</h3>{3}"
+      "<p class=reading>{4}</p><dl>",
+      s, html_text(shown_spec(axis.label)), dagger(axis.privileges), sheet_html(axis),
+      html_text(reading(c, s)));
+  if (axis.sheet != nullptr)
+    html += row("family", html_text(family_title(axis.sheet->family))) +
+            row("asks for", list_html(axis.sheet->oracles));
+  if (!axis.privileges.empty())
+    html += row("sees", "<span class=privilege>" + list_html(axis.privileges) + "</span>");
+  html += list_row("best on", deeds.won) + list_row("does not solve", deeds.unsolved) +
+          list_row("failed on", deeds.failed) + list_row("not applicable to", deeds.inapplicable);
+  return html + "</dl>" + (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) +
+         "</article>\n";
+}
+
+}  // namespace
+
+std::string family_title(const std::string& family) {
+  static const std::map<std::string, std::string> kTitles = {
+      {"first-order", "First order"},
+      {"curvature", "Curvature"},
+      {"inversion", "Inversion of the physics"},
+      {"ceres", "Ceres"},
+      {"nlopt", "NLopt, with gradients"},
+      {"nlopt-derivative-free", "NLopt, without derivatives"}};
+  const auto at = kTitles.find(family);
+  return at != kTitles.end() ? at->second : family.empty() ? "Others" : family;
+}
+
+std::string optimizers_html(const Comparison& c) {
+  std::map<std::string, std::string> families;  // links to the sections
+  std::string html;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    families[family_title(c.optimizers[s].family())] +=
+        fmt::format("<a href=\"#optimizer-{0}\" data-s={0}>{1}</a>\n", s,
+                    html_text(shown_spec(c.optimizers[s].label)));
+    html += optimizer_html(c, s);
+  }
+  std::string index;
+  for (const auto& [family, links] : families)
+    index += fmt::format("<p class=index><b>{}</b> {}</p>", html_text(family), links);
+  return index + html;
+}
+
+}  // namespace isoline::reports

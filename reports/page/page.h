@@ -1,0 +1,35 @@
+// Parts of the HTML page. An element with data-s or data-p, the index of an optimizer or problem,
+// is hidden where the reader filters that one out; with both, where either is.
+#pragma once
+
+#include <string>
+
+#include "reports/sections/document.h"
+
+namespace isoline::reports {
+
+// A section as every other: sentences, plots, tables. Complete without scripts.
+std::string section_html(const Section& section);
+std::string plot_html(const Plot& plot);
+std::string plot_svg(const Plot& plot);
+
+// What the scripts redraw, and what no other format has.
+std::string standings_html(const Comparison& comparison);
+std::string matrix_html(const Comparison& comparison);
+std::string details_html(const Comparison& comparison);
+std::string glance_html(const Comparison& comparison);      // the first screen
+std::string problems_html(const Comparison& comparison);    // one article each
+std::string optimizers_html(const Comparison& comparison);  // one article each
+std::string figures_html(const Document& document);
+
+// What the charts draw, as JSON that is safe inside a script element.
+std::string page_data(const Document& document);
+std::string figures_json(const std::vector<Figure>& figures);
+std::string json_quoted(const std::string& text);
+
+// A dagger that tells what an optimizer sees; empty where it sees no more than others.
+std::string dagger(const std::vector<std::string>& privileges);
+
+std::string family_title(const std::string& family);
+
+}  // namespace isoline::reports

@@ -1,0 +1,186 @@
+// The tables of the page. Scripts sort and filter them; without scripts they are complete.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/formats/escape.h"
+#include "reports/page/page.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+// How far from the best, as a class of the style sheet: h0 the least, then by factors of two.
+std::string heat(Real work, Real least) {
+  constexpr Real kDarkest = 7;
+  const Real doublings = std::log2(std::max(work, 1.0) / std::max(least, 1.0));
+  return fmt::format("h{:.0f}", std::min(std::ceil(doublings), kDarkest));
+}
+
+std::string shown_html(const std::string& spec) { return html_text(shown_spec(spec)); }
+
+// Cells and rows are left open, as HTML allows: with ten thousand of them it is a megabyte.
+std::string matrix_cell(const Cell& cell, std::size_t p, Real least) {
+  const std::string text = matrix_text(cell, kTightest);
+  if (cell.planned == 0) return fmt::format("<td data-p={} class=none>", p);
+  if (cell.runs.empty()) return fmt::format("<td data-p={} class=lost>missing", p);
+  if (!cell.is_measured()) return fmt::format("<td data-p={} class=na>n/a", p);
+  const Spread& work = cell.work[kTightest];
+  const bool is_partial = work.unsolved > 0 && work.unsolved < work.n;
+  const bool is_told = is_partial || cell.failed > 0 || cell.planned > cell.runs.size();
+  const std::string count =
+      is_told ? fmt::format("<small>{}</small>", count_text(cell, kTightest)) : "";
+  if (!work.is_solved()) return fmt::format("<td data-p={} class=no>✗{}", p, count);
+  return fmt::format("<td data-p={} class={}>{}{}", p,
+                     cell.is_best[kTightest] ? "\"h0 best\"" : heat(work.median, least), text,
+                     count);
+}
+
+Real least_work(const Comparison& c, std::size_t problem) {
+  Real least = kNever;
+  for (const Cell& cell : c.cells[problem]) least = std::min(least, cell.work[kTightest].median);
+  return least;
+}
+
+std::string spread_cell(const Spread& spread, const char* kind = "") {
+  if (spread.n == 0) return "<td>";
+  const std::string range = range_figure(spread, reached_figure);
+  return fmt::format("<td{}>{}{}", kind, reached_figure(spread.median),
+                     range.empty() ? "" : "<small>" + range + "</small>");
+}
+
+std::string time_cell(const Spread& seconds, bool is_timed_alone) {
+  const std::string range = range_figure(seconds, milliseconds);
+  return fmt::format("<td>{}{}{}", milliseconds(seconds.median),
+                     is_timed_alone || !seconds.is_solved() ? "" : "≈",
+                     range.empty() ? "" : "<small>" + range + "</small>");
+}
+
+// "0..2", where the seeds of a cell follow each other and were asked for alike; else the first.
+std::string seeds_of(const Comparison& c, const Cell& cell) {
+  const Request& first = c.runs[cell.runs.front()].record->request;
+  std::uint64_t next = first.seed;
+  for (const std::size_t run : cell.runs) {
+    const Request& request = c.runs[run].record->request;
+    const bool is_alike = request.optimizer.spec == first.optimizer.spec &&
+                          budget_options(request) == budget_options(first);
+    if (request.seed != next++ || !is_alike) return fmt::format("={}", first.seed);
+  }
+  const std::uint64_t last = next - 1;
+  return first.seed == last ? fmt::format("={}", last) : fmt::format("{}..{}", first.seed, last);
+}
+
+// What the command that repeats a cell has of its own, for scripts to put together: which budget,
+// the seeds, and the optimizer where its name in the row is not its spec.
+std::string again_cell(const Comparison& c, const Cell& cell, std::size_t s,
+                       std::vector<std::string>& budgets) {
+  const Request& request = c.runs[cell.runs[0]].record->request;
+  const std::string budget = budget_options(request), &spec = request.optimizer.spec;
+  const auto at = std::ranges::find(budgets, budget);
+  const auto place = at - budgets.begin();
+  if (at == budgets.end()) budgets.push_back(budget);
+  const bool is_shown = shown_spec(c.optimizers[s].label) == spec;
+  return fmt::format("<td data-again=\"{} {}{}\">", place, seeds_of(c, cell),
+                     is_shown ? "" : " " + html_text(spec));
+}
+
+std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
+                       std::vector<std::string>& budgets) {
+  const Cell& cell = c.cell(p, s);
+  std::string row =
+      fmt::format("<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, shown_html(c.problems[p].spec),
+                  shown_html(c.optimizers[s].label), cell.privileges.empty() ? "" : "<sup>†</sup>");
+  if (!cell.is_measured()) {
+    row += cell.runs.empty() ? "<td>" : "<td>n/a";
+    for (int empty = 0; empty < 8; ++empty) row += "<td>";
+    return row + fmt::format("<td>{}<td>\n", cell.runs.empty()
+                                                 ? "missing"
+                                                 : "n/a: " + html_text(cell.inapplicable));
+  }
+  row += fmt::format("<td>{}", count_text(cell, kTightest));
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    row += spread_cell(cell.work[t], cell.is_best[t] ? " class=best" : "");
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    row += time_cell(cell.seconds[t], cell.is_timed_alone);
+  row += spread_cell(cell.loss) + spread_cell(cell.x_error);
+  return row +
+         fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, s, budgets));
+}
+
+std::string standing_row(const Comparison& c, std::size_t s) {
+  const OptimizerAxis& optimizer = c.optimizers[s];
+  const Standing& standing = optimizer.tightest();
+  const Real share =
+      optimizer.planned == 0 ? 0 : 100 * Real(standing.solved) / Real(optimizer.planned);
+  return fmt::format(
+      "<tr data-s={}><td>{}<th scope=row><a href=\"#optimizer-{}\">{}</a>{}<td>{:.3f}<td "
+      "class=bar><i style=--w:{:.0f}></i>{}<small>/{}</small>"
+      "<td>{}<td>{}<td>{}<small>/{}</small><td{}>{}\n",
+      s, s + 1, s, shown_html(optimizer.label), dagger(optimizer.privileges), standing.score, share,
+      standing.solved, optimizer.planned, standing.wins == 0 ? "·" : std::to_string(standing.wins),
+      standing.typical == kNever ? "✗" : fmt::format("{:.3g}×", standing.typical), standing.reached,
+      optimizer.runs, optimizer.failed > 0 ? " class=lost" : "",
+      optimizer.failed == 0 ? "·" : std::to_string(optimizer.failed));
+}
+
+}  // namespace
+
+std::string standings_html(const Comparison& c) {
+  std::string html =
+      "<table class=\"standings sortable\" id=standings-table><caption>Standings to 1e-6"
+      "</caption><thead><tr><th scope=col>#<th scope=col>optimizer<th scope=col>score"
+      "<th scope=col>problems solved<th scope=col>best on<th scope=col>× least work"
+      "<th scope=col>runs<th scope=col>failed<tbody>\n";
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += standing_row(c, s);
+  return html + "</table>";
+}
+
+std::string matrix_html(const Comparison& c) {
+  std::string html =
+      "<table class=matrix id=matrix><caption>Median work to 1e-6, in forward solves</caption>"
+      "<thead><tr><th scope=col>optimizer<th scope=col>solved";
+  std::vector<Real> least;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    html += fmt::format("<th scope=col data-p={0}><a href=\"#problem-{0}\"><span>{1}</span></a>", p,
+                        shown_html(c.problems[p].spec));
+    least.push_back(least_work(c, p));
+  }
+  html += "<tbody>\n";
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const OptimizerAxis& optimizer = c.optimizers[s];
+    html += fmt::format(
+        "<tr data-s={0}><th scope=row><a href=\"#optimizer-{0}\">{1}</a>{2}"
+        "<td class=solved>{3}<small>/{4}</small>",
+        s, shown_html(optimizer.label), dagger(optimizer.privileges), optimizer.tightest().solved,
+        optimizer.planned);
+    for (std::size_t p = 0; p < c.problems.size(); ++p)
+      html += matrix_cell(c.cell(p, s), p, least[p]);
+    html += "\n";
+  }
+  return html + "</table>";
+}
+
+std::string details_html(const Comparison& c) {
+  std::string rows;
+  std::vector<std::string> budgets;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s, budgets);
+  std::vector<std::string> quoted;
+  for (const std::string& budget : budgets) quoted.push_back(json_quoted(budget));
+  std::string html = fmt::format(
+      "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th "
+      "scope=col>problem<th scope=col>"
+      "optimizer<th scope=col>runs<br>to 1e-6",
+      html_text("[" + joined(quoted) + "]"));
+  for (const char* what : {"work", "time, ms,"})
+    for (const Tolerance& tolerance : kTolerances)
+      html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);
+  html +=
+      "<th scope=col>final loss<th scope=col>error in x<th scope=col>how the runs ended<th "
+      "scope=col>again<tbody>\n";
+  return html + rows + "</table>";
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,99 @@
+// Finds the problems and optimizers of a study, and what to call them.
+#include "reports/read/axes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/spec.h"
+
+namespace isoline::reports {
+namespace {
+
+// The sheet of this very spec, else any of the same name.
+const Sheet* sheet_of(const Study& study, const std::string& kind, const std::string& spec,
+                      const std::string& name) {
+  const Sheet* found = nullptr;
+  for (const Sheet& sheet : study.sheets) {
+    if (sheet.kind != kind) continue;
+    if (sheet.spec == spec) return &sheet;
+    if (sheet.name == name && found == nullptr) found = &sheet;
+  }
+  return found;
+}
+
+// Components by spec; of what was planned and has not run the spec alone is known.
+std::map<std::string, std::string> names_by_spec(const Study& study, Component Request::*asked,
+                                                 std::string PlannedCell::*planned) {
+  std::map<std::string, std::string> names;
+  for (const Record& record : study.runs) {
+    const Component& component = record.request.*asked;
+    names.emplace(component.spec, component.name);
+  }
+  for (const PlannedCell& cell : study.plan.cells)
+    if (const std::string& spec = cell.*planned; !names.contains(spec))
+      names.emplace(spec, name_of_spec(spec));
+  return names;
+}
+
+}  // namespace
+
+OptimizerLabels::OptimizerLabels(const Study& study)
+    : names_(names_by_spec(study, &Request::optimizer, &PlannedCell::optimizer)) {
+  std::set<std::pair<std::string, std::string>> seen;                // problem, optimizer spec
+  std::map<std::pair<std::string, std::string>, std::size_t> specs;  // by problem and name
+  for (const Record& record : study.runs) {
+    const Component& optimizer = record.request.optimizer;
+    const std::string& problem = record.request.problem.spec;
+    if (record.request.rates.ends_with("-tuned.json")) {
+      tuned_.emplace(problem, optimizer.spec);
+      continue;
+    }
+    if (!record.request.rates.empty()) by_name_.insert(optimizer.name);
+    if (seen.emplace(problem, optimizer.spec).second) ++specs[{problem, optimizer.name}];
+  }
+  for (const auto& [where, count] : specs)
+    if (count > 1) by_name_.erase(where.second);
+}
+
+std::string OptimizerLabels::operator()(const std::string& problem, const std::string& spec) const {
+  const std::string& name = names_.at(spec);
+  if (tuned_.contains({problem, spec})) return name + ", tuned";
+  return by_name_.contains(name) ? name : spec;
+}
+
+std::string OptimizerLabels::method(const std::string& spec) const { return names_.at(spec); }
+
+std::vector<ProblemAxis> problem_axis(const Study& study) {
+  const auto names = names_by_spec(study, &Request::problem, &PlannedCell::problem);
+  std::vector<ProblemAxis> axis;
+  for (const auto& [spec, name] : names)
+    axis.push_back({.spec = spec, .name = name, .sheet = sheet_of(study, "problem", spec, name)});
+  for (ProblemAxis& problem : axis)
+    if (problem.sheet != nullptr && problem.sheet->spec == problem.spec)
+      problem.prices = Prices(problem.sheet);
+  for (const Record& record : study.runs) {
+    const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
+    const bool could_declare = record.status != Status::inapplicable;
+    if (could_declare && !record.minimum) at->is_minimum_declared = false;
+    at->is_learned = record.request.problem.is_learned;
+  }
+  return axis;
+}
+
+std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& label) {
+  std::map<std::string, std::string> specs;  // by label, any of them
+  for (const Record& record : study.runs)
+    specs.emplace(label(record.request.problem.spec, record.request.optimizer.spec),
+                  record.request.optimizer.spec);
+  for (const PlannedCell& cell : study.plan.cells)
+    specs.emplace(label(cell.problem, cell.optimizer), cell.optimizer);
+  std::vector<OptimizerAxis> axis;
+  for (const auto& [name, spec] : specs)
+    axis.push_back({.label = name,
+                    .method = label.method(spec),
+                    .sheet = sheet_of(study, "optimizer", spec, label.method(spec)),
+                    .privileges = {}});
+  return axis;
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,30 @@
+// The rows and columns of a study: which problems and optimizers it holds, and under which names.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "reports/read/comparison.h"
+
+namespace isoline::reports {
+
+// Names of optimizers. A file of rates gives one method other options on every problem; the method
+// then keeps one row under its name, unless some problem has two of that name. A method with tuned
+// rates stands beside itself, as "adam, tuned".
+class OptimizerLabels {
+ public:
+  explicit OptimizerLabels(const Study& study);
+  std::string operator()(const std::string& problem, const std::string& spec) const;
+  std::string method(const std::string& spec) const;
+
+ private:
+  std::set<std::pair<std::string, std::string>> tuned_;  // problem and optimizer, as specs
+  std::set<std::string> by_name_;                        // names that stand for all their specs
+  std::map<std::string, std::string> names_;             // by spec, as records have them
+};
+
+std::vector<ProblemAxis> problem_axis(const Study& study);
+std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& label);
+
+}  // namespace isoline::reports

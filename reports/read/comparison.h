@@ -1,0 +1,129 @@
+// What a study holds: its runs in cells, the cells on two axes, and who stands where. All that a
+// report says is computed from it.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "reports/read/costs.h"
+#include "reports/read/study.h"
+#include "reports/statistics/statistics.h"
+
+namespace isoline::reports {
+
+// The tolerances of the tables: f ≤ f_L + τ (f₀ − f_L). Hits list τ = 10^(−j/5) at index j.
+struct Tolerance {
+  std::string_view name;
+  Real tau;
+  std::size_t hit;
+};
+inline constexpr std::array<Tolerance, 3> kTolerances = {
+    {{"1e-1", 1e-1, 5}, {"1e-3", 1e-3, 15}, {"1e-6", 1e-6, 30}}};
+inline constexpr std::size_t kTightest = kTolerances.size() - 1;
+inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
+
+// One run: its record and what it took to each tolerance, infinite where never reached.
+struct Run {
+  const Record* record = nullptr;
+  std::size_t problem = 0, optimizer = 0;  // indices
+  std::array<Real, kTolerances.size()> work, seconds;
+  Real minimum = 0;  // f_L: declared, else the best known
+  // In equivalent forward solves, at the prices of the problem: to each tolerance, and in all.
+  std::array<Real, kTolerances.size()> cost = {kNever, kNever, kNever};
+  Real spent = 0;
+  bool is_timed_alone = true;  // no other run beside it: its times mean something
+};
+
+// One problem and one optimizer, over seeds.
+struct Cell {
+  std::vector<std::size_t> runs;  // indices, by seed
+  std::size_t planned = 0;        // cells of the plan; runs.size() of them or more are answered
+  std::size_t failed = 0;         // runs that went wrong: see is_failure()
+  std::map<Status, std::size_t> statuses;
+  std::array<Spread, kTolerances.size()> work, cost, seconds;
+  std::array<bool, kTolerances.size()> is_best{};  // least median work of the problem; ties all
+  Spread loss, x_error;                            // at the end; x_error.n = 0: no truth is known
+  std::string inapplicable;                        // why the pair makes no sense, or empty
+  std::vector<std::string> privileges;
+  bool is_timed_alone = true;
+
+  bool is_measured() const { return !runs.empty() && inapplicable.empty(); }
+};
+
+struct ProblemAxis {
+  std::string spec, name;
+  const Sheet* sheet = nullptr;     // none where the folder has none
+  Prices prices = {};               // measured only where the sheet is of this very spec
+  bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
+  bool is_learned = false;
+};
+
+// How an optimizer did on all that was asked of it.
+struct Standing {
+  std::size_t solved = 0;   // problems whose median work is finite
+  std::size_t wins = 0;     // problems on which its median work is the least, ties counted for all
+  std::size_t reached = 0;  // runs that reach the tolerance
+  Real typical = kNever;    // the median over its problems of its work over the least, ✗ included
+  Real score = 0;           // area of its profile up to kProfileEnd times the least work
+};
+
+struct OptimizerAxis {
+  std::string label;   // its spec; its name alone where a file of rates chose the options
+  std::string method;  // its name
+  const Sheet* sheet = nullptr;
+  std::vector<std::string> privileges;                   // on any problem
+  std::size_t planned = 0, applicable = 0;               // problems asked of it; that it can treat
+  std::size_t runs = 0, failed = 0;                      // inapplicable ones left out
+  std::array<Standing, kTolerances.size()> standings{};  // by tolerance
+
+  const Standing& tightest() const { return standings[kTightest]; }
+  std::string family() const { return sheet == nullptr ? "" : sheet->family; }
+};
+
+// Who has the greatest score, and in what share of 1,000 resamplings of the problems it still does.
+struct Leader {
+  std::size_t optimizer = 0;
+  Real stays_first = 0;
+};
+
+struct Comparison {
+  const Study* study = nullptr;           // must outlive the comparison
+  std::vector<ProblemAxis> problems;      // by spec
+  std::vector<OptimizerAxis> optimizers;  // by area of the profile at the tightest tolerance
+  std::vector<Run> runs;
+  std::vector<std::vector<Cell>> cells;  // [problem][optimizer]
+  std::array<Profile, kTolerances.size()> profiles;
+  std::optional<Leader> leader;       // at the tightest tolerance; none where nothing is solved
+  std::optional<Leader> open_leader;  // among those without privileges, compared among themselves
+  std::size_t planned = 0, answered = 0;
+  std::vector<PlannedCell> missing;
+  std::map<Status, std::size_t> statuses;
+  std::vector<std::size_t> failures;  // runs
+  std::vector<std::uint64_t> seeds;
+  std::size_t names = 0;  // of problems, options apart
+  bool is_any_timed_together = false;
+
+  const Cell& cell(std::size_t problem, std::size_t optimizer) const {
+    return cells[problem][optimizer];
+  }
+};
+
+Comparison compare_optimizers(const Study& study);
+
+// costs[p][s]: medians to one tolerance, of &Cell::work or &Cell::cost; nothing where never
+// planned.
+Costs median_costs(const Comparison& comparison, std::size_t tolerance,
+                   std::array<Spread, kTolerances.size()> Cell::*what = &Cell::work);
+
+// Indices of the problems of each name: settings of one problem are no two witnesses.
+std::map<std::string, std::vector<std::size_t>> problems_by_name(const Comparison& comparison);
+
+// The optimizers that ran on a problem, best first: by median work from the tightest tolerance to
+// the loosest, then by final loss.
+std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem);
+
+}  // namespace isoline::reports

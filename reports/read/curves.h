@@ -1,0 +1,35 @@
+// Learning curves and paths as the page draws them: medians over seeds, thinned.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/read/comparison.h"
+
+namespace isoline::reports {
+
+// Columns of equal length. At each iteration the median over seeds of every column; a run that has
+// ended keeps its last values, a run without a curve counts as infinite. The gap is what is left of
+// the loss, (f − f_L) / (f₀ − f_L): the τ of the tables is a height in its plot.
+struct MedianCurve {
+  std::vector<Real> iteration, work, seconds, gap, x_error;
+  std::vector<Real> gap_low, gap_high, x_error_low, x_error_high;  // least and greatest over seeds
+};
+MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::size_t points);
+
+// `count` of the indices 0 … size − 1, both ends among them, spaced evenly in the logarithm.
+std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
+
+// The path of the lowest seed that has one; empty where none has.
+struct Path {
+  std::string optimizer;
+  std::size_t index = 0;  // of the optimizer
+  std::vector<std::vector<Real>> x, y;
+};
+std::vector<Path> paths(const Comparison& comparison, std::size_t problem);
+
+// How far a path strays: its length over the distance between its ends, infinite where that says
+// nothing.
+Real detour(const std::vector<std::vector<Real>>& path);
+
+}  // namespace isoline::reports

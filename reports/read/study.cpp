@@ -1,0 +1,166 @@
+// Reads result folders. Records come by the ten thousand, and parsing them is nearly all the time a
+// report takes, so threads share the files.
+#include "reports/read/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/json.h"
+
+namespace isoline::reports {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> json_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (!fs::is_directory(folder)) return files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void require_equal_columns(const Record& record) {
+  const Curve& curve = record.curve;
+  const std::size_t points = curve.iteration.size();
+  for (const std::size_t size :
+       {curve.work.size(), curve.wall_seconds.size(), curve.processor_seconds.size(),
+        curve.loss.size(), curve.x_error.size(), curve.gradient_norm.size(),
+        curve.step_norm.size()})
+    require(size == points, "the columns of its curve differ in length");
+  if (!record.hits) return;
+  const Hits& hits = *record.hits;
+  for (const std::size_t size : {hits.work.size(), hits.target.size(), hits.wall_seconds.size()})
+    require(size == hits.iteration.size(), "the columns of its hits differ in length");
+}
+
+// The record, or why it is none.
+std::string read_into(Record& record, const fs::path& file) {
+  try {
+    record = read_record(file);
+    require_equal_columns(record);
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+const std::string& started(const Record& record) { return record.provenance.run.started; }
+
+// ISO times sort as text; the file name decides where they are absent or equal.
+bool is_newer(const Record& a, const Record& b) {
+  return std::pair(started(a), a.file_name()) > std::pair(started(b), b.file_name());
+}
+
+// Where the record of each cell stands among the `kept` first ones of all.
+using Places = std::unordered_map<std::string, std::size_t>;
+
+void keep_newest(Study& study, Places& place, std::size_t index) {
+  Record& record = study.runs[index];
+  const std::size_t kept = place.size();
+  const auto [at, is_first] = place.emplace(record.cell, kept);
+  Record& known = study.runs[at->second];
+  if (!is_first) ++study.superseded;
+  if (&known != &record && (is_first || is_newer(record, known))) known = std::move(record);
+}
+
+void read_runs(Study& study, const std::vector<fs::path>& folders, const Listener& listener) {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : folders)
+    for (fs::path& file : json_files(folder / "runs")) files.push_back(std::move(file));
+  std::vector<std::string> reasons(files.size());
+  study.runs.resize(files.size());
+  share(
+      files.size(), [&](std::size_t i) { reasons[i] = read_into(study.runs[i], files[i]); },
+      listener);
+  Places place;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (reasons[i].empty())
+      keep_newest(study, place, i);
+    else
+      study.unreadable.push_back({files[i], std::move(reasons[i])});
+  study.runs.resize(place.size());
+  const auto order = [](const Record& r) {
+    return std::tie(r.request.problem.spec, r.request.optimizer.spec, r.request.seed, r.cell);
+  };
+  std::sort(study.runs.begin(), study.runs.end(),
+            [&](const Record& a, const Record& b) { return order(a) < order(b); });
+}
+
+void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& known) {
+  for (const fs::path& file : json_files(folder / "components")) try {
+      Sheet sheet = sheet_from_text(read_text(file), file.string());
+      if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
+    } catch (const std::exception& error) {
+      study.unreadable.push_back({file, error.what()});
+    }
+}
+
+void read_plan(Study& study, const fs::path& folder, std::set<std::string>& known) {
+  const fs::path file = folder / "plan.json";
+  if (fs::exists(file)) try {
+      Plan plan = plan_from_text(read_text(file), file.string());
+      for (std::string& suite : plan.suites)
+        if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
+          study.plan.suites.push_back(std::move(suite));
+      for (PlannedCell& cell : plan.cells)
+        if (known.insert(cell.cell).second) study.plan.cells.push_back(std::move(cell));
+    } catch (const std::exception& error) {
+      study.unreadable.push_back({file, error.what()});
+    }
+}
+
+void read_audit(Study& study, const fs::path& folder) {
+  const fs::path file = folder / "audit.json";
+  if (fs::exists(file)) try {
+      for (AuditedOptimizer& audited : audit_from_json(read_json(file)))
+        if (std::ranges::find(study.audits, audited.name, &AuditedOptimizer::name) ==
+            study.audits.end())
+          study.audits.push_back(std::move(audited));
+    } catch (const std::exception& error) {
+      study.unreadable.push_back({file, error.what()});
+    }
+}
+
+}  // namespace
+
+std::optional<Exhibit> Study::pictures_of(const Record& record) const {
+  Exhibit exhibit = *record.exhibit;
+  for (const fs::path& folder : folders) {
+    const fs::path file = (folder / "runs" / record.file_name()).replace_extension(".npy");
+    if (fs::exists(file)) try {
+        read_pictures(exhibit, file);
+        return exhibit;
+      } catch (const UsageError&) {
+        return std::nullopt;
+      }
+  }
+  return std::nullopt;
+}
+
+Study read_study(const std::vector<fs::path>& folders, const Listener& listener) {
+  for (const fs::path& folder : folders)
+    require(fs::is_directory(folder),
+            [&] { return fmt::format("no result folder {}", folder.string()); });
+  Study study;
+  study.folders = folders;
+  std::set<std::string> cells, sheets;
+  for (const fs::path& folder : folders) {
+    read_plan(study, folder, cells);
+    read_sheets(study, folder, sheets);
+    read_audit(study, folder);
+  }
+  std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
+  read_runs(study, folders, listener);
+  return study;
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,39 @@
+// What a report reads: the plan, the records and the sheets of one or several result folders.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/records/audited.h"
+#include "core/records/plan.h"
+#include "core/records/record.h"
+#include "core/records/sheet.h"
+#include "core/threads.h"
+
+namespace isoline::reports {
+
+// A file that is no record, sheet or plan. It is listed, so that nothing vanishes in silence.
+struct Unreadable {
+  std::filesystem::path file;
+  std::string reason;
+};
+
+struct Study {
+  Plan plan;                 // the union of the folders' plans
+  std::vector<Record> runs;  // one a cell, by its newest build; by problem, optimizer, seed
+  std::vector<Sheet> sheets;
+  std::vector<AuditedOptimizer> audits;  // by name; of several folders the first that has it
+  std::vector<Unreadable> unreadable;
+  std::size_t superseded = 0;  // readable records left aside for a newer one of the same cell
+  std::vector<std::filesystem::path> folders;
+
+  // The exhibit of a record that keeps pictures beside it; nothing where they cannot be read.
+  std::optional<Exhibit> pictures_of(const Record& record) const;
+};
+
+// Folders are laid out as core/records/sheet.h says; a missing one is a UsageError. The listener is
+// told of the records.
+Study read_study(const std::vector<std::filesystem::path>& folders, const Listener& listener = {});
+
+}  // namespace isoline::reports

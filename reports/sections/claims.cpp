@@ -1,0 +1,93 @@
+// The verdicts on claims of papers, and the figures they rest on.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr const char* kNothing = "–";
+
+// What a reader must know beside the figures: what it was held against, why not, and what differs
+// from the source.
+std::string remarks_of(const Judgement& judgement) {
+  std::vector<std::string> parts;
+  if (const auto& contrast = judgement.contrast)
+    parts.push_back(fmt::format("Held against the {}: published {}, measured {}.",
+                                contrast->quantity, contrast->published,
+                                contrast->measured ? figure(contrast->measured->value) : kNothing));
+  if (!judgement.why.empty()) parts.push_back(judgement.why + ".");
+  if (!judgement.caveat.empty()) parts.push_back(judgement.caveat);
+  return joined(parts, " ");
+}
+
+std::string value_text(const Judgement& judgement) {
+  return judgement.measured ? figure(judgement.measured->value) : kNothing;
+}
+
+std::string interval_text(const Judgement& judgement) {
+  const auto& measured = judgement.measured;
+  if (!measured || std::isnan(measured->low)) return kNothing;
+  return fmt::format("{}–{}", figure(measured->low), figure(measured->high));
+}
+
+std::string_view mark_of(Verdict verdict) {
+  constexpr std::array<std::string_view, 4> kMarks = {"✓", "≈", "✗", "·"};
+  return kMarks[static_cast<std::size_t>(verdict)];
+}
+
+std::vector<TableCell> row_of(const Judgement& judgement) {
+  TableCell claim = judgement.sentence;
+  claim.note = judgement.quantity;
+  claim.remark = judgement.source;
+  const std::string verdict =
+      fmt::format("{} {}", mark_of(judgement.verdict), name_of(judgement.verdict));
+  return {claim,
+          verdict,
+          judgement.published,
+          value_text(judgement),
+          interval_text(judgement),
+          judgement.measured ? std::to_string(judgement.measured->n) : kNothing,
+          remarks_of(judgement)};
+}
+
+}  // namespace
+
+std::string measured_text(const Judgement& judgement) {
+  if (!judgement.measured) return kNothing;
+  const std::string interval = interval_text(judgement);
+  return fmt::format("{}{}, n = {}", value_text(judgement),
+                     interval == kNothing ? "" : fmt::format(" ({})", interval),
+                     judgement.measured->n);
+}
+
+std::string claims_reading(const std::vector<Judgement>& judgements) {
+  std::array<std::size_t, kVerdictNames.size()> counts{};
+  for (const Judgement& judgement : judgements)
+    ++counts[static_cast<std::size_t>(judgement.verdict)];
+  return fmt::format("Of {} claims {} are reproduced, {} partly, {} not; {} cannot be compared.",
+                     judgements.size(), counts[0], counts[1], counts[2], counts[3]);
+}
+
+Section claims_section(const std::vector<Judgement>& judgements) {
+  Section section{.id = "claims",
+                  .title = "Claims of the papers",
+                  .otherwise = "No published claim is decided by the runs of this report."};
+  if (judgements.empty()) return section;
+  section.lead = "Measured are medians over seeds, with 95 % of the bootstrap over seeds.";
+  section.readings = {{"", claims_reading(judgements)}};
+  Table table{.id = "claims-table",
+              .columns = {"claim", "verdict", "published", "measured", "95 %", "seeds", "remarks"},
+              .align = "plrrrrp"};
+  for (const Judgement& judgement : judgements) {
+    table.rows.push_back(row_of(judgement));
+    table.row_topics.push_back({.id = "claim-" + judgement.id});
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,34 @@
+// Puts the sections of a report in order.
+#include "reports/sections/document.h"
+
+#include <algorithm>
+
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+
+const Section& Document::section(std::string_view id) const {
+  return *std::ranges::find(sections, id, &Section::id);
+}
+
+Document document_of(Comparison comparison, std::vector<Judgement> claims) {
+  Document document{.comparison = std::move(comparison), .claims = std::move(claims)};
+  const Comparison& c = document.comparison;
+  document.headline = headline(c);
+  document.statuses = status_text(c.statuses);
+  document.incomplete = missing_text(c);
+  document.remarks = remarks(c);
+  document.sections = {standings_section(c),
+                       problems_section(c),
+                       learned_section(c),
+                       claims_section(document.claims),
+                       properties_section(c.study->audits),
+                       statistics_section(c),
+                       failures_section(c),
+                       builds_section(c)};
+  document.figures = figures(c);
+  return document;
+}
+
+}  // namespace isoline::reports

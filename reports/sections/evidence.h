@@ -1,0 +1,103 @@
+// The statistics of a report as tables and plots. Orders of optimizers are by declared work, which
+// any machine repeats; what runs cost is in equivalent forward solves, with raw counts beside.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "reports/read/comparison.h"
+#include "reports/sections/section.h"
+#include "reports/statistics/resampling.h"
+
+namespace isoline::reports {
+
+using Plots = std::vector<Plot>;  // none where there is too little to show
+
+Table profile_table(const Comparison& comparison);
+Table rank_table(const Comparison& comparison);
+Table signed_rank_table(const Comparison& comparison);
+Table pairwise_table(const Comparison& comparison);
+Table flip_table(const Comparison& comparison);
+Table returned_table(const Comparison& comparison);
+Table accuracy_table(const Comparison& comparison);
+Table data_profile_table(const Comparison& comparison);
+Table anytime_table(const Comparison& comparison);
+Table interval_table(const Comparison& comparison);
+Table restart_table(const Comparison& comparison);
+Table calls_table(const Comparison& comparison);
+Table prices_table(const Comparison& comparison);
+
+Plots profile_plot(const Comparison& comparison);
+Plots pairwise_plots(const Comparison& comparison);
+Plots log_ratio_plot(const Comparison& comparison);
+Plots rank_plot(const Comparison& comparison);
+Plots signed_rank_plot(const Comparison& comparison);
+Plots data_profile_plot(const Comparison& comparison);
+Plots runtime_plot(const Comparison& comparison);
+Plots accuracy_plot(const Comparison& comparison);
+Plots target_plot(const Comparison& comparison);
+
+// In the order of a report: what is declared above stands in it once it is named here.
+inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
+    profile_table,  rank_table,     signed_rank_table,  pairwise_table, flip_table,
+    returned_table, accuracy_table, data_profile_table, anytime_table,  interval_table,
+    restart_table,  calls_table,    prices_table};
+inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {
+    profile_plot,      pairwise_plots, log_ratio_plot, rank_plot,  signed_rank_plot,
+    data_profile_plot, runtime_plot,   accuracy_plot,  target_plot};
+
+// What so few problems, seeds or runs cannot show, a sentence each.
+std::vector<std::string> limits_of_evidence(const Comparison& comparison);
+
+inline constexpr std::size_t kMostTableRows = 40;   // the best optimizers
+inline constexpr std::size_t kMostTablePairs = 10;  // the best of them against each other
+inline constexpr std::size_t kMostLines = 8;        // of a plot, the best optimizers
+inline constexpr std::size_t kMostRivals = 4;       // of the leader, each in a plot of two lines
+inline constexpr std::size_t kMostPlotRows = 25;    // problems
+
+// What they share.
+std::size_t shown_optimizers(const Comparison& comparison, std::size_t most);
+void rows_are_optimizers(Table& table);  // the i-th row is of the i-th
+// The first columns beside the names are of the first optimizers, or problems.
+void columns_are_optimizers(Table& table, std::size_t count);
+void columns_are_problems(Table& table, std::size_t count);
+TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);  // "2/80"
+TableCell count_cell(std::size_t count);
+TableCell digits_cell(Real digits);                         // ✗ where there are none
+TableCell share_cell(std::size_t part, std::size_t whole);  // "33 %"
+// "forward solves at measured prices", or what else the costs of this comparison are.
+std::string cost_unit(const Comparison& comparison);
+// "16 to 23 problems; 2 of 345 runs failed", of the first optimizers.
+std::string denominators(const Comparison& comparison, std::size_t shown);
+std::vector<Real> cost_grid(Real most);  // 10^(i / 8) from 1 to the first beyond `most`
+// Who of the lines is highest at x: "sip † and 2 more (80 %)".
+std::string highest_at(const Plot& plot, Real x);
+
+// measure[p] of each problem: nothing where it was never asked, infinite or not-a-number where
+// unsolved. The share of problems whose measure is at most each point of the grid, with the 95 %
+// bootstrap band over problems, settings of one name drawn together.
+using Measure = std::vector<std::optional<Real>>;
+Measure column_of(const Costs& costs, std::size_t optimizer);
+PlotSeries share_series(const Comparison& comparison, std::size_t optimizer, const Measure& measure,
+                        const std::vector<Real>& grid);
+// The same of what `parts` makes of each measure: sums over problems over their number.
+template <class Parts>
+Band band_over_names(const Comparison& comparison, const Measure& measure, const std::string& key,
+                     Parts parts) {
+  std::vector<GroupSum> groups;
+  for (const auto& [name, problems] : problems_by_name(comparison)) {
+    GroupSum group;
+    for (const std::size_t p : problems) {
+      if (!measure[p]) continue;
+      const std::vector<Real> values = parts(*measure[p]);
+      group.sums.resize(values.size(), 0);
+      for (std::size_t i = 0; i < values.size(); ++i) group.sums[i] += values[i];
+      group.n += 1;
+    }
+    if (group.n > 0) groups.push_back(std::move(group));
+  }
+  return bootstrap_ratio(groups, key);
+}
+
+}  // namespace isoline::reports

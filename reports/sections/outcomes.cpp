@@ -1,0 +1,136 @@
+// Tables of outcomes: performance profiles in figures, and what was returned beside what was seen.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/read/orders.h"
+#include "reports/sections/evidence.h"
+#include "reports/sections/words.h"
+#include "reports/statistics/runtimes.h"
+
+namespace isoline::reports {
+namespace {
+
+// The area of an optimizer's profile with its interval over problems, names drawn together.
+Band area_band(const Comparison& c, const Costs& ratios, std::size_t s) {
+  return band_over_names(c, column_of(ratios, s), "areas", [](Real ratio) {
+    return std::vector<Real>{score_of(ratio, kProfileEnd)};
+  });
+}
+
+// Problems whose median run returns a point that meets the tolerance; a failed run returns none.
+std::size_t returned(const Comparison& c, std::size_t s, std::size_t tolerance) {
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    std::vector<Real> unmet;
+    for (const std::size_t index : c.cell(p, s).runs) {
+      const Run& run = c.runs[index];
+      const Summary& summary = run.record->summary;
+      const Real goal =
+          run.minimum + kTolerances[tolerance].tau * (summary.start_loss - run.minimum);
+      const bool is_met = !is_failure(run.record->status) && summary.loss <= goal;
+      unmet.push_back(is_met ? 0 : kNever);
+    }
+    count += c.cell(p, s).is_measured() && median_of(unmet) < kNever;
+  }
+  return count;
+}
+
+TableCell area_cell(Real area) { return {fmt::format("{:.3f}", area), {{"area", area}}}; }
+
+TableCell interval_cell(Real low, Real high) {
+  return {fmt::format("{:.3f}–{:.3f}", low, high), {{"low", low}, {"high", high}}};
+}
+
+}  // namespace
+
+Table profile_table(const Comparison& c) {
+  Table table{
+      .id = "performance-profile",
+      .title = "Performance profile",
+      .reading = "",
+      .caption =
+          "Share of the problems given to a method that its median run solves to 1e-6 within so "
+          "many times the least declared work (Dolan, Moré 2002). Area: under the profile over "
+          "log2 of the factor up to 64, in closed form, with the 95 % bootstrap interval over "
+          "problems (1,000 draws).",
+      .columns = {"optimizer", "≤ 1×", "≤ 2×", "≤ 4×", "≤ 16×", "at all", "area", "interval",
+                  "n problems", "failed"},
+      .rows = {}};
+  Costs ratios;
+  for (const auto& row : median_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
+  const Profile& profile = c.profiles[kTightest];
+  std::size_t overlapping = 0;
+  Real low = 0;
+  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+    const std::size_t n = s < profile.solvers.size() ? profile.solvers[s].problems : 0;
+    std::vector<TableCell> row = {optimizer_text(c, s)};
+    for (const Real factor : {1.0, 2.0, 4.0, 16.0, std::numeric_limits<Real>::max()}) {
+      const Real share = n == 0 ? 0 : profile.share(s, factor);
+      row.push_back(share_cell(static_cast<std::size_t>(std::llround(share * Real(n))), n));
+    }
+    const Band band = area_band(c, ratios, s);
+    const bool has_area = !band.low.empty();
+    if (s == 0 && has_area) low = band.low[0];
+    overlapping += s > 0 && has_area && band.high[0] >= low;
+    row.push_back(has_area ? area_cell(band.value[0]) : "");
+    row.push_back(has_area ? interval_cell(band.low[0], band.high[0]) : "");
+    row.push_back(count_cell(n));
+    row.push_back(failed_cell(c, s));
+    table.rows.push_back(std::move(row));
+  }
+  rows_are_optimizers(table);
+  table.reading =
+      fmt::format("{} has the largest area; the intervals of {} other{} reach into its own.",
+                  optimizer_text(c, 0), overlapping, overlapping == 1 ? "" : "s");
+  return table;
+}
+
+Table returned_table(const Comparison& c) {
+  Table table{
+      .id = "returned",
+      .title = "What was returned",
+      .reading = "",
+      .caption =
+          "History and output: share of the problems given to a method whose median run meets the "
+          "tolerance at the best point it ever evaluated (seen), and at the point it returned; "
+          "and the digits gained there, median over problems. A failed run returns nothing.",
+      .columns = {"optimizer"},
+      .rows = {}};
+  for (const Tolerance& tolerance : kTolerances)
+    for (const char* where : {"seen", "returned"})
+      table.columns.push_back(fmt::format("{} {}", tolerance.name, where));
+  for (const char* column : {"digits seen", "digits returned", "n problems", "failed"})
+    table.columns.push_back(column);
+  std::size_t losing = 0, most = 0;
+  std::string worst;
+  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+    std::vector<TableCell> row = {optimizer_text(c, s)};
+    const std::size_t n = c.optimizers[s].planned;
+    for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+      const std::size_t seen = c.optimizers[s].standings[t].solved, kept = returned(c, s, t);
+      row.push_back(share_cell(seen, n));
+      row.push_back(share_cell(kept, n));
+      if (t != kTightest || kept >= seen) continue;
+      ++losing;
+      if (seen - kept <= most) continue;
+      most = seen - kept;
+      worst = optimizer_text(c, s);
+    }
+    row.push_back(digits_cell(-median_of(lacking_digits(c, s, &Summary::best_loss))));
+    row.push_back(digits_cell(-median_of(lacking_digits(c, s, &Summary::loss))));
+    row.push_back(count_cell(n));
+    row.push_back(failed_cell(c, s));
+    table.rows.push_back(std::move(row));
+  }
+  rows_are_optimizers(table);
+  table.reading = losing == 0 ? "Every method shown returns to 1e-6 what it has seen to 1e-6."
+                              : fmt::format(
+                                    "{} method{} with a point below 1e-6 seen and not returned on "
+                                    "some problem; most, {}: {}.",
+                                    losing, losing == 1 ? "" : "s", most, worst);
+  return table;
+}
+
+}  // namespace isoline::reports

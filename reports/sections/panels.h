@@ -1,0 +1,20 @@
+// How each kind of panel is drawn from its runs.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "reports/sections/figures.h"
+
+namespace isoline::reports {
+
+using Sweep = std::vector<std::pair<Real, std::size_t>>;  // value of the option, problem
+
+Figure sweep_figure(const Comparison& comparison, const Sweep& sweep, const Panel& panel);
+
+Figure picture_figure(const Comparison& comparison, std::size_t problem);
+
+// Of one problem: curve, scatter, decades, pictures, series or path. Empty where no run has it.
+Figure problem_figure(const Comparison& comparison, std::size_t problem, const Panel& panel);
+
+}  // namespace isoline::reports

@@ -1,0 +1,213 @@
+// Reads figures off records, combines their medians, and resamples seeds.
+#include "reports/sections/quantities.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "reports/statistics/resampling.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
+
+// The last kept point at or before the iteration.
+std::size_t index_at(const Curve& curve, const std::optional<std::int64_t>& iteration) {
+  if (!iteration) return curve.iteration.size() - 1;
+  const auto after = std::ranges::upper_bound(curve.iteration, *iteration);
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - curve.iteration.begin()) - 1);
+}
+
+constexpr std::string_view kSeries = "series: ";
+
+const std::vector<Real>* column_of(const Record& record, const std::string& name) {
+  static const std::map<std::string, std::vector<Real> Curve::*> plain = {
+      {"x_error", &Curve::x_error},
+      {"loss", &Curve::loss},
+      {"gradient_norm", &Curve::gradient_norm}};
+  const Curve& curve = record.curve;
+  if (const auto found = plain.find(name); found != plain.end()) return &(curve.*found->second);
+  if (name.starts_with(kSeries)) {
+    const auto found = record.series.find(name.substr(kSeries.size()));
+    return found == record.series.end() ? nullptr : &found->second;
+  }
+  const std::size_t end = name.rfind('_');
+  const auto& windows = name.starts_with("batch_x") ? curve.batch_x_error : curve.batch_loss;
+  const auto window = windows.find(std::atoll(name.c_str() + end + 1));
+  return name.starts_with("batch_") && window != windows.end() ? &window->second : nullptr;
+}
+
+// Largest distance of any coordinate from the printed one. The rows of a table are iterations 1, 2,
+// …; a single row is `row` of the path.
+Real deviation(const std::vector<std::vector<Real>>& path,
+               const std::vector<std::vector<Real>>& table, std::size_t row) {
+  const std::size_t first = table.size() == 1 ? row : 1;
+  if (first + table.size() > path.size()) return kAbsent;
+  Real largest = 0;
+  for (std::size_t i = 0; i < table.size(); ++i)
+    for (std::size_t j = 0; j < table[i].size(); ++j)
+      largest = std::max(largest, std::abs(path[first + i].at(j) - table[i][j]));
+  return largest;
+}
+
+// How far y leaves the ray through its start: largest relative change of y2 / y1.
+Real bend(const std::vector<std::vector<Real>>& y) {
+  Real largest = 0;
+  for (const auto& at : y)
+    largest = std::max(largest, std::abs(at.at(1) / at.at(0) * y[0][0] / y[0][1] - 1));
+  return largest;
+}
+
+// Of the first update with the diagonal toward the origin; √2 at most.
+Real alignment(const std::vector<std::vector<Real>>& x) {
+  const Real d1 = x.at(0).at(0) - x.at(1).at(0), d2 = x.at(0).at(1) - x.at(1).at(1);
+  return (d1 + d2) / std::hypot(d1, d2);
+}
+
+Real path_figure(const Record& record, const Place& place) {
+  const auto& x = record.trajectory->x;
+  const std::size_t row = index_at(record.curve, place.iteration);
+  const auto& at = x.at(row);
+  if (place.column == "deviation") return deviation(x, place.table, row);
+  if (place.column == "output_deviation") return deviation(record.trajectory->y, place.table, row);
+  if (place.column == "bend") return bend(record.trajectory->y);
+  if (place.column == "alignment") return x.size() < 2 ? kAbsent : alignment(x);
+  if (place.column == "distance") return std::hypot(at.at(0), at.at(1));
+  return kAbsent;
+}
+
+// Least squares of log m over log at.
+Real slope(const std::vector<Real>& m, const std::vector<Real>& at) {
+  Real mean_x = 0, mean_y = 0, xy = 0, xx = 0;
+  const auto n = static_cast<Real>(m.size());
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    mean_x += std::log(at[i]) / n;
+    mean_y += std::log(m[i]) / n;
+  }
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    const Real dx = std::log(at[i]) - mean_x;
+    xy += dx * (std::log(m[i]) - mean_y);
+    xx += dx * dx;
+  }
+  return xy / xx;
+}
+
+// Linear in the logarithms between the two values of `at` where the ratio passes 1.
+Real crossing(const std::vector<Real>& m, const std::vector<Real>& at) {
+  const std::size_t half = m.size() / 2;
+  const auto excess = [&](std::size_t i) { return std::log(m[i] / m[half + i]); };
+  for (std::size_t i = 0; i + 1 < half; ++i) {
+    const Real before = excess(i), after = excess(i + 1);
+    if (before < 0 && after >= 0)
+      return at[i] * std::pow(at[i + 1] / at[i], before / (before - after));
+  }
+  return kNever;
+}
+
+// Pairs in the order of the terms, less those against it, over all of them.
+Real order(const std::vector<Real>& m) {
+  Real with = 0, pairs = 0;
+  for (std::size_t i = 0; i < m.size(); ++i)
+    for (std::size_t j = i + 1; j < m.size(); ++j, ++pairs)
+      with += m[i] < m[j] ? 1 : m[i] > m[j] ? -1 : 0;
+  return with / pairs;
+}
+
+Real median_of_term(const Term& term, const std::vector<std::size_t>& seeds) {
+  std::optional<Real> chosen;
+  for (const auto& alternative : term.figures) {
+    std::vector<Real> values;
+    for (const std::size_t seed : seeds) values.push_back(alternative.at(seed));
+    const Real median = median_of(std::move(values));
+    if (!chosen || (term.is_worst ? median > *chosen : median < *chosen)) chosen = median;
+  }
+  return term.scale * chosen.value_or(kNever);
+}
+
+Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
+                   const std::vector<std::size_t>& seeds) {
+  std::vector<Real> medians, at;
+  for (const Term& term : terms) {
+    medians.push_back(median_of_term(term, seeds));
+    at.push_back(term.at);
+  }
+  return quantity_of(kind, medians, at);
+}
+
+}  // namespace
+
+Real figure_of(const Record& record, const Place& place) {
+  if (place.column == "milliseconds")
+    return record.summary.iterations == 0
+               ? kAbsent
+               : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
+  if (record.curve.iteration.empty()) return kAbsent;
+  if (place.column == "loss_peak") return std::ranges::max(record.curve.loss);
+  if (const auto* column = column_of(record, place.column))
+    return column->empty() ? kAbsent : column->at(index_at(record.curve, place.iteration));
+  return record.trajectory ? path_figure(record, place) : kAbsent;
+}
+
+std::string column_words(const std::string& column) {
+  static const std::map<std::string, std::string> words = {
+      {"x_error", "error in x on the validation"},
+      {"loss", "loss on the validation"},
+      {"batch_x_error_64", "error in x, running mean over 64 steps"},
+      {"batch_x_error_256", "error in x, running mean over 256 steps"},
+      {"batch_loss_64", "loss, running mean over 64 steps"},
+      {"batch_loss_256", "loss, running mean over 256 steps"},
+      {"loss_peak", "greatest loss on the validation"},
+      {"gradient_norm", "length of the gradient"},
+      {"deviation", "largest distance of x from the printed figures"},
+      {"output_deviation", "largest distance of y from the printed figures"},
+      {"bend", "largest relative change of y2 / y1"},
+      {"alignment", "first update's component along the diagonal"},
+      {"distance", "distance to the origin"},
+      {"milliseconds", "milliseconds an iteration"}};
+  if (column.starts_with(kSeries)) return column.substr(kSeries.size());
+  const auto found = words.find(column);
+  return found == words.end() ? column : found->second;
+}
+
+Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
+                 const std::vector<Real>& at) {
+  const Real first = medians.at(0);
+  if (kind == "ratio") return first / medians.at(1);
+  if (kind == "slope") return slope(medians, at);
+  if (kind == "crossing") return crossing(medians, at);
+  if (kind == "order") return order(medians);
+  if (kind == "greatest") return std::ranges::max(medians);
+  if (kind == "position")
+    return 1 + static_cast<Real>(std::ranges::count_if(medians, [&](Real m) { return m < first; }));
+  return first;
+}
+
+std::optional<Real> neutral_of(const std::string& kind) {
+  if (kind == "ratio") return 1;
+  if (kind == "slope" || kind == "order") return 0;
+  return std::nullopt;
+}
+
+Measurement measure(const std::string& kind, const std::vector<Term>& terms,
+                    const std::string& stream) {
+  Measurement out{.low = kAbsent, .high = kAbsent, .n = terms.at(0).figures.at(0).size()};
+  Places seeds(out.n);
+  std::iota(seeds.begin(), seeds.end(), 0);
+  out.value = quantity_over(kind, terms, seeds);
+  if (out.n < 2) return out;
+  std::vector<Real> draws;
+  resample(out.n, {.component = "claims", .purpose = stream, .is_for_all = true},
+           [&](const Places& drawn) {
+             const Real value = quantity_over(kind, terms, drawn);
+             if (!std::isnan(value)) draws.push_back(value);
+           });
+  if (draws.empty()) return out;
+  const Interval interval = interval_of(std::move(draws));
+  out.low = interval.low;
+  out.high = interval.high;
+  return out;
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,174 @@
+// Plots of orders: the leader against each rival alone, ratios, mean ranks, signed ranks.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/read/orders.h"
+#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+#include "reports/statistics/rank_tests.h"
+#include "reports/statistics/runtimes.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr std::size_t kMostRanks = 20;
+constexpr Real kMostDoublings = 10;  // of the bars: beyond, or infinite
+
+// The profiles of two alone, on the problems given to both.
+Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
+  std::vector<std::optional<Real>> mine(costs.size()), other(costs.size());
+  std::size_t n = 0, wins = 0, losses = 0;
+  for (std::size_t p = 0; p < costs.size(); ++p) {
+    if (!costs[p][0] || !costs[p][rival]) continue;
+    const auto ratios = cost_ratios({costs[p][0], costs[p][rival]});
+    mine[p] = ratios[0];
+    other[p] = ratios[1];
+    ++n;
+    wins += *ratios[0] < *ratios[1];
+    losses += *ratios[1] < *ratios[0];
+  }
+  std::vector<Real> grid;
+  for (Real i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8));
+  const std::string names[] = {optimizer_text(c, 0), optimizer_text(c, rival)};
+  return {.id = fmt::format("plot-pair-{}", rival),
+          .title = fmt::format("{} against {} alone", names[0], names[1]),
+          .reading = fmt::format("{} needs less on {} of {} problems, {} on {}; {} tie{}.",
+                                 names[0], wins, n, names[1], losses, n - wins - losses,
+                                 n - wins - losses == 1 ? "" : "s"),
+          .caption = fmt::format("Profiles of two alone, declared work to 1e-6, with 95 % bands; "
+                                 "failed: {} and {}.",
+                                 failed_cell(c, 0).text, failed_cell(c, rival).text),
+          .x_label = "factor of the less of the two",
+          .y_label = "share of problems",
+          .is_log_x = true,
+          .series = {share_series(c, 0, mine, grid), share_series(c, rival, other, grid)}};
+}
+
+}  // namespace
+
+Plots pairwise_plots(const Comparison& c) {
+  Plots plots;
+  if (c.problems.size() < kFewProblems) return plots;
+  const Costs costs = median_costs(c, kTightest);
+  for (std::size_t rival = 1; rival < shown_optimizers(c, kMostRivals + 1); ++rival)
+    plots.push_back(pair_plot(c, costs, rival));
+  return plots;
+}
+
+Plots log_ratio_plot(const Comparison& c) {
+  if (c.optimizers.size() < 2) return {};
+  const Costs costs = median_costs(c, kTightest, &Cell::cost);
+  std::vector<std::pair<Real, std::size_t>> bars;
+  std::size_t given = 0;
+  for (std::size_t p = 0; p < costs.size(); ++p) {
+    if (!costs[p][0] || !costs[p][1]) continue;
+    ++given;
+    const Real mine = *costs[p][0], other = *costs[p][1];
+    if (mine == kNever && other == kNever) continue;
+    bars.emplace_back(std::clamp(std::log2(std::max(mine, 1.0)) - std::log2(std::max(other, 1.0)),
+                                 -kMostDoublings, kMostDoublings),
+                      p);
+  }
+  if (bars.empty()) return {};
+  std::ranges::sort(bars);
+  const std::string first = optimizer_text(c, 0), second = optimizer_text(c, 1);
+  Plot plot{.kind = Plot::Kind::bars,
+            .id = "plot-log-ratio",
+            .title = fmt::format("{} against {}, problem by problem", first, second),
+            .reading = "",
+            .caption = fmt::format(
+                "log2 of the ratio of median costs to 1e-6 in {}, sorted: below 0 {} needs less, "
+                "above 0 {}; at ±{:.0f} the other never gets there (Morales 2002). n = {} problems "
+                "given to both, of which neither solves {}; failed: {} and {}.",
+                cost_unit(c), first, second, kMostDoublings, given, given - bars.size(),
+                failed_cell(c, 0).text, failed_cell(c, 1).text),
+            .x_label = "problems",
+            .y_label = "log2 of the ratio of costs"};
+  PlotSeries series{0, first + " / " + second, {}, {}, {}, {}};
+  std::size_t less = 0, more = 0;
+  for (const auto& [ratio, p] : bars) {
+    series.x.push_back(Real(plot.rows.size()));
+    series.y.push_back(ratio);
+    plot.rows.push_back({shown_spec(c.problems[p].spec), {.problem = p}});
+    less += ratio < 0;
+    more += ratio > 0;
+  }
+  plot.reading =
+      fmt::format("{} costs less on {} problems, {} on {}; the middle one is at {:+.2g} doublings.",
+                  first, less, second, more, bars[bars.size() / 2].first);
+  plot.series.push_back(std::move(series));
+  return {std::move(plot)};
+}
+
+Plots rank_plot(const Comparison& c) {
+  const auto ranks = ranks_by_name(c, median_costs(c, kTightest));
+  if (ranks.size() < 2) return {};
+  Plot plot{.kind = Plot::Kind::dots,
+            .id = "plot-rank",
+            .title = "Mean rank",
+            .reading = "",
+            .caption = fmt::format(
+                "By declared work to 1e-6, with the 95 % bootstrap interval over n = {} problems "
+                "given to every optimizer; gaps below {:.3g} are not resolvable (Nemenyi); {}.",
+                ranks.size(), least_gap(c.optimizers.size(), ranks.size()),
+                denominators(c, shown_optimizers(c, kMostRanks))),
+            .x_label = "mean rank, 1 the best",
+            .y_label = ""};
+  Real reach = 0;
+  for (std::size_t s = 0; s < shown_optimizers(c, kMostRanks); ++s) {
+    std::vector<Real> own;
+    Real sum = 0;
+    for (const auto& [name, rank] : ranks) {
+      own.push_back(rank[s]);
+      sum += rank[s];
+    }
+    const Interval interval = bootstrap_mean(own, "ranks");
+    plot.series.push_back({s,
+                           optimizer_text(c, s),
+                           {sum / Real(own.size())},
+                           {Real(s)},
+                           {interval.low},
+                           {interval.high}});
+    plot.rows.push_back({optimizer_text(c, s), {.optimizer = s}});
+  }
+  const auto best =
+      std::ranges::min_element(plot.series, {}, [](const PlotSeries& one) { return one.x[0]; });
+  reach = best->high[0];
+  const auto within = std::ranges::count_if(
+      plot.series, [&](const PlotSeries& one) { return one.low[0] <= reach; });
+  plot.reading = fmt::format("{} has the least, {:.3g}; the intervals of {} others reach its own.",
+                             best->name, best->x[0], within - 1);
+  return {std::move(plot)};
+}
+
+Plots signed_rank_plot(const Comparison& c) {
+  const std::size_t k = shown_optimizers(c, kMostTablePairs);
+  if (k < 2) return {};
+  const SignedRanks ranked = signed_ranks(c, k);
+  Plot plot{.kind = Plot::Kind::matrix,
+            .id = "plot-signed-rank",
+            .title = "Which pairs can be told apart",
+            .reading = fmt::format(
+                "{} of {} pairs can be told apart at 0.05; the least adjusted p is {:.2g}.",
+                ranked.told, ranked.pairs.size(), ranked.least),
+            .caption = fmt::format(
+                "Wilcoxon's signed ranks on log-ratios of declared work to 1e-6, p after Holm over "
+                "all pairs; the darker the surer, framed at 0.05 or less; {}.",
+                denominators(c, k)),
+            .x_label = "",
+            .y_label = ""};
+  const Real none = std::nan("");
+  for (std::size_t s = 0; s < k; ++s) {
+    plot.rows.push_back({optimizer_text(c, s), {.optimizer = s}});
+    plot.series.push_back({s, optimizer_text(c, s), {}, std::vector<Real>(k, none), {}, {}});
+    for (std::size_t b = 0; b < k; ++b) plot.series.back().x.push_back(Real(b));
+  }
+  for (const RankedPair& pair : ranked.pairs)
+    plot.series[pair.a].y[pair.b] = plot.series[pair.b].y[pair.a] = pair.adjusted;
+  return {std::move(plot)};
+}
+
+}  // namespace isoline::reports

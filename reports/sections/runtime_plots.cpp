@@ -1,0 +1,167 @@
+// Plots of what runs cost: runtime distributions with simulated restarts, and cost to a target.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/digest.h"
+#include "core/draws.h"
+#include "reports/read/reached.h"
+#include "reports/sections/evidence.h"
+#include "reports/sections/words.h"
+#include "reports/statistics/runtimes.h"
+
+namespace isoline::reports {
+namespace {
+
+// Counts of hits by the first point of the grid that is no less, over simulated restarts.
+class RestartedHits {
+ public:
+  explicit RestartedHits(const std::vector<Real>& grid) : grid_(grid), hits_(grid.size(), 0) {}
+
+  void add(const std::vector<std::vector<Real>>& targets, const std::vector<Real>& spent,
+           const std::string& key) {
+    const bool is_certain = targets.size() == 1;  // every draw is the same
+    for (std::size_t draw = 0; draw < (is_certain ? 1 : kDraws); ++draw) {
+      Draws random(fnv1a(key), "report", "restarted targets", draw);
+      follow(targets, spent, random, is_certain ? Real(kDraws) : 1);
+    }
+  }
+  // The share met by each point of the grid; `pairs`: of problems, targets and draws.
+  std::vector<Real> shares(Real pairs) const {
+    std::vector<Real> shares;
+    Real sum = 0;
+    for (const Real hits : hits_) shares.push_back((sum += hits) / pairs);
+    return shares;
+  }
+
+ private:
+  // Attempts drawn one after the other, what each spent added up, until the most that any of them
+  // meets is met.
+  void follow(const std::vector<std::vector<Real>>& targets, const std::vector<Real>& spent,
+              Draws& random, Real weight) {
+    std::size_t most = 0, met = 0;
+    for (const auto& costs : targets)
+      most = std::max(most,
+                      static_cast<std::size_t>(std::ranges::find(costs, kNever) - costs.begin()));
+    for (Real before = 0; met < most;) {
+      const auto i = static_cast<std::size_t>(random.uniform() * static_cast<Real>(targets.size()));
+      for (; met < most && targets[i][met] < kNever; ++met) {
+        const auto at = std::ranges::lower_bound(grid_, before + targets[i][met]);
+        if (at != grid_.end()) hits_[static_cast<std::size_t>(at - grid_.begin())] += weight;
+      }
+      before += spent[i];
+    }
+  }
+
+  const std::vector<Real>& grid_;
+  std::vector<Real> hits_;
+};
+
+PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<Real>& grid) {
+  RestartedHits hits(grid);
+  Real pairs = 0;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const Cell& cell = c.cell(p, s);
+    if (cell.planned == 0) continue;
+    pairs += static_cast<Real>(kTargets * kDraws);
+    if (!cell.is_measured()) continue;
+    std::vector<std::vector<Real>> targets;
+    std::vector<Real> spent;
+    for (const std::size_t index : cell.runs) {
+      targets.push_back(target_costs(c.runs[index], c.problems[p].prices, kTargets));
+      spent.push_back(std::max(c.runs[index].spent, 1e-9));  // of nothing there is no end
+    }
+    hits.add(targets, spent, c.problems[p].spec + " " + c.optimizers[s].label);
+  }
+  return {s, optimizer_text(c, s), grid, pairs > 0 ? hits.shares(pairs) : grid, {}, {}};
+}
+
+constexpr std::size_t kMostTargetLines = 5;
+
+// Cost to the tightest tolerance by problem, with the bootstrap interval over seeds.
+PlotSeries target_series(const Comparison& c, std::size_t s, std::size_t problems) {
+  PlotSeries series{s, optimizer_text(c, s), {}, {}, {}, {}};
+  for (std::size_t p = 0; p < problems; ++p) {
+    const Cell& cell = c.cell(p, s);
+    if (!cell.is_measured() || !cell.cost[kTightest].is_solved()) continue;
+    std::vector<Real> costs;
+    for (const std::size_t run : cell.runs) costs.push_back(c.runs[run].cost[kTightest]);
+    const Interval interval = costs.size() < 2
+                                  ? Interval{costs[0], costs[0]}
+                                  : bootstrap_median(costs, c.problems[p].spec + " " + series.name);
+    series.x.push_back(cell.cost[kTightest].median);
+    series.y.push_back(Real(p));
+    series.low.push_back(interval.low);
+    series.high.push_back(interval.high);
+  }
+  return series;
+}
+
+}  // namespace
+
+Plots runtime_plot(const Comparison& c) {
+  Real most = 1;
+  for (const Run& run : c.runs) most = std::max(most, run.spent);
+  const std::vector<Real> grid = cost_grid(10 * most);  // a decade of restarts
+  Plot plot{.id = "plot-runtime",
+            .title = "Runtime distribution with restarts",
+            .reading = "",
+            .caption =
+                "Share of all pairs of a problem and one of 51 targets, 1 to 1e-10 of the "
+                "descent, met within so many " +
+                cost_unit(c) +
+                ", in 1,000 simulated sequences of runs drawn with replacement (COCO); " +
+                denominators(c, shown_optimizers(c, kMostLines)) + ".",
+            .x_label = "equivalent forward solves",
+            .y_label = "share of problems and targets",
+            .is_log_x = true};
+  for (std::size_t s = 0; s < shown_optimizers(c, kMostLines); ++s)
+    plot.series.push_back(runtime_series(c, s, grid));
+  plot.reading = fmt::format("Most targets within 100 forward solves: {}; in the end: {}.",
+                             highest_at(plot, 100), highest_at(plot, grid.back()));
+  return {std::move(plot)};
+}
+
+Plots target_plot(const Comparison& c) {
+  Plot plot{.kind = Plot::Kind::dots,
+            .id = "plot-target",
+            .title = "Cost to 1e-6, problem by problem",
+            .reading = "",
+            .caption = "",
+            .x_label = "equivalent forward solves",
+            .y_label = "",
+            .is_log_x = true};
+  const std::size_t shown = shown_optimizers(c, kMostTargetLines);
+  const std::size_t problems = std::min(c.problems.size(), kMostPlotRows);
+  for (std::size_t p = 0; p < problems; ++p)
+    plot.rows.push_back({shown_spec(c.problems[p].spec), {.problem = p}});
+  std::size_t dots = 0;
+  Real widest = 1;
+  std::string where;
+  for (std::size_t s = 0; s < shown; ++s) {
+    plot.series.push_back(target_series(c, s, problems));
+    const PlotSeries& one = plot.series.back();
+    dots += one.x.size();
+    for (std::size_t i = 0; i < one.x.size(); ++i) {
+      const Real ratio = one.high[i] / std::max(one.low[i], 1e-9);
+      if (!(ratio > widest)) continue;
+      widest = ratio;
+      where = fmt::format("{} on {}", one.name, plot.rows[std::size_t(one.y[i])].name);
+    }
+  }
+  if (dots == 0) return {};
+  plot.caption = fmt::format(
+      "Median over seeds in {} with its 95 % bootstrap interval (1,000 draws); no mark: the "
+      "median run does not get there; {}.",
+      cost_unit(c), denominators(c, shown));
+  plot.reading = fmt::format(
+      "{} of {} pairs get there in the median; {}.", dots, shown * problems,
+      where.empty() ? "no interval has any width: seeds agree"
+                    : fmt::format("the widest interval is that of {}, {}", where,
+                                  widest == kNever ? "without an upper end"
+                                                   : fmt::format("a factor of {:.3g}", widest)));
+  return {std::move(plot)};
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,36 @@
+// The sections of a report, one file a topic; document.cpp puts them in order.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/records/audited.h"
+#include "reports/read/comparison.h"
+#include "reports/sections/section.h"
+#include "reports/sections/verdicts.h"
+
+namespace isoline::reports {
+
+Section standings_section(const Comparison& comparison);
+Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
+Section learned_section(const Comparison& comparison);
+Section claims_section(const std::vector<Judgement>& judgements);
+Section properties_section(const std::vector<AuditedOptimizer>& audits);
+Section statistics_section(const Comparison& comparison);
+Section failures_section(const Comparison& comparison);
+Section builds_section(const Comparison& comparison);
+
+// Sentences of them that others say too.
+std::vector<std::string> verdict(const Comparison& comparison);  // who leads, and how sure that is
+std::string profile_reading(const Comparison& comparison, std::size_t tolerance);
+std::string curve_reading(const Comparison& comparison, std::size_t problem);
+std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict
+std::string measured_text(const Judgement& judgement);                 // "23.4 (18.2–31), n = 3"
+std::string headline(const Comparison& comparison);
+std::string missing_text(const Comparison& comparison);
+std::vector<std::string> remarks(const Comparison& comparison);
+
+// Below that many problems nothing is said of an order, and no profile is drawn.
+inline constexpr std::size_t kFewProblems = 4;
+
+}  // namespace isoline::reports

@@ -1,0 +1,47 @@
+// How figures, counts and commands are written, the same way in every format.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "reports/read/comparison.h"
+
+namespace isoline::reports {
+
+// The one way a table writes a number, times apart: whole numbers below ten million in full, all
+// others with four significant digits; "inf", "nan".
+std::string figure(Real value);
+std::string exact_figure(Real value);      // the shortest text that reads back as the same number
+std::string milliseconds(Real seconds);    // three digits: a time deserves no more
+std::string reached_figure(Real value);    // ✗ where infinite
+std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for what was never reached
+// "90–300", each end as `written`; empty where all agree.
+std::string range_figure(const Spread& spread, std::string (*written)(Real));
+std::string percent(Real share);
+std::string multiple(Real ratio);  // "1.3×"
+
+std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
+std::string counted(std::size_t count, std::string_view noun);  // "1 seed", "3 seeds"
+
+// A spec as people read it: "newton[rate=0.3333]", its long numbers cut to four digits.
+std::string shown_spec(std::string_view spec);
+std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"
+
+std::string status_meaning(Status status);  // "used up their work or iterations"
+std::string status_text(const std::map<Status, std::size_t>& statuses);  // "target 3, budget 2"
+
+// "4/5, 1 failed": runs that reached the tolerance of all runs; is_complete says that nothing is
+// lacking, so that small tables may leave it out.
+std::string count_text(const Cell& cell, std::size_t tolerance);
+bool is_complete(const Cell& cell, std::size_t tolerance);
+
+// The median work, ✗, "n/a", "missing", or nothing where nothing was planned.
+std::string matrix_text(const Cell& cell, std::size_t tolerance);
+
+// The command that asks for the same cell again: all its options explicit, no table of rates.
+std::string rerun_command(const Request& request);
+std::string budget_options(const Request& request);  // "--iterations 1000 --rates none"
+
+}  // namespace isoline::reports

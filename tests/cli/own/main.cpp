@@ -1,0 +1,55 @@
+// A program built elsewhere: Isoline's verbs over a catalog with two problems of its own, one sound
+// and one that breaks when it is evaluated.
+#include <cmath>
+
+#include "benchmarks/cli/program.h"
+#include "isoline_build_info.h"
+#include "problems/dense_physics.h"
+
+namespace isoline {
+namespace {
+
+using benchmarks::Catalog;
+using problems::DensePhysics;
+using problems::Draw;
+using problems::problem_entry;
+using problems::ProblemParts;
+
+// y = (sinh x1, x1 x2), y* = (1, 1).
+class Twist : public DensePhysics {
+ public:
+  Twist() : DensePhysics(2, 2) {}
+  void value(VectorRef x, VectorOut y) const override { y << std::sinh(x[0]), x[0] * x[1]; }
+  void derivative(VectorRef x, BatchOut J) const override { J << std::cosh(x[0]), 0, x[1], x[0]; }
+};
+
+class Thrower final : public Twist {
+ public:
+  void value(VectorRef, VectorOut) const override { throw std::runtime_error("it's on purpose"); }
+};
+
+template <class Physics>
+ProblemParts parts(const NoOptions&, const Draw& draw) {
+  return {.physics = std::make_unique<Physics>(),
+          .start = draw.start(Eigen::Vector2d(2, 2)),
+          .target = Vector::Ones(2),
+          .minimum = 0};
+}
+
+Catalog with_mine() {
+  Catalog catalog = benchmarks::builtin_catalog();
+  catalog.problems.add(problem_entry(
+      {.name = "twist", .title = "Twist", .formula = "(sinh x₁, x₁ x₂)", .source = "here"},
+      parts<Twist>));
+  catalog.problems.add(
+      problem_entry({.name = "thrower", .title = "Thrower", .formula = "none", .source = "here"},
+                    parts<Thrower>));
+  return catalog;
+}
+
+}  // namespace
+}  // namespace isoline
+
+int main(int count, char** arguments) {
+  return isoline::main(count, arguments, isoline::with_mine, {kCommit, kDirty});
+}
