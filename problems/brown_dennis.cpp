@@ -38,12 +38,11 @@ class BrownDennis final : public DensePhysics {
   }
   bool has_curvature() const override { return true; }
   void second(VectorRef, VectorRef u, BatchOut H) const override {
-    const Eigen::ArrayXd w = 2 * u.array();
-    H(0, 0) = H(2, 2) = w.sum();
-    H(0, 1) = H(1, 0) = (w * t_).sum();
-    H(1, 1) = (w * t_.square()).sum();
-    H(2, 3) = H(3, 2) = (w * sin_t_).sum();
-    H(3, 3) = (w * sin_t_.square()).sum();
+    H(0, 0) = H(2, 2) = 2 * u.sum();
+    H(0, 1) = H(1, 0) = 2 * (u.array() * t_).sum();
+    H(1, 1) = 2 * (u.array() * t_.square()).sum();
+    H(2, 3) = H(3, 2) = 2 * (u.array() * sin_t_).sum();
+    H(3, 3) = 2 * (u.array() * sin_t_.square()).sum();
   }
 
  private:
