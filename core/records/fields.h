@@ -70,6 +70,10 @@ class FieldWriter {
     optional(name, value);
   }
   template <class Value>
+  void forgiven(const char* name, const Value& value, const char* = "") {
+    (*this)(name, value);
+  }
+  template <class Value>
   void when(bool holds, const char* name, const Value& value, const char* = "") {
     if (holds) (*this)(name, value);
   }
@@ -103,6 +107,10 @@ class FieldReader {
   }
   template <class Value>
   void expected(const char* name, Value& value, const char* = "") {
+    optional(name, value);
+  }
+  template <class Value>
+  void forgiven(const char* name, Value& value, const char* = "") {
     optional(name, value);
   }
   template <class Value>
@@ -145,6 +153,11 @@ class FieldSchema {
   template <class Value>
   void expected(const char* name, const Value&, const char* law = "") {
     describe<FormOfHeld<const Value>>(place_of(name, true), law);
+  }
+  // The same, written where it is empty too.
+  template <class Value>
+  void forgiven(const char* name, const Value&, const char* law = "") {
+    describe<Form<Value>>(place_of(name, true), law);
   }
   template <class Value>
   void when(bool, const char* name, const Value&, const char* law = "") {

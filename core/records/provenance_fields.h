@@ -33,7 +33,7 @@ void fields(Like<RunProvenance> auto& run, auto& field) {
   field.expected("started", run.started);
   field.expected("concurrent_jobs", run.concurrent_jobs, R"({"minimum": 1})");
   field.expected("exclusive", run.is_exclusive);
-  field.expected("command", run.command);
+  field.forgiven("command", run.command);
   field.rest(run.other, false);
 }
 
