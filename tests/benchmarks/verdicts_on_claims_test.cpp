@@ -13,6 +13,7 @@
 
 namespace isoline::benchmarks {
 
+using reports::judge;
 using reports::Judgement;
 using reports::measured_text;
 using reports::Verdict;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/files.h"
 #include "core/json.h"
 #include "reports/read/reached.h"
 #include "reports/report.h"

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/records/plan.h"
 #include "core/records/sheet.h"
 #include "tests/reports/synthetic.h"
 
