@@ -30,6 +30,7 @@ Results results_of(const Shell& shell, const std::string& prefix, const std::str
   const auto runs = shell.folder() / out / "runs";
   if (!std::filesystem::exists(runs)) return results;
   for (const auto& entry : std::filesystem::directory_iterator(runs)) {
+    if (entry.path().extension() != ".json") continue;  // pictures stand beside
     Record record = read_record(entry.path());
     results.records.emplace(record.cell, std::move(record));
   }
@@ -80,6 +81,8 @@ struct Processor {
   const char* name;   // as the emulator calls it
   const char* brand;  // as it calls itself
 };
+
+void PrintTo(const Processor& processor, std::ostream* out) { *out << processor.name; }
 
 class Emulation : public testing::TestWithParam<Processor> {};
 
