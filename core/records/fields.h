@@ -111,7 +111,7 @@ class FieldReader {
   }
   template <class Value>
   void forgiven(const char* name, Value& value, const char* = "") {
-    optional(name, value);
+    if (in_.contains(name)) (*this)(name, value);
   }
   template <class Value>
   void when(bool holds, const char* name, Value& value, const char* = "") {

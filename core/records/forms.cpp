@@ -59,6 +59,16 @@ void Form<Status>::law(JsonPlace out) {
     if (name != name_of(Status::running)) out["enum"].next().set(name);  // it is never written
 }
 
+void Form<Aim>::read(const JsonView& json, Aim& aim) {
+  const auto found = aim_of(json.get<std::string>());
+  require(found.has_value(), [&] { return "unknown aim " + json.get<std::string>(); });
+  aim = *found;
+}
+
+void Form<Aim>::law(JsonPlace out) {
+  for (const std::string_view name : kAimNames) out["enum"].next().set(name);
+}
+
 void Form<Grid>::write(const Grid& grid, JsonPlace out) {
   out.make_list();
   for (Index j = 0; j < grid.columns(); ++j) out.next().set(grid.column(j));

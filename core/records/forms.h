@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/aim.h"
 #include "core/grid.h"
 #include "core/options.h"
 #include "core/oracle.h"
@@ -163,6 +164,13 @@ template <>
 struct Form<Status> {
   static void write(Status status, JsonPlace out) { out.set(name_of(status)); }
   static void read(const JsonView& json, Status& status);
+  static void law(JsonPlace out);
+};
+
+template <>
+struct Form<Aim> {
+  static void write(Aim aim, JsonPlace out) { out.set(name_of(aim)); }
+  static void read(const JsonView& json, Aim& aim);
   static void law(JsonPlace out);
 };
 

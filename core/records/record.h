@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/aim.h"
 #include "core/oracle.h"
 #include "core/real.h"
 #include "core/records/exhibit.h"
@@ -27,7 +28,7 @@ struct Curve {
   std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
 };
 
-// When each of 51 targets τ = 10^(−j/5) was first reached: f ≤ f_L + τ (f₀ − f_L). −1: never.
+// When each of 51 targets τ = 10^(−j/5) was first reached: f ≤ f_L + τ s. −1: never.
 struct Hits {
   std::vector<Real> target;
   std::vector<std::int64_t> iteration, work, forwards;
@@ -57,9 +58,15 @@ struct Record {
   Request request;
   Status status = Status::running;
   std::string message;
-  std::string claimed;                                  // what the method said of its own success
-  std::optional<Real> minimum;                          // f_L, where declared
-  std::map<std::string, std::optional<bool>> verified;  // by τ: "1e-1", "1e-3", "1e-6"
+  std::string claimed;          // what the method said of its own success
+  Aim aim = Aim::loss;          // what its user wants: headlines count that
+  std::optional<Real> minimum;  // f_L: declared, else the best known
+  std::optional<Real> scale;    // s = min(f₀ − f_L, the problem's scale)
+  std::map<std::string, std::optional<bool>> verified;  // by τ: f − f_L ≤ τ s at the returned point
+  // Of errors in x, where a solution is known: ‖x*‖, and what its data cannot better.
+  std::optional<Real> x_scale;
+  Real x_floor = 0;
+  std::map<std::string, std::optional<bool>> found;  // by τ: error in x ≤ max(τ‖x*‖, 1.1 x_floor)
   OracleCounts counts{};
   OracleCounts prices{};
   Summary summary;
@@ -89,7 +96,7 @@ Json without_timings(Json record);
 
 inline constexpr const char* kRunSchema = "isoline.run/1";
 
-// τ of `verified`, by its name in the record.
+// τ of `verified` and `found`, by its name in the record.
 inline const std::map<std::string, Real> kVerified = {
     {"1e-1", 1e-1}, {"1e-3", 1e-3}, {"1e-6", 1e-6}};
 

@@ -10,6 +10,8 @@ namespace isoline {
 
 inline constexpr const char* kDigestLaw = R"({"pattern": "^[0-9a-f]{16}$"})";
 
+inline constexpr const char* kTolerancesLaw = R"({"required": ["1e-1", "1e-3", "1e-6"]})";
+
 void fields(Like<Curve> auto& curve, auto& field) {
   field("iteration", curve.iteration);
   field("work", curve.work);
@@ -70,8 +72,13 @@ void fields(Like<Record> auto& record, auto& field) {
   field("status", record.status);
   field("message", record.message);
   field("claimed", record.claimed);
+  field.forgiven("aim", record.aim);
   field("minimum", record.minimum);
-  field("verified", record.verified, R"({"required": ["1e-1", "1e-3", "1e-6"]})");
+  field.forgiven("scale", record.scale, R"({"description": "Older records lack it: f₀ − f_L"})");
+  field("verified", record.verified, kTolerancesLaw);
+  field.forgiven("x_scale", record.x_scale);
+  field.forgiven("x_floor", record.x_floor);
+  field.forgiven("found", record.found, kTolerancesLaw);
   field("counts", record.counts);
   field("prices", record.prices);
   field("summary", record.summary);
