@@ -14,12 +14,14 @@ void add(std::string& row, std::string_view field) {
   row += field;
 }
 
-std::string header() {
+std::string header(const Comparison& c) {
   std::string row =
       "problem,optimizer,seed,status,iterations,work,start_loss,loss,best_loss,x_error";
-  for (const Tolerance& tolerance : kTolerances) row += fmt::format(",work_to_{}", tolerance.name);
-  for (const Tolerance& tolerance : kTolerances) row += fmt::format(",cost_to_{}", tolerance.name);
-  for (const Tolerance& tolerance : kTolerances)
+  for (const Tolerance& tolerance : c.yardstick.tolerances)
+    row += fmt::format(",work_to_{}", tolerance.name);
+  for (const Tolerance& tolerance : c.yardstick.tolerances)
+    row += fmt::format(",cost_to_{}", tolerance.name);
+  for (const Tolerance& tolerance : c.yardstick.tolerances)
     row += fmt::format(",seconds_to_{}", tolerance.name);
   row += ",cost";
   for (const std::string_view oracle : kOracleNames) row += fmt::format(",{}", oracle);
@@ -40,9 +42,9 @@ std::string row_of(const Run& run) {
   add(row, std::to_string(summary.work));
   for (const Real value : {summary.start_loss, summary.loss, summary.best_loss, summary.x_error})
     add(row, exact_figure(value));
-  for (const Real work : run.work) add(row, exact_figure(work));
-  for (const Real cost : run.cost) add(row, exact_figure(cost));
-  for (const Real seconds : run.seconds) add(row, exact_figure(seconds));
+  for (const Real work : run.taken[Measure::work]) add(row, exact_figure(work));
+  for (const Real cost : run.taken[Measure::cost]) add(row, exact_figure(cost));
+  for (const Real seconds : run.taken[Measure::time]) add(row, exact_figure(seconds));
   add(row, exact_figure(run.spent));
   for (const std::int64_t count : record.counts) add(row, std::to_string(count));
   add(row, exact_figure(summary.wall_seconds));
@@ -65,7 +67,7 @@ std::string row_of(const PlannedCell& cell) {
 }  // namespace
 
 std::string csv_report(const Document& document) {
-  std::string text = header();
+  std::string text = header(document.comparison);
   for (const Run& run : document.comparison.runs) text += row_of(run);
   for (const PlannedCell& cell : document.comparison.missing) text += row_of(cell);
   return text;
