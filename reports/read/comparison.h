@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "reports/read/costs.h"
+#include "reports/read/lead.h"
 #include "reports/read/study.h"
 #include "reports/read/yardstick.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
-
-inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
 
 // One run: its record and what it took to each tolerance, infinite where never reached.
 struct Run {
@@ -37,12 +36,14 @@ struct Run {
 // One problem and one optimizer, over seeds.
 struct Cell {
   std::vector<std::size_t> runs;  // indices, by seed
-  std::size_t planned = 0;        // cells of the plan; runs.size() of them or more are answered
+  std::size_t planned = 0;        // runs.size(), and seeds that were asked for and are missing
   std::size_t failed = 0;         // runs that went wrong: see is_failure()
   std::map<Status, std::size_t> statuses;
   ByMeasure<Spread> taken;
   std::array<Spread, kTolerances.size()> headline;  // of them what the yardstick counts
-  std::array<bool, kTolerances.size()> is_best{};   // the least median of the problem; ties all
+  // The least median of the problem, ties all: on common settings of the ranked ones, and of
+  // another that needs no more.
+  std::array<bool, kTolerances.size()> is_best{};
   std::array<bool, kTolerances.size()> is_bound{};  // of some run: it took at most that
   Spread loss, x_error;                             // at the end; x_error.n = 0: no truth is known
   std::string inapplicable;                         // why the pair makes no sense, or empty
@@ -61,18 +62,24 @@ struct ProblemAxis {
   bool is_learned = false;
 };
 
-// How an optimizer did on all that was asked of it.
+// How an optimizer did on the settings on which it is compared.
 struct Standing {
-  std::size_t solved = 0;   // problems whose median work is finite
-  std::size_t wins = 0;     // problems on which its median work is the least, ties counted for all
-  std::size_t reached = 0;  // runs that reach the tolerance
-  Real typical = kNever;    // the median over its problems of its work over the least, ✗ included
-  Real score = 0;           // area of its profile up to kProfileEnd times the least work
+  std::size_t settings = 0;  // so many
+  std::size_t solved = 0;    // settings whose median work is finite
+  std::size_t wins = 0;      // settings on which its median work is the least, ties counted for all
+  std::size_t runs = 0;      // of these settings, inapplicable ones left out
+  std::size_t reached = 0;   // of them, those that reach the tolerance
+  Real typical = kNever;     // the middle of its work over the least, in logarithms, ✗ included
+  Real score = 0;            // area of its profile up to kProfileEnd times the least work
 };
 
 struct OptimizerAxis {
   std::string label;   // its spec; its name alone where a file of rates chose the options
   std::string method;  // its name
+  // Where a method sees more on some problems than on others, each meaning has a row of its own:
+  // "sip, given P⁻¹" and "sip". Then all of them stand under this label.
+  std::string whole;
+  bool is_meaning = false;
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
   std::size_t planned = 0, applicable = 0;               // problems asked of it; that it can treat
@@ -81,24 +88,38 @@ struct OptimizerAxis {
 
   const Standing& tightest() const { return standings[kTightest]; }
   std::string family() const { return sheet == nullptr ? "" : sheet->family; }
+  std::string name_of_all() const { return is_meaning ? whole : label; }
 };
 
-// Who has the greatest score, and in what share of 1,000 resamplings of the problems it still does.
-struct Leader {
+// Methods that were given the very same settings; fields.h says how they are found.
+struct Order {
+  std::vector<std::size_t> settings, methods;  // problems; optimizers, best first
+
+  bool has(std::size_t optimizer) const;
+};
+
+// Where a method that is not in the common order would stand.
+struct Placed {
   std::size_t optimizer = 0;
-  Real stays_first = 0;
+  Order among;             // with itself, best first
+  std::size_t place = 0;   // 1 the best; ties share the better
+  std::size_t shared = 0;  // settings that most methods were given
+  std::size_t asked = 0;   // of them those it was given
 };
 
 struct Comparison {
   const Study* study = nullptr;  // must outlive the comparison
   Yardstick yardstick;
   std::vector<ProblemAxis> problems;      // by spec
-  std::vector<OptimizerAxis> optimizers;  // by area of the profile at the tightest tolerance
+  std::vector<OptimizerAxis> optimizers;  // the common order, best first; then who stands apart
   std::vector<Run> runs;
-  std::vector<std::vector<Cell>> cells;  // [problem][optimizer]
-  std::array<Profile, kTolerances.size()> profiles;
-  std::optional<Leader> leader;       // at the tightest tolerance; none where nothing is solved
-  std::optional<Leader> open_leader;  // among those without privileges, compared among themselves
+  std::vector<std::vector<Cell>> cells;              // [problem][optimizer]
+  Order order;                                       // the common one: of all tables that compare
+  std::vector<Order> other_orders;                   // of settings that only some were given
+  std::vector<Placed> apart;                         // who is not in the common order
+  std::array<Profile, kTolerances.size()> profiles;  // of the common order
+  std::optional<Lead> lead;       // at the tightest tolerance; none where nothing is solved
+  std::optional<Lead> open_lead;  // among those without privileges, compared among themselves
   std::size_t planned = 0, answered = 0;
   std::vector<PlannedCell> missing;
   std::map<Status, std::size_t> statuses;
@@ -114,8 +135,8 @@ struct Comparison {
 
 Comparison compare_optimizers(const Study& study, const Yardstick& yardstick = {});
 
-// costs[p][s]: medians to one tolerance, by the yardstick's measure or another; nothing where never
-// planned.
+// costs[p][s]: medians to one tolerance, by the yardstick's measure or another, in its unit;
+// nothing where never planned.
 Costs median_costs(const Comparison& comparison, std::size_t tolerance);
 Costs median_costs(const Comparison& comparison, std::size_t tolerance, Measure by);
 

@@ -24,6 +24,8 @@ inline std::string_view name_of(Measure measure) {
   return kMeasureNames[static_cast<std::size_t>(measure)];
 }
 std::optional<Measure> measure_of(std::string_view name);
+// What costs are compared in: below one of it they count as one. A time is in microseconds.
+inline Real least_unit(Measure measure) { return measure == Measure::time ? 1e-6 : 1; }
 
 // τ of a success: f ≤ f_L + τ s, or an error in x of τ times the solution's norm. Always a rung of
 // the ladder, since that is where records tell what was reached.

@@ -30,7 +30,4 @@ std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
 
-// Below that many problems nothing is said of an order, and no profile is drawn.
-inline constexpr std::size_t kFewProblems = 4;
-
 }  // namespace isoline::reports

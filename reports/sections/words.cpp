@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -105,6 +106,12 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 
 std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string ordinal(std::size_t place) {
+  constexpr std::array<const char*, 4> kEnds = {"th", "st", "nd", "rd"};
+  const std::size_t last = place % 10, tens = place / 10 % 10;
+  return fmt::format("{}{}", place, tens == 1 || last >= kEnds.size() ? "th" : kEnds[last]);
 }
 
 std::string optimizer_text(const Comparison& c, std::size_t s) {
