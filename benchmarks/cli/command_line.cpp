@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
@@ -169,10 +170,8 @@ void CommandLine::add_run() {
 }
 
 void CommandLine::add_report() {
-  const auto [verb, given] =
-      add("report",
-          "Write index.html, report.md, report.tex, report.csv, statistics.csv and report.json",
-          report_verb);
+  const std::string about = "Write " + format_names();
+  const auto [verb, given] = add("report", about.c_str(), report_verb);
   verb.add_option("DIR", given.folders, "Result folders of `isoline run`")->required();
   verb.add_option("--out", given.out, "Where to write (default: report/ in the first DIR)");
 }

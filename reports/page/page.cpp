@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "reports/formats/escape.h"
-#include "reports/formats/formats.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
