@@ -15,9 +15,9 @@ namespace isoline::reports {
 namespace {
 
 Json work_json(const Record& record, const BestKnown& best) {
-  Run run{.record = &record, .work = {}, .seconds = {}};
+  Run run{.record = &record};
   fill_reached(run, best);
-  return json_numbers(run.work);
+  return json_numbers(run.reached_loss[Measure::work]);
 }
 
 Json cell_json(const Record& record, const Subject& subject, const BestKnown& best) {

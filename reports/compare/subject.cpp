@@ -26,10 +26,11 @@ void add_work(Subject& subject, const Record& record, const BestKnown& reference
           work_quantity(hits.target[j], hits.iteration[j] < 0 ? kNever : Real(hits.work[j])));
     return;
   }
-  Run run{.record = &record, .work = {}, .seconds = {}};
+  Run run{.record = &record};
   fill_reached(run, reference);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    subject.quantities.push_back(work_quantity(kTolerances[t].tau, run.work[t]));
+    subject.quantities.push_back(
+        work_quantity(kTolerances[t].tau, run.reached_loss[Measure::work][t]));
 }
 
 std::string trace_of(const Record& record) {

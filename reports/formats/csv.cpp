@@ -17,14 +17,14 @@ struct Column {
   std::function<std::string(const Run&)> text;
 };
 
-void add_reached(std::vector<Column>& columns, const char* what,
-                 std::array<Real, kTolerances.size()> Run::*values) {
+void add_reached(std::vector<Column>& columns, const Yardstick& yardstick, const char* what,
+                 Measure by) {
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    columns.push_back({fmt::format("{}_to_{}", what, kTolerances[t].name),
-                       [values, t](const Run& run) { return exact_figure((run.*values)[t]); }});
+    columns.push_back({fmt::format("{}_to_{}", what, yardstick.tolerances[t].name),
+                       [by, t](const Run& run) { return exact_figure(run.taken[by][t]); }});
 }
 
-void add_figures(std::vector<Column>& columns) {
+void add_figures(std::vector<Column>& columns, const Yardstick& yardstick) {
   const auto figure_of = [&](const char* name, Real Summary::*value) {
     columns.push_back(
         {name, [value](const Run& run) { return exact_figure(run.record->summary.*value); }});
@@ -39,9 +39,10 @@ void add_figures(std::vector<Column>& columns) {
   figure_of("loss", &Summary::loss);
   figure_of("best_loss", &Summary::best_loss);
   figure_of("x_error", &Summary::x_error);
-  add_reached(columns, "work", &Run::work);
-  add_reached(columns, "cost", &Run::cost);
-  add_reached(columns, "seconds", &Run::seconds);
+  add_reached(columns, yardstick, "work", Measure::work);
+  add_reached(columns, yardstick, "cost", Measure::cost);
+  add_reached(columns, yardstick, "seconds", Measure::time);
+  add_reached(columns, yardstick, "iterations", Measure::iterations);
   columns.push_back({"cost", [](const Run& run) { return exact_figure(run.spent); }});
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     columns.push_back({std::string(kOracleNames[kind]), [kind](const Run& run) {
@@ -54,7 +55,7 @@ void add_figures(std::vector<Column>& columns) {
   count_of("peak_memory_bytes", &Summary::peak_memory_bytes);
 }
 
-std::vector<Column> columns_of_runs() {
+std::vector<Column> columns_of_runs(const Yardstick& yardstick) {
   const auto words = [](auto text) {
     return [text](const Run& run) { return csv_field(text(*run.record)); };
   };
@@ -63,7 +64,7 @@ std::vector<Column> columns_of_runs() {
       {"optimizer", words([](const Record& record) { return record.request.optimizer.spec; })},
       {"seed", [](const Run& run) { return std::to_string(run.record->request.seed); }},
       {"status", words([](const Record& record) { return name_of(record.status); })}};
-  add_figures(columns);
+  add_figures(columns, yardstick);
   for (Column column : std::initializer_list<Column>{
            {"privileges", words([](const Record& r) { return joined(r.privileges, "; "); })},
            {"message", words([](const Record& r) { return r.message; })},
@@ -97,7 +98,7 @@ void add_line(std::string& csv, const std::vector<Column>& columns, Text text) {
 
 std::string csv_report(const Document& document) {
   const Comparison& c = document.comparison;
-  const std::vector<Column> columns = columns_of_runs();
+  const std::vector<Column> columns = columns_of_runs(c.yardstick);
   std::string csv;
   add_line(csv, columns, [](const Column& column) { return column.name; });
   for (const Run& run : c.runs)

@@ -27,10 +27,10 @@ Json to_json(const std::map<Status, std::size_t>& statuses) {
   return json;
 }
 
-Json by_tolerance(const std::array<Spread, kTolerances.size()>& spreads) {
+Json by_tolerance(const Comparison& c, const Cell& cell, Measure by) {
   Json json = Json::object();
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    json[std::string(kTolerances[t].name)] = to_json(spreads[t]);
+    json[std::string(c.yardstick.tolerances[t].name)] = to_json(cell.taken[by][t]);
   return json;
 }
 
@@ -52,8 +52,8 @@ Json calls_json(const Comparison& c, const Cell& cell) {
   Json json = Json::object();
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
-    if (run.work[kTightest] == kNever) continue;
-    const OracleCounts counts = counts_at(*run.record, run.work[kTightest]);
+    if (run.taken[Measure::work][kTightest] == kNever) continue;
+    const OracleCounts counts = counts_at(*run.record, run.taken[Measure::work][kTightest]);
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       json[std::string(kOracleNames[kind])].push_back(counts[kind]);
   }
@@ -74,11 +74,12 @@ Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
             {"builds", builds_of(c, cell)}};
   if (!cell.inapplicable.empty()) json["inapplicable"] = cell.inapplicable;
   if (!cell.is_measured()) return json;
-  json["figures"] = {{"work", by_tolerance(cell.work)}, {"loss", to_json(cell.loss)}};
+  json["figures"] = {{"work", by_tolerance(c, cell, Measure::work)}, {"loss", to_json(cell.loss)}};
   if (cell.x_error.n > 0) json["figures"]["x_error"] = to_json(cell.x_error);
-  json["costs"] = by_tolerance(cell.cost);
+  json["costs"] = by_tolerance(c, cell, Measure::cost);
   json["calls"] = calls_json(c, cell);
-  json["times"] = {{"seconds", by_tolerance(cell.seconds)}, {"timed_alone", cell.is_timed_alone}};
+  json["times"] = {{"seconds", by_tolerance(c, cell, Measure::time)},
+                   {"timed_alone", cell.is_timed_alone}};
   return json;
 }
 
@@ -90,8 +91,8 @@ Json profiles_json(const Comparison& c) {
     for (std::size_t s = 0; s < profile.solvers.size(); ++s)
       lines[c.optimizers[s].label] = {{"problems", profile.solvers[s].problems},
                                       {"ratios", profile.solvers[s].ratios}};
-    json[std::string(kTolerances[t].name)] = {{"optimizers", lines},
-                                              {"reading", profile_reading(c, t)}};
+    json[std::string(c.yardstick.tolerances[t].name)] = {{"optimizers", lines},
+                                                         {"reading", profile_reading(c, t)}};
   }
   return json;
 }
@@ -113,7 +114,8 @@ Json standings_json(const Comparison& c) {
               {"applicable", optimizer.applicable}, {"runs", optimizer.runs},
               {"failed", optimizer.failed}};
     for (std::size_t t = 0; t < kTolerances.size(); ++t)
-      json["standings"][std::string(kTolerances[t].name)] = standing_json(optimizer.standings[t]);
+      json["standings"][std::string(c.yardstick.tolerances[t].name)] =
+          standing_json(optimizer.standings[t]);
     list.push_back(std::move(json));
   }
   return list;

@@ -96,11 +96,11 @@ std::string best_of_each(const Comparison& c) {
     width = std::max(width, width_of(name_of_spec(problem.spec)));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::vector<std::size_t> order = ranking(c, p);
-    const bool is_solved = !order.empty() && c.cell(p, order[0]).work[kTightest].is_solved();
-    const std::string best = is_solved
-                                 ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
-                                               figure(c.cell(p, order[0]).work[kTightest].median))
-                                 : "nobody";
+    const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
+    const std::string best =
+        is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
+                                figure(c.cell(p, order[0]).headline[kTightest].median))
+                  : "nobody";
     lines.push_back("  " + left(name_of_spec(c.problems[p].spec), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }
@@ -118,11 +118,11 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
   std::string line = "  " + left(label_of(c.optimizers[s]), width);
   if (cell.runs.empty()) return line + "  missing\n";
   if (!cell.is_measured()) return line + "  n/a: " + terminal_text(cell.inapplicable) + "\n";
-  const Spread& work = cell.work[kTightest];
+  const Spread& work = cell.headline[kTightest];
   line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    line += right(reached_figure(cell.work[t].median) + (cell.is_best[t] ? "*" : " "), 8);
-  const Spread& seconds = cell.seconds[kTightest];
+    line += right(reached_figure(cell.headline[t].median) + (cell.is_best[t] ? "*" : " "), 8);
+  const Spread& seconds = cell.taken[Measure::time][kTightest];
   const bool is_marked = !cell.is_timed_alone && seconds.is_solved();
   line += right(milliseconds(seconds.median) + (is_marked ? "≈" : " "), 9);
   return line + right(reached_figure(cell.loss.median), 11) + "  " + status_text(cell.statuses) +

@@ -26,7 +26,7 @@ std::string matrix_cell(const Cell& cell, std::size_t p, Real least) {
   if (cell.planned == 0) return fmt::format("<td data-p={} class=none>", p);
   if (cell.runs.empty()) return fmt::format("<td data-p={} class=lost>missing", p);
   if (!cell.is_measured()) return fmt::format("<td data-p={} class=na>n/a", p);
-  const Spread& work = cell.work[kTightest];
+  const Spread& work = cell.headline[kTightest];
   const bool is_partial = work.unsolved > 0 && work.unsolved < work.n;
   const bool is_told = is_partial || cell.failed > 0 || cell.planned > cell.runs.size();
   const std::string count =
@@ -39,7 +39,8 @@ std::string matrix_cell(const Cell& cell, std::size_t p, Real least) {
 
 Real least_work(const Comparison& c, std::size_t problem) {
   Real least = kNever;
-  for (const Cell& cell : c.cells[problem]) least = std::min(least, cell.work[kTightest].median);
+  for (const Cell& cell : c.cells[problem])
+    least = std::min(least, cell.headline[kTightest].median);
   return least;
 }
 
@@ -100,9 +101,9 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
   }
   row += fmt::format("<td>{}", count_text(cell, kTightest));
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.work[t], cell.is_best[t] ? " class=best" : "");
+    row += spread_cell(cell.headline[t], cell.is_best[t] ? " class=best" : "");
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += time_cell(cell.seconds[t], cell.is_timed_alone);
+    row += time_cell(cell.taken[Measure::time][t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
   return row +
          fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, s, budgets));
@@ -175,7 +176,7 @@ std::string details_html(const Comparison& c) {
       "optimizer<th scope=col>runs<br>to 1e-6",
       html_text("[" + joined(quoted) + "]"));
   for (const char* what : {"work", "time, ms,"})
-    for (const Tolerance& tolerance : kTolerances)
+    for (const Tolerance& tolerance : c.yardstick.tolerances)
       html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);
   html +=
       "<th scope=col>final loss<th scope=col>error in x<th scope=col>how the runs ended<th "

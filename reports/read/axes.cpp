@@ -75,6 +75,7 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;
     if (could_declare && !record.minimum) at->is_minimum_declared = false;
+    if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
   }
   return axis;

@@ -35,11 +35,9 @@ void fill_cells(Comparison& c, const OptimizerLabels& label) {
             .problem = problem.at(record.request.problem.spec),
             .optimizer =
                 optimizer.at(label(record.request.problem.spec, record.request.optimizer.spec)),
-            .work = {},
-            .seconds = {},
             .is_timed_alone = record.provenance.run.is_timed_alone()};
-    fill_reached(run, best);
-    fill_costs(run, c.problems[run.problem].prices);
+    run.aim = c.problems[run.problem].aim;
+    fill_reached(run, best, c.problems[run.problem].prices, c.yardstick);
     c.cells[run.problem][run.optimizer].runs.push_back(c.runs.size());
     c.runs.push_back(run);
     answered.insert(record.cell);
@@ -82,10 +80,13 @@ void aggregate(const Comparison& c, Cell& cell) {
     return;
   }
   for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-    cell.work[t] = spread_over(c, cell, [t](const Run& run) { return run.work[t]; });
-    cell.cost[t] = spread_over(c, cell, [t](const Run& run) { return run.cost[t]; });
-    cell.seconds[t] = spread_over(c, cell, [t](const Run& run) { return run.seconds[t]; });
+    for (const Measure by : kMeasures)
+      cell.taken[by][t] =
+          spread_over(c, cell, [t, by](const Run& run) { return run.taken[by][t]; });
+    for (const std::size_t run : cell.runs)
+      cell.is_bound[t] = cell.is_bound[t] || c.runs[run].is_bound[t];
   }
+  cell.headline = cell.taken[c.yardstick.by];
   cell.loss = spread_over(c, cell, [](const Run& run) { return run.record->summary.loss; });
   if (is_truth_known)
     cell.x_error = spread_over(c, cell, [](const Run& run) { return run.record->summary.x_error; });
@@ -94,8 +95,8 @@ void aggregate(const Comparison& c, Cell& cell) {
 void mark_best(std::vector<Cell>& row) {
   for (std::size_t t = 0; t < kTolerances.size(); ++t) {
     Real least = kNever;
-    for (const Cell& cell : row) least = std::min(least, cell.work[t].median);
-    for (Cell& cell : row) cell.is_best[t] = least < kNever && cell.work[t].median == least;
+    for (const Cell& cell : row) least = std::min(least, cell.headline[t].median);
+    for (Cell& cell : row) cell.is_best[t] = least < kNever && cell.headline[t].median == least;
   }
 }
 
@@ -113,14 +114,17 @@ void summarize_runs(Comparison& c) {
 
 }  // namespace
 
-Costs median_costs(const Comparison& c, std::size_t tolerance,
-                   std::array<Spread, kTolerances.size()> Cell::*what) {
+Costs median_costs(const Comparison& c, std::size_t tolerance) {
+  return median_costs(c, tolerance, c.yardstick.by);
+}
+
+Costs median_costs(const Comparison& c, std::size_t tolerance, Measure by) {
   Costs costs;
   for (const auto& row : c.cells) {
     costs.emplace_back();
     for (const Cell& cell : row)
       costs.back().push_back(
-          cell.planned == 0 ? std::nullopt : std::optional<Real>((cell.*what)[tolerance].median));
+          cell.planned == 0 ? std::nullopt : std::optional<Real>(cell.taken[by][tolerance].median));
   }
   return costs;
 }
@@ -137,15 +141,14 @@ std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t probl
     if (comparison.cell(problem, s).is_measured()) order.push_back(s);
   std::ranges::stable_sort(order, {}, [&](std::size_t s) {
     const Cell& cell = comparison.cell(problem, s);
-    return std::array{cell.work[2].median, cell.work[1].median, cell.work[0].median,
+    return std::array{cell.headline[2].median, cell.headline[1].median, cell.headline[0].median,
                       cell.loss.median};
   });
   return order;
 }
 
-Comparison compare_optimizers(const Study& study) {
-  Comparison c;
-  c.study = &study;
+Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
+  Comparison c{.study = &study, .yardstick = yardstick};
   const OptimizerLabels label(study);
   c.problems = problem_axis(study);
   c.optimizers = optimizer_axis(study, label);

@@ -11,30 +11,26 @@
 
 #include "reports/read/costs.h"
 #include "reports/read/study.h"
+#include "reports/read/yardstick.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 
-// The tolerances of the tables: f ≤ f_L + τ (f₀ − f_L). Hits list τ = 10^(−j/5) at index j.
-struct Tolerance {
-  std::string_view name;
-  Real tau;
-  std::size_t hit;
-};
-inline constexpr std::array<Tolerance, 3> kTolerances = {
-    {{"1e-1", 1e-1, 5}, {"1e-3", 1e-3, 15}, {"1e-6", 1e-6, 30}}};
-inline constexpr std::size_t kTightest = kTolerances.size() - 1;
 inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
 
 // One run: its record and what it took to each tolerance, infinite where never reached.
 struct Run {
   const Record* record = nullptr;
   std::size_t problem = 0, optimizer = 0;  // indices
-  std::array<Real, kTolerances.size()> work, seconds;
-  Real minimum = 0;  // f_L: declared, else the best known
-  // In equivalent forward solves, at the prices of the problem: to each tolerance, and in all.
-  std::array<Real, kTolerances.size()> cost = {kNever, kNever, kNever};
-  Real spent = 0;
+  Aim aim = Aim::loss;                     // of its problem: which success counts
+  Real minimum = 0;                        // f_L: declared, else the best known
+  Real scale = 0;                          // s of f ≤ f_L + τ s
+  ByMeasure<Real> taken{kNever};           // until what its problem aims at
+  // Until each kind of success: for tables that hold them against each other.
+  ByMeasure<Real> reached_loss{kNever}, found_x{kNever};
+  // Read at kept points with others skipped between: it took at most that.
+  std::array<bool, kTolerances.size()> is_bound{};
+  Real spent = 0;              // in all, in equivalent forward solves at the prices of its problem
   bool is_timed_alone = true;  // no other run beside it: its times mean something
 };
 
@@ -44,10 +40,12 @@ struct Cell {
   std::size_t planned = 0;        // cells of the plan; runs.size() of them or more are answered
   std::size_t failed = 0;         // runs that went wrong: see is_failure()
   std::map<Status, std::size_t> statuses;
-  std::array<Spread, kTolerances.size()> work, cost, seconds;
-  std::array<bool, kTolerances.size()> is_best{};  // least median work of the problem; ties all
-  Spread loss, x_error;                            // at the end; x_error.n = 0: no truth is known
-  std::string inapplicable;                        // why the pair makes no sense, or empty
+  ByMeasure<Spread> taken;
+  std::array<Spread, kTolerances.size()> headline;  // of them what the yardstick counts
+  std::array<bool, kTolerances.size()> is_best{};   // the least median of the problem; ties all
+  std::array<bool, kTolerances.size()> is_bound{};  // of some run: it took at most that
+  Spread loss, x_error;                             // at the end; x_error.n = 0: no truth is known
+  std::string inapplicable;                         // why the pair makes no sense, or empty
   std::vector<std::string> privileges;
   bool is_timed_alone = true;
 
@@ -59,6 +57,7 @@ struct ProblemAxis {
   const Sheet* sheet = nullptr;     // none where the folder has none
   Prices prices = {};               // measured only where the sheet is of this very spec
   bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
+  Aim aim = Aim::loss;              // what its user wants, as its records say
   bool is_learned = false;
 };
 
@@ -91,7 +90,8 @@ struct Leader {
 };
 
 struct Comparison {
-  const Study* study = nullptr;           // must outlive the comparison
+  const Study* study = nullptr;  // must outlive the comparison
+  Yardstick yardstick;
   std::vector<ProblemAxis> problems;      // by spec
   std::vector<OptimizerAxis> optimizers;  // by area of the profile at the tightest tolerance
   std::vector<Run> runs;
@@ -112,18 +112,18 @@ struct Comparison {
   }
 };
 
-Comparison compare_optimizers(const Study& study);
+Comparison compare_optimizers(const Study& study, const Yardstick& yardstick = {});
 
-// costs[p][s]: medians to one tolerance, of &Cell::work or &Cell::cost; nothing where never
+// costs[p][s]: medians to one tolerance, by the yardstick's measure or another; nothing where never
 // planned.
-Costs median_costs(const Comparison& comparison, std::size_t tolerance,
-                   std::array<Spread, kTolerances.size()> Cell::*what = &Cell::work);
+Costs median_costs(const Comparison& comparison, std::size_t tolerance);
+Costs median_costs(const Comparison& comparison, std::size_t tolerance, Measure by);
 
 // Indices of the problems of each name: settings of one problem are no two witnesses.
 std::map<std::string, std::vector<std::size_t>> problems_by_name(const Comparison& comparison);
 
-// The optimizers that ran on a problem, best first: by median work from the tightest tolerance to
-// the loosest, then by final loss.
+// The optimizers that ran on a problem, best first: by what the yardstick counts, from the tightest
+// tolerance to the loosest, then by final loss.
 std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem);
 
 }  // namespace isoline::reports

@@ -18,9 +18,9 @@ void count(OptimizerAxis& optimizer, const Cell& cell) {
   optimizer.failed += cell.failed;
   for (std::size_t t = 0; t < kTolerances.size(); ++t) {
     Standing& standing = optimizer.standings[t];
-    standing.solved += cell.work[t].is_solved();
+    standing.solved += cell.headline[t].is_solved();
     standing.wins += cell.is_best[t];
-    standing.reached += cell.work[t].n - cell.work[t].unsolved;
+    standing.reached += cell.headline[t].n - cell.headline[t].unsolved;
   }
 }
 

@@ -24,11 +24,11 @@ Calls calls_of(const Comparison& c, std::size_t s) {
     calls.runs += cell.planned;
     for (const std::size_t index : cell.runs) {
       const Run& run = c.runs[index];
-      if (run.work[kTightest] == kNever) continue;
+      if (run.taken[Measure::work][kTightest] == kNever) continue;
       ++calls.reached;
-      calls.work += run.work[kTightest];
-      calls.cost += run.cost[kTightest];
-      const OracleCounts counts = counts_at(*run.record, run.work[kTightest]);
+      calls.work += run.taken[Measure::work][kTightest];
+      calls.cost += run.taken[Measure::cost][kTightest];
+      const OracleCounts counts = counts_at(*run.record, run.taken[Measure::work][kTightest]);
       for (std::size_t kind = 0; kind < kOracles; ++kind) calls.counts[kind] += Real(counts[kind]);
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reports/read/orders.h"
+#include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/runtimes.h"
@@ -26,10 +27,8 @@ std::size_t returned(const Comparison& c, std::size_t s, std::size_t tolerance) 
     std::vector<Real> unmet;
     for (const std::size_t index : c.cell(p, s).runs) {
       const Run& run = c.runs[index];
-      const Summary& summary = run.record->summary;
-      const Real goal =
-          run.minimum + kTolerances[tolerance].tau * (summary.start_loss - run.minimum);
-      const bool is_met = !is_failure(run.record->status) && summary.loss <= goal;
+      const bool is_met =
+          !is_failure(run.record->status) && returns(run, c.yardstick.tolerances[tolerance].tau);
       unmet.push_back(is_met ? 0 : kNever);
     }
     count += c.cell(p, s).is_measured() && median_of(unmet) < kNever;
@@ -98,7 +97,7 @@ Table returned_table(const Comparison& c) {
           "and the digits gained there, median over problems. A failed run returns nothing.",
       .columns = {"optimizer"},
       .rows = {}};
-  for (const Tolerance& tolerance : kTolerances)
+  for (const Tolerance& tolerance : c.yardstick.tolerances)
     for (const char* where : {"seen", "returned"})
       table.columns.push_back(fmt::format("{} {}", tolerance.name, where));
   for (const char* column : {"digits seen", "digits returned", "n problems", "failed"})

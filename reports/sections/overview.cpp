@@ -75,8 +75,8 @@ std::string sureness(const Leader& leader) {
 // "; next adam, 1.3× as much", and whether seeds could turn it round.
 std::string runner_up(const Comparison& c, std::size_t problem, std::size_t first,
                       std::size_t second) {
-  const Spread& best = c.cell(problem, first).work[kTightest];
-  const Spread& next = c.cell(problem, second).work[kTightest];
+  const Spread& best = c.cell(problem, first).headline[kTightest];
+  const Spread& next = c.cell(problem, second).headline[kTightest];
   const std::string name = shown_spec(c.optimizers[second].label);
   if (next.median <= best.median) return fmt::format(", tied with {}", name);
   return fmt::format("; next {}, {} as much{}", name,
@@ -155,7 +155,7 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
   const Profile& profile = c.profiles[tolerance];
   Real near = 0, ever = 0;
   const std::string fast = leaders(c, profile, 2, near), robust = leaders(c, profile, kNever, ever);
-  const std::string_view tau = kTolerances[tolerance].name;
+  const std::string_view tau = c.yardstick.tolerances[tolerance].name;
   if (ever == 0) return fmt::format("No method solves any of its problems to {}.", tau);
   return fmt::format(
       "{} {} {} of {} problems to {} within 2× of the least work; the most at any price is {}, by "
@@ -167,7 +167,7 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
 std::string curve_reading(const Comparison& c, std::size_t problem) {
   const std::vector<std::size_t> order = ranking(c, problem);
   if (order.empty()) return "Nothing has run on this problem.";
-  const auto work = [&](std::size_t s) { return c.cell(problem, s).work[kTightest]; };
+  const auto work = [&](std::size_t s) { return c.cell(problem, s).headline[kTightest]; };
   const auto solved = static_cast<std::size_t>(
       std::ranges::count_if(order, [&](std::size_t s) { return work(s).is_solved(); }));
   if (solved == 0) return least_loss_reading(c, problem, order);

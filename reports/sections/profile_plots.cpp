@@ -59,7 +59,7 @@ Plots profile_plot(const Comparison& c) {
 }
 
 Plots data_profile_plot(const Comparison& c) {
-  const Costs costs = median_costs(c, kTightest, &Cell::cost);
+  const Costs costs = median_costs(c, kTightest, Measure::cost);
   Plot plot{.id = "plot-data-profile",
             .title = "Data profile",
             .reading = "",

@@ -157,7 +157,7 @@ Table data_profile_table(const Comparison& c) {
                             Real(kWork[4]), std::numeric_limits<Real>::max()}) {
       std::size_t within = 0;
       for (std::size_t p = 0; p < c.problems.size(); ++p)
-        within += c.cell(p, s).cost[kTightest].median <= work;
+        within += c.cell(p, s).taken[Measure::cost][kTightest].median <= work;
       row.push_back(share_cell(within, n));
       if (work == kWork[2] && n > 0) first.offer(Real(within) / Real(n), optimizer_text(c, s));
     }

@@ -52,7 +52,7 @@ TableCell interval_cell(const Interval& interval) {
 
 Table rank_table(const Comparison& c) {
   const auto ranks = ranks_by_name(c, median_costs(c, kTightest));
-  const auto measured = ranks_by_name(c, median_costs(c, kTightest, &Cell::cost));
+  const auto measured = ranks_by_name(c, median_costs(c, kTightest, Measure::cost));
   Table table{
       .id = "mean-rank",
       .title = "Mean rank",

@@ -15,15 +15,6 @@ namespace {
 constexpr Real kDigits = 10;               // of the targets: τ = 10^(−j/5), j = 0 … 50
 constexpr std::size_t kMostProblems = 25;  // columns of a matrix
 
-// What is left of the descent at each point of a run's curve.
-std::vector<Real> gaps_of(const Run& run) {
-  std::vector<Real> gaps;
-  const Real descent = run.record->summary.start_loss - run.minimum;
-  for (const Real loss : run.record->curve.loss)
-    gaps.push_back(descent > 0 ? std::max(loss - run.minimum, 0.0) / descent : kNever);
-  return gaps;
-}
-
 // The most that any run of a problem spent: the common budget of its areas.
 Real budget_of(const Comparison& c, std::size_t problem) {
   Real most = 0;
@@ -54,7 +45,7 @@ Anytime anytime_of(const Comparison& c, std::size_t s, const std::vector<Real>& 
         for (std::size_t i = 0; i < kWithin.size(); ++i) all.within[i] += cost <= kWithin[i];
       }
       all.area +=
-          area_over_curve(prices.curve_costs(*run.record), gaps_of(run), budgets[p], kDigits);
+          area_over_curve(prices.curve_costs(*run.record), left_of_aim(run), budgets[p], kDigits);
     }
   }
   if (all.runs > 0) all.area /= Real(all.runs);
@@ -65,8 +56,8 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
   std::vector<Attempt> attempts;
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
-    const bool is_success = run.cost[kTightest] < kNever;
-    attempts.push_back({is_success ? run.cost[kTightest] : run.spent, is_success});
+    const bool is_success = run.taken[Measure::cost][kTightest] < kNever;
+    attempts.push_back({is_success ? run.taken[Measure::cost][kTightest] : run.spent, is_success});
   }
   return attempts;
 }
@@ -75,8 +66,8 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
 TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   std::vector<std::pair<Real, std::size_t>> reached;
   for (const std::size_t index : cell.runs)
-    if (c.runs[index].work[kTightest] < kNever)
-      reached.emplace_back(c.runs[index].work[kTightest], index);
+    if (c.runs[index].taken[Measure::work][kTightest] < kNever)
+      reached.emplace_back(c.runs[index].taken[Measure::work][kTightest], index);
   if (reached.empty()) return shown;
   std::ranges::sort(reached);
   const auto [work, middle] = reached[(reached.size() - 1) / 2];
@@ -171,8 +162,9 @@ Table interval_table(const Comparison& c) {
   std::size_t certain = 0, cells = 0;
   fill_matrix(c, table, [&](std::size_t p, std::size_t s, const Cell& cell) -> TableCell {
     std::vector<Real> costs;
-    for (const std::size_t run : cell.runs) costs.push_back(c.runs[run].cost[kTightest]);
-    const Spread& spread = cell.cost[kTightest];
+    for (const std::size_t run : cell.runs)
+      costs.push_back(c.runs[run].taken[Measure::cost][kTightest]);
+    const Spread& spread = cell.taken[Measure::cost][kTightest];
     const std::string count = fmt::format("{}/{}", spread.n - spread.unsolved, spread.n);
     TableCell::Numbers numbers = {{"median", spread.median},
                                   {"reached", Real(spread.n - spread.unsolved)},
@@ -211,7 +203,7 @@ Table restart_table(const Comparison& c) {
     const std::string count = fmt::format("({}/{})", successes, attempts.size());
     TableCell::Numbers numbers = {
         {"expected", expected}, {"reached", Real(successes)}, {"n", Real(attempts.size())}};
-    rescued += expected < kNever && !cell.cost[kTightest].is_solved();
+    rescued += expected < kNever && !cell.taken[Measure::cost][kTightest].is_solved();
     if (expected == kNever || attempts.size() < 2)
       return {fmt::format("{} {}", reached_figure(expected), count), numbers};
     const std::vector<Real> costs = simulated_restarts(attempts, key_of(c, p, s));

@@ -60,7 +60,7 @@ Plots pairwise_plots(const Comparison& c) {
 
 Plots log_ratio_plot(const Comparison& c) {
   if (c.optimizers.size() < 2) return {};
-  const Costs costs = median_costs(c, kTightest, &Cell::cost);
+  const Costs costs = median_costs(c, kTightest, Measure::cost);
   std::vector<std::pair<Real, std::size_t>> bars;
   std::size_t given = 0;
   for (std::size_t p = 0; p < costs.size(); ++p) {

@@ -84,13 +84,14 @@ PlotSeries target_series(const Comparison& c, std::size_t s, std::size_t problem
   PlotSeries series{s, optimizer_text(c, s), {}, {}, {}, {}};
   for (std::size_t p = 0; p < problems; ++p) {
     const Cell& cell = c.cell(p, s);
-    if (!cell.is_measured() || !cell.cost[kTightest].is_solved()) continue;
+    if (!cell.is_measured() || !cell.taken[Measure::cost][kTightest].is_solved()) continue;
     std::vector<Real> costs;
-    for (const std::size_t run : cell.runs) costs.push_back(c.runs[run].cost[kTightest]);
+    for (const std::size_t run : cell.runs)
+      costs.push_back(c.runs[run].taken[Measure::cost][kTightest]);
     const Interval interval = costs.size() < 2
                                   ? Interval{costs[0], costs[0]}
                                   : bootstrap_median(costs, c.problems[p].spec + " " + series.name);
-    series.x.push_back(cell.cost[kTightest].median);
+    series.x.push_back(cell.taken[Measure::cost][kTightest].median);
     series.y.push_back(Real(p));
     series.low.push_back(interval.low);
     series.high.push_back(interval.high);

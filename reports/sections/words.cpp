@@ -149,7 +149,7 @@ std::string status_text(const std::map<Status, std::size_t>& statuses) {
 }
 
 std::string count_text(const Cell& cell, std::size_t tolerance) {
-  const Spread& work = cell.work[tolerance];
+  const Spread& work = cell.headline[tolerance];
   std::string text = fmt::format("{}/{}", work.n - work.unsolved, work.n);
   if (cell.failed > 0) text += fmt::format(", {} failed", cell.failed);
   const std::size_t missing = cell.planned - cell.runs.size();
@@ -161,11 +161,12 @@ std::string matrix_text(const Cell& cell, std::size_t tolerance) {
   if (cell.planned == 0) return "";
   if (cell.runs.empty()) return "missing";
   if (!cell.is_measured()) return "n/a";
-  return reached_figure(cell.work[tolerance].median);
+  return reached_figure(cell.headline[tolerance].median);
 }
 
 bool is_complete(const Cell& cell, std::size_t tolerance) {
-  return cell.work[tolerance].unsolved == 0 && cell.failed == 0 && cell.planned == cell.runs.size();
+  return cell.headline[tolerance].unsolved == 0 && cell.failed == 0 &&
+         cell.planned == cell.runs.size();
 }
 
 std::string budget_options(const Request& request) {

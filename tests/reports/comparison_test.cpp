@@ -79,8 +79,8 @@ TEST(Comparison, FailuresStayInTheDenominator) {
                 record_of({.seed = 4, .hits = 3, .status = Status::crashed})};
   const Comparison comparison = compare_optimizers(study);
   const Cell& cell = comparison.cell(0, 0);
-  EXPECT_EQ(cell.work[kTightest].median, 120);
-  EXPECT_EQ(cell.work[1].unsolved, 1U);  // 1e-3 is index 15
+  EXPECT_EQ(cell.headline[kTightest].median, 120);
+  EXPECT_EQ(cell.headline[1].unsolved, 1U);  // 1e-3 is index 15
   EXPECT_EQ(cell.failed, 1U);
   EXPECT_EQ(count_text(cell, kTightest), "3/5, 1 failed");
   EXPECT_EQ(status_text(cell.statuses), "target 3, budget 1, crashed 1");
@@ -203,8 +203,8 @@ TEST(Comparison, WithoutADeclaredMinimumTheBestKnownIsOne) {
   EXPECT_NEAR(best.minimum(b), 0.01, 1e-15);
   reports::Run run{.record = &study.runs[1]};
   fill_reached(run, best);
-  EXPECT_EQ(run.work[0], 10);
-  EXPECT_EQ(run.work[1], kNever);
+  EXPECT_EQ(run.taken[Measure::work][0], 10);
+  EXPECT_EQ(run.taken[Measure::work][1], kNever);
   EXPECT_FALSE(compare_optimizers(study).problems[0].is_minimum_declared);
 }
 

@@ -36,7 +36,7 @@ TEST(Targets, AgreeWithTheTablesAtEachTolerance) {
     const Comparison c = compare_optimizers(study);
     const TargetMedians medians = target_medians(c, c.cell(0, 0));
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-      const Spread& work = c.cell(0, 0).work[t];
+      const Spread& work = c.cell(0, 0).headline[t];
       const std::size_t hit = kTolerances[t].hit;
       EXPECT_EQ(medians.work.at(hit), work.median);
       const auto reached =
