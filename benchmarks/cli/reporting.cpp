@@ -30,10 +30,10 @@ std::string format_names() {
 }
 
 void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,
-                     bool quiet) {
+                     bool quiet, const reports::Yardstick& yardstick) {
   std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
   std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
-  const Document document = document_of(compare_optimizers(study), std::move(claims));
+  const Document document = document_of(compare_optimizers(study, yardstick), std::move(claims));
   write_report(document, out);
   if (!quiet)
     fmt::print("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string());

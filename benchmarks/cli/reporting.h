@@ -14,7 +14,8 @@ namespace isoline::benchmarks {
 class Session;
 
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
-                     Session& session, bool quiet = false);
+                     Session& session, bool quiet = false,
+                     const reports::Yardstick& yardstick = {});
 
 std::string format_names();  // "index.html, report.csv, …"
 

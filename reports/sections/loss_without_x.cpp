@@ -16,8 +16,8 @@ namespace {
 // What the median run of a pair came to.
 struct Outcome {
   bool is_loss_reached = false, is_x_found = false;
-  bool is_x_near = false;       // to √τ: what a loss at τ leaves of x where J is well conditioned
-  Real error = std::nan("");    // of x, as a share of the solution's norm
+  bool is_x_near = false;     // to √τ: what a loss at τ leaves of x where J is well conditioned
+  Real error = std::nan("");  // of x, as a share of the solution's norm
   bool is_told() const { return is_loss_reached && !is_x_found; }
 };
 
@@ -44,13 +44,11 @@ std::optional<Outcome> outcome_of(const Comparison& c, std::size_t p, std::size_
     errors.push_back(record.summary.x_error / *record.x_scale);
   }
   return Outcome{
-      is_in_the_median(c, cell,
-                       [](const Run& run) {
-                         return run.reached_loss[Measure::work][kTightest] < kNever;
-                       }),
       is_in_the_median(
           c, cell,
-          [](const Run& run) { return run.found_x[Measure::work][kTightest] < kNever; }),
+          [](const Run& run) { return run.reached_loss[Measure::work][kTightest] < kNever; }),
+      is_in_the_median(
+          c, cell, [](const Run& run) { return run.found_x[Measure::work][kTightest] < kNever; }),
       is_in_the_median(c, cell,
                        [&](const Run& run) {
                          const Prices& prices = c.problems[p].prices;
@@ -99,14 +97,12 @@ std::string with_condition(const ProblemAxis& problem) {
 
 std::string names_of(const Comparison& c, std::vector<std::size_t> problems) {
   constexpr std::size_t kNamed = 3;
-  std::ranges::stable_sort(problems, std::ranges::greater{}, [&](std::size_t p) {
-    return condition_of(c.problems[p]).value_or(0);
-  });
+  std::ranges::stable_sort(problems, std::ranges::greater{},
+                           [&](std::size_t p) { return condition_of(c.problems[p]).value_or(0); });
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::min(problems.size(), kNamed); ++i)
     names.push_back(with_condition(c.problems[problems[i]]));
-  if (problems.size() > kNamed)
-    names.push_back(fmt::format("{} more", problems.size() - kNamed));
+  if (problems.size() > kNamed) names.push_back(fmt::format("{} more", problems.size() - kNamed));
   return joined(names);
 }
 
@@ -177,16 +173,16 @@ Table loss_without_x_table(const Comparison& c) {
 Table condition_table(const Comparison& c) {
   Table table{.id = "condition",
               .title = "Solved in loss, not in x, setting by setting",
-              .caption = caption_of(c) + " Error: of x, of the methods that reach the loss, as a "
-                                         "share of the solution's norm, their median.",
+              .caption = caption_of(c) +
+                         " Error: of x, of the methods that reach the loss, as a "
+                         "share of the solution's norm, their median.",
               .columns = {"problem", "unknowns", "condition", "n methods", "loss", "x",
                           "loss, not x", "nor near", "error in x", "failed"}};
   std::size_t most = 0, worst = 0;
   std::vector<std::size_t> order;
   for (std::size_t p = 0; p < c.problems.size(); ++p) order.push_back(p);
-  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t p) {
-    return condition_of(c.problems[p]).value_or(0);
-  });
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [&](std::size_t p) { return condition_of(c.problems[p]).value_or(0); });
   Tally of_worst;
   for (const std::size_t p : order) {
     Tally own;
@@ -210,8 +206,8 @@ Table condition_table(const Comparison& c) {
     add_tally(row, own);
     const Real error = median_of(errors);
     row.push_back(errors.empty() ? TableCell("") : TableCell(figure(error), {{"error", error}}));
-    row.push_back({fmt::format("{}/{}", failed, runs),
-                   {{"failed", Real(failed)}, {"runs", Real(runs)}}});
+    row.push_back(
+        {fmt::format("{}/{}", failed, runs), {{"failed", Real(failed)}, {"runs", Real(runs)}}});
     table.rows.push_back(std::move(row));
     table.row_topics.push_back({.problem = p});
     if (own.without <= most) continue;
@@ -219,11 +215,12 @@ Table condition_table(const Comparison& c) {
     worst = p;
     of_worst = own;
   }
-  table.reading =
-      most == 0 ? "On no setting does a method reach the loss without x."
-                : fmt::format("Most often on {}: {} of the {} methods that reach its loss do not "
-                              "find its x.",
-                              with_condition(c.problems[worst]), most, of_worst.reached);
+  table.reading = most == 0
+                      ? "On no setting does a method reach the loss without x."
+                      : fmt::format(
+                            "Most often on {}: {} of the {} methods that reach its loss do not "
+                            "find its x.",
+                            with_condition(c.problems[worst]), most, of_worst.reached);
   return table;
 }
 

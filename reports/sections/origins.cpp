@@ -50,12 +50,16 @@ Origin origin_of(const Comparison& c, std::size_t p, std::size_t s) {
   return rate->is_tuned() ? Origin::tuned : Origin::published;
 }
 
-std::string setting_text(const Comparison& c, std::size_t p, std::size_t s) {
+std::string origin_text(const Comparison& c, std::size_t p, std::size_t s) {
   const Origin origin = origin_of(c, p, s);
-  if (origin == Origin::defaults || origin == Origin::given)
-    return shown_spec(c.optimizers[s].label);
-  return fmt::format("{} ({}, {})", c.optimizers[s].method, values_text(*request_of(c, p, s)),
-                     name_of(origin));
+  if (origin == Origin::defaults || origin == Origin::given) return "";
+  return fmt::format("{}, {}", values_text(*request_of(c, p, s)), name_of(origin));
+}
+
+std::string setting_text(const Comparison& c, std::size_t p, std::size_t s) {
+  const std::string origin = origin_text(c, p, s);
+  if (origin.empty()) return shown_spec(c.optimizers[s].label);
+  return fmt::format("{} ({})", c.optimizers[s].method, origin);
 }
 
 }  // namespace isoline::reports

@@ -1,5 +1,5 @@
-// Where the options of a method came from on each problem: its own defaults, a paper, or the best of
-// some values tried. Tables whose figures depend on it say so beside the name.
+// Where the options of a method came from on each problem: its own defaults, a paper, or the best
+// of some values tried. Tables whose figures depend on it say so beside the name.
 #pragma once
 
 #include <array>
@@ -28,6 +28,9 @@ inline std::string_view name_of(Origin origin) {
 const TunedRate* rate_of(const Comparison& comparison, std::size_t problem, std::size_t optimizer);
 
 Origin origin_of(const Comparison& comparison, std::size_t problem, std::size_t optimizer);
+
+// "3.8e-5, tuned": value and origin; empty where no table chose.
+std::string origin_text(const Comparison& comparison, std::size_t problem, std::size_t optimizer);
 
 // "gd (3.8e-5, tuned)", in tables of one problem; the label alone where no table chose.
 std::string setting_text(const Comparison& comparison, std::size_t problem, std::size_t optimizer);

@@ -8,8 +8,8 @@
 
 namespace isoline::reports {
 
-// The expected greatest of b of these values, b = 1 … n, drawn without replacement: each subset of b
-// is as likely as any other. E = Σ_i v_(i) [C(i, b) − C(i − 1, b)] / C(n, b), v ascending.
+// The expected greatest of b of these values, b = 1 … n, drawn without replacement: each subset of
+// b is as likely as any other. E = Σ_i v_(i) [C(i, b) − C(i − 1, b)] / C(n, b), v ascending.
 std::vector<Real> expected_best(std::vector<Real> values);
 
 }  // namespace isoline::reports
