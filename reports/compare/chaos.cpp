@@ -11,10 +11,10 @@
 namespace isoline::reports {
 namespace {
 
-using Reached = std::array<bool, kTolerances.size()>;
+using Tolerances = std::array<bool, kTolerances.size()>;
 
-Reached reached_by(const Subject& subject) {
-  Reached reached{};
+Tolerances reached_by(const Subject& subject) {
+  Tolerances reached{};
   for (std::size_t t = 0; t < reached.size(); ++t) {
     const std::string name = work_quantity(kTolerances[t].tau, kNever).name;
     const auto at = std::ranges::find(subject.quantities, name, &Quantity::name);
@@ -62,7 +62,7 @@ Perturbed perturbed_of(const Subject& unperturbed, const std::vector<Subject>& p
   for (const Subject& subject : perturbed) {
     found.moved = std::max(found.moved, movement(unperturbed, subject));
     found.states.push_back(subject.state);
-    const Reached reached = reached_by(subject);
+    const Tolerances reached = reached_by(subject);
     for (std::size_t t = 0; t < reached.size(); ++t) found.reached[t] += reached[t];
   }
   return found;
@@ -75,7 +75,7 @@ bool is_chaotic(const Subject& subject, const std::optional<Real>& tolerance) {
 std::vector<Difference> coarse_differences(const Subject& before, const Subject& after) {
   std::vector<Difference> all;
   if (auto difference = status_difference(before, after)) all.push_back(std::move(*difference));
-  const Reached then = reached_by(before), now = reached_by(after);
+  const Tolerances then = reached_by(before), now = reached_by(after);
   const Perturbed& others = *before.perturbed;
   for (std::size_t t = 0; t < now.size(); ++t) {
     const bool by_all = then[t] && others.reached[t] == others.states.size();

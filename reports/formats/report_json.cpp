@@ -157,6 +157,13 @@ Json audit_json(const Document& document) {
   return json;
 }
 
+Json yardstick_json(const Yardstick& yardstick) {
+  Json tolerances = Json::array();
+  for (const Tolerance& tolerance : yardstick.tolerances)
+    tolerances.push_back({{"name", tolerance.name}, {"tau", tolerance.tau}});
+  return {{"by", name_of(yardstick.by)}, {"tolerances", tolerances}};
+}
+
 Json verdict_json(const Document& document) {
   Json sentences = Json::array();
   for (const Reading& reading : document.section("standings").readings)
@@ -184,6 +191,7 @@ std::string json_report(const Document& document) {
                   {"superseded", c.study->superseded},
                   {"unreadable", unreadable},
                   {"failures", failures_json(c)},
+                  {"yardstick", yardstick_json(c.yardstick)},
                   {"verdict", verdict_json(document)},
                   {"claims", claims_json(document.claims)},
                   {"audit", audit_json(document)},

@@ -6,6 +6,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -66,7 +67,9 @@ std::string wrapped(const std::string& text) {
 std::string standings(const Comparison& c) {
   const std::size_t width = widest_label(c);
   std::string text = "\n" + left("", width + 4) +
-                     "  solved  best on  x least      runs  failed  solved at 1e-3  at 1e-1\n";
+                     "  solved  best on  x least      runs  failed" +
+                     right(fmt::format("solved at {}", c.yardstick.tolerances[1].name), 16) +
+                     right(fmt::format("at {}", c.yardstick.tolerances[0].name), 11) + "\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     const OptimizerAxis& optimizer = c.optimizers[s];
     const Standing& standing = optimizer.tightest();
@@ -77,15 +80,16 @@ std::string standings(const Comparison& c) {
     text += right(fmt::format("{}/{}", standing.reached, optimizer.runs), 10);
     text += right(optimizer.failed == 0 ? "." : std::to_string(optimizer.failed), 8);
     text += right(std::to_string(optimizer.standings[1].solved), 16);
-    text += right(std::to_string(optimizer.standings[0].solved), 9) + "\n";
+    text += right(std::to_string(optimizer.standings[0].solved), 11) + "\n";
   }
   return text + "\n" +
-         wrapped(
-             "Ranked by their performance profiles at 1e-6, the share of the first loss that may "
-             "be left. solved: problems where the median over seeds gets there, of those given to "
-             "it; best on: with the least work of all; x least: median over problems of its work "
-             "over the least, ✗ if it solves fewer than half; runs: that get there; failed: "
-             "errors, crashes, time or memory limits.");
+         wrapped(fmt::format(
+             "Ranked by their performance profiles at {}. {} solved: {}s where the median over "
+             "seeds gets there, of those given to it; best on: with the least {} of all; x least: "
+             "median over {}s of its {} over the least, ✗ if it solves fewer than half; runs: that "
+             "get there; failed: errors, crashes, time or memory limits.",
+             tau_name(c), success_text(c), setting_noun(c), counted_name(c), setting_noun(c),
+             counted_name(c)));
 }
 
 // "sine             sip † 2", two a line where they fit.
@@ -99,13 +103,14 @@ std::string best_of_each(const Comparison& c) {
     const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
     const std::string best =
         is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
-                                figure(c.cell(p, order[0]).headline[kTightest].median))
+                                matrix_text(c, c.cell(p, order[0]), kTightest))
                   : "nobody";
     lines.push_back("  " + left(name_of_spec(c.problems[p].spec), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }
   const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
-  std::string text = "\nLeast median work to 1e-6, in forward solves\n";
+  std::string text = fmt::format("\nLeast median {} to {}, in {}\n", counted_name(c), tau_name(c),
+                                 unit_name(c));
   for (std::size_t i = 0; i < half; ++i) {
     const bool is_pair = half < lines.size() && i + half < lines.size();
     text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";
@@ -121,7 +126,7 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
   const Spread& work = cell.headline[kTightest];
   line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    line += right(reached_figure(cell.headline[t].median) + (cell.is_best[t] ? "*" : " "), 8);
+    line += right(matrix_text(c, cell, t) + (cell.is_best[t] ? "*" : " "), 8);
   const Spread& seconds = cell.taken[Measure::time][kTightest];
   const bool is_marked = !cell.is_timed_alone && seconds.is_solved();
   line += right(milliseconds(seconds.median) + (is_marked ? "≈" : " "), 9);
@@ -135,15 +140,18 @@ std::string every_cell(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     text +=
         fmt::format("\n{}\n{}", terminal_text(shown_spec(c.problems[p].spec)), left("", width + 2));
-    text += "  runs  to 1e-1    1e-3    1e-6       ms        loss  status\n";
+    text += "  runs";
+    for (std::size_t t = 0; t < kTolerances.size(); ++t)
+      text += right(fmt::format("{}{} ", t == 0 ? "to " : "", c.yardstick.tolerances[t].name), 8);
+    text += "      ms         loss  status\n";
     for (const std::size_t s : ranking(c, p)) text += line_of(c, p, s, width);
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
-  std::string marks =
-      "Median work in forward solves until 1e-1, 1e-3, 1e-6 of the first loss is left; runs: that "
-      "reach 1e-6; ms to 1e-6; final loss. * least of its problem, ✗ not reached by half of the "
-      "runs, n/a: makes no sense";
+  std::string marks = fmt::format(
+      "Median {} in {} to each tolerance; runs: that get to {}; ms to {}; final loss. {} * least of "
+      "its problem, ✗ not reached by half of the runs, n/a: makes no sense",
+      counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
   if (c.is_any_timed_together) marks += ", ≈ timed beside other runs";
   return text + "\n" + wrapped(marks + ".");
 }

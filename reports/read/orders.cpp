@@ -43,9 +43,10 @@ Real lacking_digits(const Comparison& c, const Cell& cell, Real Summary::*loss) 
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
     const Summary& summary = run.record->summary;
-    lacking.push_back(is_failure(run.record->status)
-                          ? kNever
-                          : -accuracy(summary.*loss, summary.start_loss, run.minimum));
+    const Real scale = run.record->scale.value_or(summary.start_loss - run.minimum);
+    const Real digits =
+        accuracy(summary.*loss, run.minimum, scale, run.record->request.budget.target);
+    lacking.push_back(is_failure(run.record->status) ? kNever : -digits);
   }
   return median_of(lacking);
 }

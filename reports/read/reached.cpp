@@ -137,9 +137,9 @@ TargetMedians target_medians(const Comparison& comparison, const Cell& cell) {
     medians.reached.push_back(runs.back().size());
   }
   for (std::size_t j = 0; j < kTargets && !runs.empty(); ++j) {
-    const Real work = median_at(runs, j, Measure::work);
-    if (!(work < kNever)) break;
-    medians.work.push_back(work);
+    const Real counted = median_at(runs, j, comparison.yardstick.by);
+    if (!(counted < kNever)) break;
+    medians.counted.push_back(counted);
     medians.seconds.push_back(median_at(runs, j, Measure::time));
   }
   return medians;

@@ -7,6 +7,7 @@
 #include "reports/read/orders.h"
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/runtimes.h"
 
@@ -49,19 +50,20 @@ Table profile_table(const Comparison& c) {
       .id = "performance-profile",
       .title = "Performance profile",
       .reading = "",
-      .caption =
-          "Share of the problems given to a method that its median run solves to 1e-6 within so "
-          "many times the least declared work (Dolan, Moré 2002). Area: under the profile over "
-          "log2 of the factor up to 64, in closed form, with the 95 % bootstrap interval over "
-          "problems (1,000 draws).",
+      .caption = fmt::format(
+          "Share of the {}s given to a method that its median run solves to {} within so many "
+          "times the least {} (Dolan, Moré 2002). Area: under the profile over log2 of the factor "
+          "up to 64, in closed form, with the 95 % bootstrap interval over problems (1,000 draws). "
+          "Whether an order is more than chance is no matter of these intervals, since all methods "
+          "share the problems: see the pairs.",
+          setting_noun(c), tau_name(c), counted_name(c)),
       .columns = {"optimizer", "≤ 1×", "≤ 2×", "≤ 4×", "≤ 16×", "at all", "area", "interval",
-                  "n problems", "failed"},
+                  n_column(c), "failed"},
       .rows = {}};
   Costs ratios;
   for (const auto& row : median_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
   const Profile& profile = c.profiles[kTightest];
-  std::size_t overlapping = 0;
-  Real low = 0;
+  Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
     const std::size_t n = s < profile.solvers.size() ? profile.solvers[s].problems : 0;
     std::vector<TableCell> row = {optimizer_text(c, s)};
@@ -71,8 +73,7 @@ Table profile_table(const Comparison& c) {
     }
     const Band band = area_band(c, ratios, s);
     const bool has_area = !band.low.empty();
-    if (s == 0 && has_area) low = band.low[0];
-    overlapping += s > 0 && has_area && band.high[0] >= low;
+    if (has_area) first.offer(band.value[0], optimizer_text(c, s));
     row.push_back(has_area ? area_cell(band.value[0]) : "");
     row.push_back(has_area ? interval_cell(band.low[0], band.high[0]) : "");
     row.push_back(count_cell(n));
@@ -80,9 +81,9 @@ Table profile_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  table.reading =
-      fmt::format("{} has the largest area; the intervals of {} other{} reach into its own.",
-                  optimizer_text(c, 0), overlapping, overlapping == 1 ? "" : "s");
+  table.reading = first.count == 0
+                      ? fmt::format("No method solves any {} to {}.", setting_noun(c), tau_name(c))
+                      : fmt::format("The largest area, {:.3f}: {}.", first.value, first.names());
   return table;
 }
 
@@ -92,15 +93,17 @@ Table returned_table(const Comparison& c) {
       .title = "What was returned",
       .reading = "",
       .caption =
-          "History and output: share of the problems given to a method whose median run meets the "
-          "tolerance at the best point it ever evaluated (seen), and at the point it returned; "
-          "and the digits gained there, median over problems. A failed run returns nothing.",
+          "History and output: share of the settings given to a method whose median run meets the "
+          "tolerance at the best point it ever evaluated (seen), and at the point it returned; and "
+          "the digits of the loss gained there, the median over settings, no more than the target "
+          "at which a run is stopped: what lies beyond is overshoot. A failed run returns nothing.",
       .columns = {"optimizer"},
       .rows = {}};
   for (const Tolerance& tolerance : c.yardstick.tolerances)
     for (const char* where : {"seen", "returned"})
       table.columns.push_back(fmt::format("{} {}", tolerance.name, where));
-  for (const char* column : {"digits seen", "digits returned", "n problems", "failed"})
+  for (const std::string& column :
+       std::vector<std::string>{"digits seen", "digits returned", n_column(c), "failed"})
     table.columns.push_back(column);
   std::size_t losing = 0, most = 0;
   std::string worst;
@@ -124,11 +127,12 @@ Table returned_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  table.reading = losing == 0 ? "Every method shown returns to 1e-6 what it has seen to 1e-6."
-                              : fmt::format(
-                                    "{} method{} with a point below 1e-6 seen and not returned on "
-                                    "some problem; most, {}: {}.",
-                                    losing, losing == 1 ? "" : "s", most, worst);
+  const std::string tau = tau_name(c);
+  table.reading =
+      losing == 0
+          ? fmt::format("Every method shown returns to {} what it has seen to {}.", tau, tau)
+          : fmt::format("{} with a point within {} seen and not returned on some {}; most, {}: {}.",
+                        counted(losing, "method"), tau, setting_noun(c), most, worst);
   return table;
 }
 

@@ -16,6 +16,8 @@ Section problems_section(const Comparison& comparison);  // a sentence each, and
 Section learned_section(const Comparison& comparison);
 Section claims_section(const std::vector<Judgement>& judgements);
 Section properties_section(const std::vector<AuditedOptimizer>& audits);
+Section tuning_section(
+    const Comparison& comparison);  // where rates came from, and what they bought
 Section statistics_section(const Comparison& comparison);
 Section failures_section(const Comparison& comparison);
 Section builds_section(const Comparison& comparison);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "core/shell.h"
+#include "reports/sections/measure_words.h"
 
 namespace isoline::reports {
 namespace {
@@ -164,11 +165,12 @@ std::string count_text(const Cell& cell, std::size_t tolerance) {
   return text;
 }
 
-std::string matrix_text(const Cell& cell, std::size_t tolerance) {
+std::string matrix_text(const Comparison& c, const Cell& cell, std::size_t tolerance) {
   if (cell.planned == 0) return "";
   if (cell.runs.empty()) return "missing";
   if (!cell.is_measured()) return "n/a";
-  return reached_figure(cell.headline[tolerance].median);
+  const Real median = cell.headline[tolerance].median;
+  return amount(c, median) + std::string(median < kNever ? time_mark(c, cell) : "");
 }
 
 bool is_complete(const Cell& cell, std::size_t tolerance) {

@@ -38,8 +38,9 @@ std::string status_text(const std::map<Status, std::size_t>& statuses);  // "tar
 std::string count_text(const Cell& cell, std::size_t tolerance);
 bool is_complete(const Cell& cell, std::size_t tolerance);
 
-// The median work, ✗, "n/a", "missing", or nothing where nothing was planned.
-std::string matrix_text(const Cell& cell, std::size_t tolerance);
+// The median of what the yardstick counts, ✗, "n/a", "missing", or nothing where nothing was
+// planned.
+std::string matrix_text(const Comparison& comparison, const Cell& cell, std::size_t tolerance);
 
 // The command that asks for the same cell again: all its options explicit, no table of rates.
 std::string rerun_command(const Request& request);

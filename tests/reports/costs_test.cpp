@@ -51,6 +51,25 @@ TEST(Costs, OfAnOracleThatWasNotMeasuredAreAtItsDeclaredPrice) {
   EXPECT_EQ(Prices(&sheet).cost(record), 51 * 3.5 + 2 * 7);
 }
 
+// A pullback of half a forward solve of one microsecond is half a microsecond, and one of 0 is
+// nothing that was ever called.
+TEST(Costs, OfCallsBelowAMicrosecondAreAtTheirDeclaredPrices) {
+  for (const Real pullback : {0.0, 0.5}) {
+    const Sheet sheet = priced("square", pullback);
+    EXPECT_EQ(Prices(&sheet).cost(counted()), 51 * 2) << pullback;
+    EXPECT_TRUE(Prices(&sheet).is_measured("forward"));
+    EXPECT_FALSE(Prices(&sheet).is_measured("pullback"));
+  }
+}
+
+// All prices are told in forward solves: where these are too short to be told, none is.
+TEST(Costs, InForwardSolvesBelowAMicrosecondAreDeclaredThroughout) {
+  Sheet sheet = priced("square", 40);
+  sheet.prices->forward_seconds = 0.5e-6;
+  EXPECT_FALSE(Prices(&sheet).are_measured());
+  EXPECT_EQ(Prices(&sheet).cost(counted()), Real(counted().summary.work));
+}
+
 // At work 2 j − 1 the curve stands half way between its points.
 TEST(Costs, OfOlderRecordsAreReadBetweenThePointsOfTheCurve) {
   Record older = counted();
