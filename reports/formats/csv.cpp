@@ -102,7 +102,8 @@ std::string csv_report(const Document& document) {
   std::string csv;
   add_line(csv, columns, [](const Column& column) { return column.name; });
   for (const Run& run : c.runs)
-    add_line(csv, columns, [&](const Column& column) { return column.text(run); });
+    if (!run.is_repeated)
+      add_line(csv, columns, [&](const Column& column) { return column.text(run); });
   for (const PlannedCell& cell : c.missing)
     add_line(csv, columns, [&](const Column& column) { return text_of(cell, column.name); });
   return csv;

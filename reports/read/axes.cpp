@@ -64,7 +64,23 @@ OptimizerLabels::OptimizerLabels(const Study& study)
   }
   for (const auto& [where, count] : specs)
     if (count > 1) by_name_.erase(where.second);
+  find_both_ways(study);
   find_meanings(study);
+}
+
+// Where one problem has a method both ways, with different options.
+void OptimizerLabels::find_both_ways(const Study& study) {
+  std::set<std::pair<std::string, std::string>> plain;  // problem and name, at the defaults
+  for (const Record& record : study.runs) {
+    const Component& optimizer = record.request.optimizer;
+    const auto pair = std::pair(record.request.problem.spec, optimizer.name);
+    if (optimizer.spec == optimizer.name)
+      plain.insert(pair);
+    else if (!record.request.rates.empty() && !record.request.rates.ends_with("-tuned.json"))
+      rated_.insert(pair);
+  }
+  for (const auto& pair : rated_)
+    if (plain.contains(pair)) both_ways_.insert(pair.second);
 }
 
 // Of runs that happened: an inapplicable pair has seen nothing, and says nothing of a method.
@@ -73,8 +89,8 @@ void OptimizerLabels::find_meanings(const Study& study) {
   for (const Record& record : study.runs) {
     if (record.status == Status::inapplicable) continue;
     const std::string& problem = record.request.problem.spec;
-    seen[whole(problem, record.request.optimizer.spec)][problem].insert(record.privileges.begin(),
-                                                                        record.privileges.end());
+    for (const std::string& whole : wholes(problem, record.request.optimizer.spec))
+      seen[whole][problem].insert(record.privileges.begin(), record.privileges.end());
   }
   for (const auto& [label, problems] : seen) {
     const auto sees = [](const auto& of_problem) { return !of_problem.second.empty(); };
@@ -84,19 +100,32 @@ void OptimizerLabels::find_meanings(const Study& study) {
   }
 }
 
-std::string OptimizerLabels::operator()(const std::string& problem, const std::string& spec) const {
-  std::string label = whole(problem, spec);
-  const auto meanings = meanings_.find(label);
-  if (meanings == meanings_.end()) return label;
+std::string OptimizerLabels::meaning(const std::string& problem, const std::string& whole) const {
+  const auto meanings = meanings_.find(whole);
+  if (meanings == meanings_.end()) return whole;
   const auto given = meanings->second.find(problem);
-  if (given == meanings->second.end() || given->second.empty()) return label;
-  return label + ", given " + given->second;
+  if (given == meanings->second.end() || given->second.empty()) return whole;
+  return whole + ", given " + given->second;
 }
 
-std::string OptimizerLabels::whole(const std::string& problem, const std::string& spec) const {
+std::vector<std::string> OptimizerLabels::of(const std::string& problem,
+                                             const std::string& spec) const {
+  std::vector<std::string> labels;
+  for (const std::string& whole : wholes(problem, spec)) labels.push_back(meaning(problem, whole));
+  return labels;
+}
+
+std::vector<std::string> OptimizerLabels::wholes(const std::string& problem,
+                                                 const std::string& spec) const {
   const std::string& name = names_.at(spec);
-  if (tuned_.contains({problem, spec})) return name + ", tuned";
-  return by_name_.contains(name) ? name : spec;
+  const std::string tuned = name + ", tuned";
+  if (tuned_.contains({problem, spec})) return {tuned};
+  if (both_ways_.contains(name)) {
+    if (spec != name) return {rated_.contains({problem, name}) ? tuned : spec};
+    if (!rated_.contains({problem, name})) return {name, tuned};
+    return {name};
+  }
+  return {by_name_.contains(name) ? name : spec};
 }
 
 std::string OptimizerLabels::method(const std::string& spec) const { return names_.at(spec); }
@@ -125,7 +154,8 @@ std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLab
   };
   std::map<std::string, Known> labels;  // any spec of them
   const auto know = [&](const std::string& problem, const std::string& spec) {
-    labels.emplace(label(problem, spec), Known{spec, label.whole(problem, spec)});
+    for (const std::string& whole : label.wholes(problem, spec))
+      labels.emplace(label.meaning(problem, whole), Known{spec, whole});
   };
   for (const Record& record : study.runs)
     know(record.request.problem.spec, record.request.optimizer.spec);

@@ -70,15 +70,18 @@ void fill_cells(Comparison& c, const OptimizerLabels& label) {
   for (const Record& record : c.study->runs) {
     Run run{.record = &record,
             .problem = problem.at(record.request.problem.spec),
-            .optimizer =
-                optimizer.at(label(record.request.problem.spec, record.request.optimizer.spec)),
             .is_timed_alone = record.provenance.run.is_timed_alone()};
     run.aim = c.problems[run.problem].aim;
     fill_reached(run, best, c.problems[run.problem].prices, c.yardstick);
-    c.cells[run.problem][run.optimizer].runs.push_back(c.runs.size());
-    c.runs.push_back(run);
     answered.insert(record.cell);
-    ran[run.problem][run.optimizer].insert(record.request.seed);
+    for (const std::string& name :
+         label.of(record.request.problem.spec, record.request.optimizer.spec)) {
+      run.optimizer = optimizer.at(name);
+      c.cells[run.problem][run.optimizer].runs.push_back(c.runs.size());
+      ran[run.problem][run.optimizer].insert(record.request.seed);
+      c.runs.push_back(run);
+      run.is_repeated = true;
+    }
   }
   Seeds asked = ran;
   for (const PlannedCell& cell : c.study->plan.cells)
@@ -86,12 +89,12 @@ void fill_cells(Comparison& c, const OptimizerLabels& label) {
       ++c.answered;
     else {
       c.missing.push_back(cell);
-      asked[problem.at(cell.problem)][optimizer.at(label(cell.problem, cell.optimizer))].insert(
-          cell.seed);
+      for (const std::string& name : label.of(cell.problem, cell.optimizer))
+        asked[problem.at(cell.problem)][optimizer.at(name)].insert(cell.seed);
     }
   fill_planned(c, ran, asked);
   c.planned = c.study->plan.cells.size();
-  if (c.planned == 0) c.planned = c.answered = c.runs.size();
+  if (c.planned == 0) c.planned = c.answered = c.study->runs.size();
 }
 
 // Over runs, and over so many that are missing.
@@ -136,6 +139,7 @@ void aggregate(const Comparison& c, Cell& cell) {
 
 void summarize_runs(Comparison& c) {
   for (std::size_t i = 0; i < c.runs.size(); ++i) {
+    if (c.runs[i].is_repeated) continue;
     const Record& record = *c.runs[i].record;
     ++c.statuses[record.status];
     if (is_failure(record.status)) c.failures.push_back(i);

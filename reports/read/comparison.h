@@ -31,6 +31,7 @@ struct Run {
   std::array<bool, kTolerances.size()> is_bound{};
   Real spent = 0;              // in all, in equivalent forward solves at the prices of its problem
   bool is_timed_alone = true;  // no other run beside it: its times mean something
+  bool is_repeated = false;    // its record stands in another row, too, and is counted there
 };
 
 // One problem and one optimizer, over seeds.

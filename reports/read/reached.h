@@ -59,7 +59,7 @@ std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t
 // What each of the targets took, over seeds: what the page's slider of tolerance reads.
 struct TargetMedians {
   std::vector<Real> counted, seconds;  // of targets of finite median: by the yardstick; times
-  std::vector<std::size_t> reached;  // how many targets each run reached, by seed
+  std::vector<std::size_t> reached;    // how many targets each run reached, by seed
 };
 TargetMedians target_medians(const Comparison& comparison, const Cell& cell);
 

@@ -25,4 +25,8 @@ std::string placed_text(const Comparison& comparison, const Placed& placed);
 // "not ranked: asked 4 of 24 settings", or how its two meanings differ.
 std::string apart_text(const Comparison& comparison, const Placed& placed);
 
+// A sentence: whether the first three are the same at declared and at measured prices; empty where
+// calls are not what is counted.
+std::string prices_text(const Comparison& comparison);
+
 }  // namespace isoline::reports

@@ -149,7 +149,7 @@ std::string headline(const Comparison& c) {
   std::string problems = counted(c.names, "problem");
   if (c.problems.size() > c.names) problems += fmt::format(" ({} settings)", c.problems.size());
   return fmt::format("{} on {}, {}, {}", counted(c.optimizers.size(), "optimizer"), problems,
-                     counted(c.seeds.size(), "seed"), counted(c.runs.size(), "run"));
+                     counted(c.seeds.size(), "seed"), counted(c.study->runs.size(), "run"));
 }
 
 std::vector<std::string> remarks(const Comparison& c) {
@@ -192,6 +192,7 @@ std::vector<std::string> verdict(const Comparison& c) {
   if (is_other)
     all.push_back("Among those that see no more than they are given: " +
                   joined(lead_sentences(c, *c.open_lead), " "));
+  all.push_back(prices_text(c));
   all.push_back(apart_sentence(c));
   std::erase(all, "");
   return all;
