@@ -80,7 +80,7 @@ std::string condition_text(const ProblemAxis& problem) {
   constexpr Real kSingular = 4.5e15;  // above, the least singular value is rounding
   const std::optional<Real> condition = condition_of(problem);
   if (!condition) return "";
-  return *condition > kSingular ? "singular" : fmt::format("{:.2g}", *condition);
+  return *condition > kSingular ? "singular" : figure(std::stod(fmt::format("{:.2g}", *condition)));
 }
 
 TableCell condition_cell(const ProblemAxis& problem) {
