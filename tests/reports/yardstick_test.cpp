@@ -49,7 +49,7 @@ TEST(Yardstick, AProblemThatWantsXIsNotSolvedByASmallLoss) {
   EXPECT_EQ(run.taken[Measure::work][0], kNever);
   EXPECT_EQ(c.problems[0].aim, Aim::x);
   EXPECT_EQ(c.optimizers[0].standings[0].solved, 0U);
-  EXPECT_FALSE(c.leader.has_value());
+  EXPECT_FALSE(c.lead.has_value());
   EXPECT_FALSE(returns(run, 1e-1));
 }
 
