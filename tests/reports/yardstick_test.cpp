@@ -43,7 +43,7 @@ TEST(Yardstick, AProblemThatWantsXIsNotSolvedByASmallLoss) {
   Study study;
   study.runs = {lost_in_x()};
   const Comparison c = compare_optimizers(study);
-  const Run& run = c.runs[0];
+  const reports::Run& run = c.runs[0];
   EXPECT_EQ(run.reached_loss[Measure::work][kTightest], 60);
   EXPECT_EQ(run.found_x[Measure::work][0], kNever);
   EXPECT_EQ(run.taken[Measure::work][0], kNever);
