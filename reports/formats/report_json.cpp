@@ -98,7 +98,8 @@ Json profiles_json(const Comparison& c) {
 }
 
 Json standing_json(const Standing& standing) {
-  return {{"solved", standing.solved},
+  return {{"settings", standing.settings},
+          {"solved", standing.solved},
           {"wins", standing.wins},
           {"reached", standing.reached},
           {"typical", json_number(standing.typical)},
@@ -121,10 +122,26 @@ Json standings_json(const Comparison& c) {
   return list;
 }
 
-Json leader_json(const Comparison& c, const std::optional<Leader>& leader) {
-  if (!leader) return nullptr;
-  return {{"optimizer", c.optimizers[leader->optimizer].label},
-          {"stays_first", leader->stays_first}};
+Json rivals_json(const Comparison& c, const Lead& lead) {
+  Json list = Json::array();
+  for (const Rival& rival : lead.rivals)
+    list.push_back({{"optimizer", c.optimizers[rival.optimizer].label},
+                    {"typical", json_number(rival.pairing.typical())},
+                    {"wins", rival.pairing.wins},
+                    {"losses", rival.pairing.losses},
+                    {"ties", rival.pairing.ties},
+                    {"p", rival.p},
+                    {"adjusted_p", rival.adjusted}});
+  return list;
+}
+
+Json leader_json(const Comparison& c, const std::optional<Lead>& lead) {
+  if (!lead) return nullptr;
+  return {{"optimizer", c.optimizers[lead->ranked[0].optimizer].label},
+          {"tied", lead->tied},
+          {"settled", lead->is_settled},
+          {"stays_first", lead->stays_first},
+          {"others", rivals_json(c, *lead)}};
 }
 
 Json missing_json(const Comparison& c) {
@@ -195,8 +212,8 @@ std::string json_report(const Document& document) {
                   {"verdict", verdict_json(document)},
                   {"claims", claims_json(document.claims)},
                   {"audit", audit_json(document)},
-                  {"leader", leader_json(c, c.leader)},
-                  {"open_leader", leader_json(c, c.open_leader)},
+                  {"leader", leader_json(c, c.lead)},
+                  {"open_leader", leader_json(c, c.open_lead)},
                   {"optimizers", standings_json(c)},
                   {"profiles", profiles_json(c)},
                   {"statistics", statistics_json(document)},

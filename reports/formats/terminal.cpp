@@ -64,34 +64,6 @@ std::string wrapped(const std::string& text) {
   return out + "\n";
 }
 
-std::string standings(const Comparison& c) {
-  const std::size_t width = widest_label(c);
-  std::string text = "\n" + left("", width + 4) +
-                     "  solved  best on  x least      runs  failed" +
-                     right(fmt::format("solved at {}", c.yardstick.tolerances[1].name), 16) +
-                     right(fmt::format("at {}", c.yardstick.tolerances[0].name), 11) + "\n";
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const OptimizerAxis& optimizer = c.optimizers[s];
-    const Standing& standing = optimizer.tightest();
-    text += fmt::format("{:>2}  {}", s + 1, left(label_of(optimizer), width));
-    text += right(fmt::format("{}/{}", standing.solved, optimizer.planned), 8);
-    text += right(standing.wins == 0 ? "." : std::to_string(standing.wins), 9);
-    text += right(standing.typical == kNever ? "✗" : fmt::format("{:.3g}", standing.typical), 9);
-    text += right(fmt::format("{}/{}", standing.reached, optimizer.runs), 10);
-    text += right(optimizer.failed == 0 ? "." : std::to_string(optimizer.failed), 8);
-    text += right(std::to_string(optimizer.standings[1].solved), 16);
-    text += right(std::to_string(optimizer.standings[0].solved), 11) + "\n";
-  }
-  return text + "\n" +
-         wrapped(fmt::format(
-             "Ranked by their performance profiles at {}. {} solved: {}s where the median over "
-             "seeds gets there, of those given to it; best on: with the least {} of all; x least: "
-             "median over {}s of its {} over the least, ✗ if it solves fewer than half; runs: that "
-             "get there; failed: errors, crashes, time or memory limits.",
-             tau_name(c), success_text(c), setting_noun(c), counted_name(c), setting_noun(c),
-             counted_name(c)));
-}
-
 // "sine             sip † 2", two a line where they fit.
 std::string best_of_each(const Comparison& c) {
   std::vector<std::string> lines;
@@ -101,16 +73,15 @@ std::string best_of_each(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::vector<std::size_t> order = ranking(c, p);
     const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
-    const std::string best =
-        is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
-                                matrix_text(c, c.cell(p, order[0]), kTightest))
-                  : "nobody";
+    const std::string best = is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
+                                                     matrix_text(c, c.cell(p, order[0]), kTightest))
+                                       : "nobody";
     lines.push_back("  " + left(name_of_spec(c.problems[p].spec), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }
   const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
-  std::string text = fmt::format("\nLeast median {} to {}, in {}\n", counted_name(c), tau_name(c),
-                                 unit_name(c));
+  std::string text =
+      fmt::format("\nLeast median {} to {}, in {}\n", counted_name(c), tau_name(c), unit_name(c));
   for (std::size_t i = 0; i < half; ++i) {
     const bool is_pair = half < lines.size() && i + half < lines.size();
     text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";
@@ -227,6 +198,9 @@ std::string table_text(const Table& table) {
   return text + (table.caption.empty() ? "" : wrapped(table.caption));
 }
 
+// The first of its tables: of who is not ranked the sentences below tell.
+std::string standings(const Section& section) { return "\n" + table_text(section.tables[0]); }
+
 }  // namespace
 
 std::string terminal_section(const Section& section) {
@@ -253,7 +227,7 @@ std::string terminal_table(const Document& document) {
   if (cells <= kFewCells)
     text += every_cell(c);
   else
-    text += standings(c) + best_of_each(c) + "\n";
+    text += standings(document.section("standings")) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
   if (has_privileges) text += "† sees what others do not.\n";

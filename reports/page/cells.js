@@ -82,22 +82,30 @@ function addCell(standing, cell, low, target) {
   standing.failed += cell.failed;
 }
 
-// Best first. `isAsked` says which optimizers are compared.
-function standingsOf(target, isAsked = (s) => isShown('s', s)) {
-  const all = DATA.optimizers.map((_, s) => emptyStanding(s));
-  for (const p of shownOf('p')) {
-    const cells = DATA.problems[p].cells.filter((cell) => isAsked(cell.s)), low = leastWork(cells, target);
-    for (const cell of cells) addCell(all[cell.s], cell, low, target);
+// Best first, on settings that all of these optimizers were given.
+function standingsAmong({settings, methods}, target, isAsked) {
+  const all = new Map(methods.filter(isAsked).map((s) => [s, emptyStanding(s)]));
+  for (const p of settings.filter((index) => isShown('p', index))) {
+    const cells = DATA.problems[p].cells.filter((cell) => all.has(cell.s)), low = leastWork(cells, target);
+    for (const cell of cells) addCell(all.get(cell.s), cell, low, target);
   }
-  const asked = all.filter((standing) => standing.problems > 0);
+  const asked = [...all.values()].filter((standing) => standing.problems > 0);
   for (const standing of asked) standing.score /= standing.problems;
   return asked.sort((a, b) => b.score - a.score || b.reached - a.reached || a.s - b.s);
+}
+
+// Those of the common order, best first; then those apart, each as it is compared with them.
+const rankedOf = (target, isAsked = (s) => isShown('s', s)) => standingsAmong(DATA.order, target, isAsked);
+function standingsOf(target, isAsked = (s) => isShown('s', s)) {
+  const apart = DATA.order.apart.filter(({s}) => isAsked(s)).flatMap((placed) =>
+      standingsAmong(placed, target, isAsked).filter(({s}) => s === placed.s).map((standing) => ({...standing, isApart: true})));
+  return [...rankedOf(target, isAsked), ...apart];
 }
 
 // [problems, ratio, …] an optimizer, ascending: those solved.
 function profileOf(target) {
   const profile = new Map();
-  for (const standing of standingsOf(target))
+  for (const standing of rankedOf(target))
     profile.set(standing.s, [standing.problems, ...standing.ratios.filter((ratio) => ratio < Infinity).sort((a, b) => a - b)]);
   return profile;
 }

@@ -137,6 +137,21 @@ std::string curves_json(const Comparison& c, std::size_t problem) {
   });
 }
 
+std::string indices_json(const std::vector<std::size_t>& all) {
+  return list(all, [](std::size_t index) { return std::to_string(index); });
+}
+
+// Who is compared with whom, and on what; and how those are that stand apart.
+std::string orders_json(const Comparison& c) {
+  const auto placed_json = [](const Placed& placed) {
+    return fmt::format("{{\"s\":{},\"settings\":{},\"methods\":{}}}", placed.optimizer,
+                       indices_json(placed.among.settings), indices_json(placed.among.methods));
+  };
+  return fmt::format("{{\"settings\":{},\"methods\":{},\"apart\":{}}}",
+                     indices_json(c.order.settings), indices_json(c.order.methods),
+                     list(c.apart, placed_json));
+}
+
 std::string point(Real a, Real b) { return number(a) + "," + number(b); }
 
 std::string contours_json(const Landscape& landscape) {
@@ -232,7 +247,7 @@ std::string page_data(const Document& document) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
       "{{\"by\":\"{}\",\"unit\":\"{}\",\"counted\":\"{}\",\"rungs\":{},\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
-      "\"figures\":{},\"problems\":[",
+      "\"order\":{},\"figures\":{},\"problems\":[",
       name_of(c.yardstick.by), unit_name(c), counted_name(c),
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
@@ -247,7 +262,7 @@ std::string page_data(const Document& document) {
       list(
           c.optimizers,
           [](const OptimizerAxis& optimizer) { return json_quoted(joined(optimizer.privileges)); }),
-      claims_about(document), figures_json(document.figures));
+      claims_about(document), orders_json(c), figures_json(document.figures));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (p > 0) text += ',';
     text += problem_json(c, p);

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "reports/formats/escape.h"
+#include "reports/read/fields.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
@@ -82,7 +83,7 @@ std::string remarks_html(const Document& document) {
 
 // Empty where problems are too few to say anything: then there is no chart either.
 std::string profile_html(const Comparison& c) {
-  if (c.problems.size() < kFewProblems)
+  if (!has_order(c))
     return fmt::format(
         "<p class=reading>With {} a profile says no more than the table above; none is drawn.</p>",
         counted_settings(c, c.problems.size()));

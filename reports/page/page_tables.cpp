@@ -118,15 +118,16 @@ std::string standing_row(const Comparison& c, std::size_t s) {
   const OptimizerAxis& optimizer = c.optimizers[s];
   const Standing& standing = optimizer.tightest();
   const Real share =
-      optimizer.planned == 0 ? 0 : 100 * Real(standing.solved) / Real(optimizer.planned);
+      standing.settings == 0 ? 0 : 100 * Real(standing.solved) / Real(standing.settings);
   return fmt::format(
       "<tr data-s={}><td>{}<th scope=row><a href=\"#optimizer-{}\">{}</a>{}<td>{:.3f}<td "
       "class=bar><i style=--w:{:.0f}></i>{}<small>/{}</small>"
       "<td>{}<td>{}<td>{}<small>/{}</small><td{}>{}\n",
-      s, s + 1, s, shown_html(optimizer.label), dagger(optimizer.privileges), standing.score, share,
-      standing.solved, optimizer.planned, standing.wins == 0 ? "·" : std::to_string(standing.wins),
+      s, c.order.has(s) ? std::to_string(s + 1) : "–", s, shown_html(optimizer.label),
+      dagger(optimizer.privileges), standing.score, share, standing.solved, standing.settings,
+      standing.wins == 0 ? "·" : std::to_string(standing.wins),
       standing.typical == kNever ? "✗" : fmt::format("{:.3g}×", standing.typical), standing.reached,
-      optimizer.runs, optimizer.failed > 0 ? " class=lost" : "",
+      standing.runs, optimizer.failed > 0 ? " class=lost" : "",
       optimizer.failed == 0 ? "·" : std::to_string(optimizer.failed));
 }
 

@@ -14,13 +14,13 @@ function drawStandings(table) {
   standingsOf(view.target).forEach((standing, place) => {
     const row = rows.get(standing.s), [rank, , score, solved, wins, typical, runs, failed] = row.cells;
     const bar = solved.querySelector('i');
-    setText(rank, String(place + 1));
+    setText(rank, standing.isApart === true ? '–' : String(place + 1));
     setText(score, standing.score.toFixed(3));
     setText(solved, '');
     bar.style.setProperty('--w', 100 * standing.solved / standing.problems);
     solved.append(bar, String(standing.solved), element('small', {}, `/${standing.problems}`));
     setText(wins, standing.wins === 0 ? '·' : String(standing.wins));
-    setText(typical, multiple(median(standing.ratios)));
+    setText(typical, multiple(2 ** median(standing.ratios.map(Math.log2))));
     setText(runs, String(standing.reached), `/${standing.runs}`);
     setText(failed, standing.failed === 0 ? '·' : String(standing.failed));
     failed.className = standing.failed === 0 ? '' : 'lost';

@@ -53,8 +53,12 @@ Real lacking_digits(const Comparison& c, const Cell& cell, Real Summary::*loss) 
 
 std::vector<Real> lacking_digits(const Comparison& c, std::size_t s, Real Summary::*loss) {
   std::vector<Real> all;
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    if (c.cell(p, s).planned > 0) all.push_back(lacking_digits(c, c.cell(p, s), loss));
+  const bool is_ranked = c.order.has(s);
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const bool is_common = std::ranges::find(c.order.settings, p) != c.order.settings.end();
+    if (c.cell(p, s).planned > 0 && (is_common || !is_ranked))
+      all.push_back(lacking_digits(c, c.cell(p, s), loss));
+  }
   return all;
 }
 

@@ -118,7 +118,7 @@ Table calls_table(const Comparison& c) {
               .rows = {}};
   std::vector<Calls> all;
   std::array<bool, kOracles> is_asked{};
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     all.push_back(calls_of(c, s));
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       is_asked[kind] = is_asked[kind] || all.back().counts[kind] > 0;

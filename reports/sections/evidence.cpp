@@ -14,6 +14,9 @@
 namespace isoline::reports {
 
 std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
+  return std::min(c.order.methods.size(), most);
+}
+std::size_t listed_optimizers(const Comparison& c, std::size_t most) {
   return std::min(c.optimizers.size(), most);
 }
 
@@ -94,17 +97,15 @@ std::string priced_unit(const Comparison& c) {
 }
 
 std::string denominators(const Comparison& c, std::size_t shown) {
-  std::size_t least = c.problems.size(), most = 0, runs = 0, failed = 0;
+  std::size_t runs = 0, failed = 0;
   for (std::size_t s = 0; s < shown; ++s) {
-    least = std::min(least, c.optimizers[s].planned);
-    most = std::max(most, c.optimizers[s].planned);
     runs += c.optimizers[s].runs;
     failed += c.optimizers[s].failed;
   }
-  return fmt::format("the first {} of {} optimizers; n = {} {}s; {} of {} runs failed", shown,
-                     c.optimizers.size(),
-                     least == most ? std::to_string(most) : fmt::format("{} to {}", least, most),
-                     setting_noun(c), failed, runs);
+  return fmt::format(
+      "the first {} of {} ranked methods; n = {}, given to all of them; {} of {} of "
+      "their runs failed",
+      shown, c.order.methods.size(), counted_settings(c, c.order.settings.size()), failed, runs);
 }
 
 std::vector<Real> cost_grid(Measure by, Real most) {

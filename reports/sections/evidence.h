@@ -17,6 +17,7 @@ using Plots = std::vector<Plot>;  // none where there is too little to show
 
 Table profile_table(const Comparison& comparison);
 Table rank_table(const Comparison& comparison);
+Table leader_table(const Comparison& comparison);
 Table signed_rank_table(const Comparison& comparison);
 Table pairwise_table(const Comparison& comparison);
 Table flip_table(const Comparison& comparison);
@@ -43,9 +44,10 @@ Plots target_plot(const Comparison& comparison);
 
 // In the order of a report: what is declared above stands in it once it is named here.
 inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
-    profile_table,        rank_table,      signed_rank_table, pairwise_table, flip_table,
-    loss_without_x_table, condition_table, returned_table,    accuracy_table, data_profile_table,
-    anytime_table,        interval_table,  restart_table,     calls_table,    prices_table};
+    profile_table,  leader_table,   rank_table,           signed_rank_table,
+    pairwise_table, flip_table,     loss_without_x_table, condition_table,
+    returned_table, accuracy_table, data_profile_table,   anytime_table,
+    interval_table, restart_table,  calls_table,          prices_table};
 inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {
     profile_plot,      pairwise_plots, log_ratio_plot, rank_plot,  signed_rank_plot,
     data_profile_plot, runtime_plot,   accuracy_plot,  target_plot};
@@ -63,7 +65,9 @@ inline constexpr std::size_t kMostRivals = 4;       // of the leader, each in a 
 inline constexpr std::size_t kMostPlotRows = 25;    // problems
 
 // What they share.
+// The best of the common order: of tables that compare. And of all, those apart after them.
 std::size_t shown_optimizers(const Comparison& comparison, std::size_t most);
+std::size_t listed_optimizers(const Comparison& comparison, std::size_t most);
 void rows_are_optimizers(Table& table);  // the i-th row is of the i-th
 // The first columns beside the names are of the first optimizers, or problems.
 void columns_are_optimizers(Table& table, std::size_t count);
@@ -87,7 +91,6 @@ std::vector<Real> cost_grid(Measure by, Real most);
 // not get there or is missing.
 std::vector<Real> costs_over_seeds(const Comparison& comparison, const Cell& cell);
 // 95 % of the bootstrap of the median; of fewer seeds than can give it, their range.
-inline constexpr std::size_t kFewestForInterval = 6;  // 2/2⁶ is the first below 0.05
 Interval interval_over_seeds(const std::vector<Real>& values, const std::string& key);
 std::string interval_words(const Comparison& comparison);  // which of the two, in words
 

@@ -121,4 +121,22 @@ std::string apart_text(const Comparison& c, const Placed& placed) {
   return fmt::format("asked {} of {}", placed.asked, counted(placed.shared, setting_noun(c)));
 }
 
+std::string apart_sentence(const Comparison& c) {
+  std::vector<std::string> meanings, others;
+  for (const Placed& placed : c.apart) {
+    const std::string name = shown_spec(c.optimizers[placed.optimizer].label);
+    if (c.optimizers[placed.optimizer].is_meaning)
+      meanings.push_back(fmt::format("{} is {}", name, placed_text(c, placed)));
+    else
+      others.push_back(fmt::format("{} ({})", name, apart_text(c, placed)));
+  }
+  std::string text;
+  if (!meanings.empty())
+    text += fmt::format("Listed apart, since it is given more on some problems than on others: {}.",
+                        joined(meanings, "; "));
+  if (!others.empty())
+    text += fmt::format("{}Not ranked: {}.", text.empty() ? "" : " ", joined(others));
+  return text;
+}
+
 }  // namespace isoline::reports

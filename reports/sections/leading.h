@@ -24,6 +24,8 @@ std::string power_text(const Comparison& comparison, const Lead& lead);
 std::string placed_text(const Comparison& comparison, const Placed& placed);
 // "not ranked: asked 4 of 24 settings", or how its two meanings differ.
 std::string apart_text(const Comparison& comparison, const Placed& placed);
+// Sentences: where those stand that are not in the common order; empty where all are.
+std::string apart_sentence(const Comparison& comparison);
 
 // A sentence: whether the first three are the same at declared and at measured prices; empty where
 // calls are not what is counted.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
@@ -61,7 +62,7 @@ Table profile_table(const Comparison& c) {
                   n_column(c), "failed"},
       .rows = {}};
   Costs ratios;
-  for (const auto& row : median_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
+  for (const auto& row : common_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
   const Profile& profile = c.profiles[kTightest];
   Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
@@ -107,7 +108,7 @@ Table returned_table(const Comparison& c) {
     table.columns.push_back(column);
   std::size_t losing = 0, most = 0;
   std::string worst;
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
     const std::size_t n = c.optimizers[s].planned;
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {

@@ -102,25 +102,6 @@ std::vector<std::string> lead_sentences(const Comparison& c, const Lead& lead) {
   return {text + ". " + settled_text(c, lead), power_text(c, lead)};
 }
 
-// Where those stand that the common order does not hold.
-std::string apart_sentence(const Comparison& c) {
-  std::vector<std::string> meanings, others;
-  for (const Placed& placed : c.apart) {
-    const std::string name = shown_spec(c.optimizers[placed.optimizer].label);
-    if (c.optimizers[placed.optimizer].is_meaning)
-      meanings.push_back(fmt::format("{} is {}", name, placed_text(c, placed)));
-    else
-      others.push_back(fmt::format("{} ({})", name, apart_text(c, placed)));
-  }
-  std::string text;
-  if (!meanings.empty())
-    text += fmt::format("Listed apart, since it is given more on some problems than on others: {}.",
-                        joined(meanings, "; "));
-  if (!others.empty())
-    text += fmt::format("{}Not ranked: {}.", text.empty() ? "" : " ", joined(others));
-  return text;
-}
-
 // Of few problems no order over them is told, but one on each.
 std::vector<std::string> problem_sentences(const Comparison& c) {
   constexpr std::size_t kFew = 4;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/measure_words.h"
@@ -35,7 +36,7 @@ constexpr const char* kBand =
 }  // namespace
 
 Plots profile_plot(const Comparison& c) {
-  if (c.problems.size() < kFewProblems) return {};
+  if (!has_order(c)) return {};
   Plot plot{.id = "plot-profile",
             .title = "Performance profile with its uncertainty",
             .reading = "",
@@ -45,7 +46,7 @@ Plots profile_plot(const Comparison& c) {
             .y_label = fmt::format("share of {}s", setting_noun(c)),
             .is_log_x = true};
   Costs ratios;
-  for (const auto& row : median_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
+  for (const auto& row : common_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
   std::vector<Real> grid;
   for (Real i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8));
   add_lines(c, plot, ratios, grid);
@@ -56,8 +57,9 @@ Plots profile_plot(const Comparison& c) {
 }
 
 Plots data_profile_plot(const Comparison& c) {
+  if (c.order.settings.empty()) return {};
   const Measure by = cost_measure(c);
-  Costs costs = median_costs(c, kTightest, by);
+  Costs costs = common_costs(c, kTightest, by);
   for (std::size_t p = 0; p < costs.size(); ++p)
     for (std::size_t s = 0; s < costs[p].size(); ++s)
       if (costs[p][s]) costs[p][s] = in_units(by, c.cell(p, s).taken[by][kTightest].median);
@@ -87,11 +89,11 @@ Plots accuracy_plot(const Comparison& c) {
             .x_label = "digits gained",
             .y_label = fmt::format("share of {}s", setting_noun(c))};
   Costs lacking(c.problems.size());
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    for (const Cell& cell : c.cells[p])
-      lacking[p].push_back(cell.planned == 0
-                               ? std::nullopt
-                               : std::optional(lacking_digits(c, cell, &Summary::best_loss)));
+  if (c.order.settings.empty()) return {};
+  for (auto& row : lacking) row.resize(c.optimizers.size());
+  for (const std::size_t p : c.order.settings)
+    for (const std::size_t s : c.order.methods)
+      lacking[p][s] = lacking_digits(c, c.cell(p, s), &Summary::best_loss);
   std::vector<Real> grid;
   for (Real i = -64; i <= 0; ++i) grid.push_back(i / 4);
   add_lines(c, plot, lacking, grid);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/measure_words.h"
@@ -19,7 +20,7 @@ std::vector<Real> scores_without(const Comparison& c, Costs costs, std::size_t w
     if (without < row.size()) row[without].reset();
   const Profile profile = performance_profile(costs);
   std::vector<Real> scores;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+  for (const std::size_t s : c.order.methods)
     scores.push_back(s < profile.solvers.size() ? profile.area(s, kProfileEnd) : 0);
   return scores;
 }
@@ -46,7 +47,7 @@ std::array<Real, 2> pair_scores(const Costs& costs, std::size_t a, std::size_t b
 
 Table pairwise_table(const Comparison& c) {
   const std::size_t k = shown_optimizers(c, kMostTablePairs);
-  const Costs costs = median_costs(c, kTightest);
+  const Costs costs = common_costs(c, kTightest);
   Table table{
       .id = "pairwise",
       .title = "Pairwise profiles",
@@ -83,8 +84,8 @@ Table pairwise_table(const Comparison& c) {
 }
 
 Table flip_table(const Comparison& c) {
-  const std::size_t k = c.optimizers.size();
-  const Costs costs = median_costs(c, kTightest);
+  const std::size_t k = c.order.methods.size();
+  const Costs costs = common_costs(c, kTightest);
   const std::vector<Real> all = scores_without(c, costs, k);
   Table table{
       .id = "flips",
@@ -135,11 +136,11 @@ Table data_profile_table(const Comparison& c) {
   Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
-    const std::size_t n = c.optimizers[s].planned;
+    const std::size_t n = c.order.settings.size();
     for (const Real work : {Real(kWork[0]), Real(kWork[1]), Real(kWork[2]), Real(kWork[3]),
                             Real(kWork[4]), std::numeric_limits<Real>::max()}) {
       std::size_t within = 0;
-      for (std::size_t p = 0; p < c.problems.size(); ++p)
+      for (const std::size_t p : c.order.settings)
         within += in_units(by, c.cell(p, s).taken[by][kTightest].median) <= work;
       row.push_back(share_cell(within, n));
       if (work == kWork[2] && n > 0) first.offer(Real(within) / Real(n), optimizer_text(c, s));

@@ -41,7 +41,7 @@ constexpr std::array<Real, 4> kWithin = {10, 100, 1000, 10'000};
 Anytime anytime_of(const Comparison& c, std::size_t s) {
   const Measure by = cost_measure(c);
   Anytime all;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+  for (const std::size_t p : c.order.settings) {
     const Cell& cell = c.cell(p, s);
     all.runs += cell.planned;
     all.pairs += cell.planned * kTargets;
@@ -95,7 +95,7 @@ void fill_matrix(const Comparison& c, Table& table, Text text) {
   for (std::size_t p = 0; p < problems; ++p)
     table.columns.push_back(shown_spec(c.problems[p].spec));
   table.columns.push_back("failed");
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
     for (std::size_t p = 0; p < problems; ++p) {
       const Cell& cell = c.cell(p, s);

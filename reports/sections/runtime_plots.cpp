@@ -63,9 +63,8 @@ PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<
   const Measure by = cost_measure(c);
   RestartedHits hits(grid);
   Real pairs = 0;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+  for (const std::size_t p : c.order.settings) {
     const Cell& cell = c.cell(p, s);
-    if (cell.planned == 0) continue;
     pairs += static_cast<Real>(kTargets * kDraws);
     if (!cell.is_measured()) continue;
     std::vector<std::vector<Real>> targets;

@@ -34,11 +34,12 @@ Table standings_table(const Comparison& c) {
       .id = "standings-table",
       .caption = fmt::format(
           "Methods given the same {}, ranked by their performance profiles; equal scores share a "
-          "place. Solved: {0} whose median run gets there. Best on: with the least {} of them. × "
-          "least: the middle of its {2} over the least, in logarithms; ✗ if it solves fewer than "
-          "half. Runs: that get there. Failed: errors, crashes, time or memory limits, on all that "
-          "it was given. †: sees what others do not.",
-          counted(c.order.settings.size(), setting_noun(c)), counted_name(c), counted_name(c)),
+          "place. Solved: {}s whose median run gets there. Best on: with the least {} of these "
+          "methods. × least: the middle of its {} over the least, in logarithms; ✗ if it solves "
+          "fewer than half. Runs: that get there. Failed: errors, crashes, time or memory limits, "
+          "on all that it was given. †: sees what others do not.",
+          counted(c.order.settings.size(), setting_noun(c)), setting_noun(c), counted_name(c),
+          counted_name(c)),
       .columns = {"", "optimizer", "solved", "best on", "× least", "runs", "failed"},
       .align = "rlrrrrrrr",
       .names = 2};

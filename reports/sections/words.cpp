@@ -10,6 +10,7 @@
 
 #include "core/shell.h"
 #include "reports/sections/measure_words.h"
+#include "reports/statistics/resampling.h"
 
 namespace isoline::reports {
 namespace {
@@ -107,6 +108,10 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 
 std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string interval_name(std::size_t count) {
+  return count < kFewestForInterval ? fmt::format("range of {}", count) : "95 % bootstrap interval";
 }
 
 std::string ordinal(std::size_t place) {

@@ -24,7 +24,9 @@ std::string multiple(Real ratio);  // "1.3×"
 
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 std::string counted(std::size_t count, std::string_view noun);  // "1 seed", "3 seeds"
-std::string ordinal(std::size_t place);                         // "1st", "13th"
+// What a range of the bootstrap over so few is: "range of 3", or "95 % bootstrap interval".
+std::string interval_name(std::size_t count);
+std::string ordinal(std::size_t place);  // "1st", "13th"
 
 // A spec as people read it: "newton[rate=0.3333]", its long numbers cut to four digits.
 std::string shown_spec(std::string_view spec);

@@ -43,13 +43,13 @@ TEST(Yardstick, AProblemThatWantsXIsNotSolvedByASmallLoss) {
   Study study;
   study.runs = {lost_in_x()};
   const Comparison c = compare_optimizers(study);
-  const Run& run = c.runs[0];
+  const reports::Run& run = c.runs[0];
   EXPECT_EQ(run.reached_loss[Measure::work][kTightest], 60);
   EXPECT_EQ(run.found_x[Measure::work][0], kNever);
   EXPECT_EQ(run.taken[Measure::work][0], kNever);
   EXPECT_EQ(c.problems[0].aim, Aim::x);
   EXPECT_EQ(c.optimizers[0].standings[0].solved, 0U);
-  EXPECT_FALSE(c.leader.has_value());
+  EXPECT_FALSE(c.lead.has_value());
   EXPECT_FALSE(returns(run, 1e-1));
 }
 
