@@ -10,6 +10,7 @@
 #include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/measure_words.h"
+#include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -74,10 +75,10 @@ std::string open_html(const Comparison& c) {
   return html_text(text) + "<a href=\"#statistics\">All limits</a>.";
 }
 
-// Who is not in the order of the cards.
-std::string apart_html(const Comparison& c) {
-  const std::string text = apart_sentence(c);
-  return text.empty() ? "" : fmt::format("<p class=apart>{}</p>", html_text(text));
+// What is told of the whole report alone: of prices, rates, and who is not in the order of the
+// cards.
+std::string told_html(const std::string& text) {
+  return text.empty() ? "" : fmt::format("<p class=whole>{}</p>", html_text(text));
 }
 
 std::string verdict_html(const Comparison& c) {
@@ -106,9 +107,10 @@ std::string glance_html(const Comparison& c) {
                  fmt::format("Of the {} of them that see no more than they are given", plain));
   return html +
          fmt::format(
-             "<article class=\"card ground\"><h3>On what</h3>{}{}<h3>What cannot be concluded</h3>"
-             "<p>{}</p></article></div>\n",
-             counts_html(c), is_order ? apart_html(c) : "", open_html(c));
+             "<article class=\"card ground\"><h3>On what</h3>{}{}{}{}<h3>What cannot be concluded</h3>"
+             "<p class=limits>{}</p></article></div>\n",
+             counts_html(c), is_order ? told_html(prices_text(c)) : "", told_html(rates_text(c)),
+             is_order ? told_html(apart_sentence(c)) : "", open_html(c));
 }
 
 }  // namespace isoline::reports

@@ -32,14 +32,15 @@ function fillCard(card, isAsked) {
 function fillGround(ground) {
   const [problems, , runs, failed] = ground.querySelectorAll('.tiles li'), shown = shownOf('p');
   const cells = shown.flatMap((p) => shownCells(DATA.problems[p])), sum = (count) => cells.reduce((all, cell) => all + count(cell), 0);
-  problems.replaceChildren(element('b', {}, String(shown.length), element('small', {}, `/${KINDS.p.names.length}`)), 'problems shown');
+  problems.replaceChildren(element('b', {}, String(shown.length), element('small', {}, `/${KINDS.p.names.length}`)), 'settings shown');
   runs.replaceChildren(element('b', {}, String(sum((cell) => cell.reached.length))), 'runs that apply');
   failed.replaceChildren(element('b', {}, String(sum((cell) => cell.failed))), 'failed');
   failed.className = sum((cell) => cell.failed) > 0 ? 'bad' : '';
   const limit = isFiltered()
       ? 'What was left out was chosen, not drawn, and perhaps after its results were seen: an order among the rest is no evidence for problems or methods beyond them. '
-      : `Another tolerance than the report's own, 1e-6, was chosen${view.target === 5 || view.target === 15 ? '' : ', and is in none of its tables'}: an order that changes with it is no order. `;
-  ground.querySelector('p').replaceChildren(limit, element('a', {href: '#statistics'}, 'All limits'), '.');
+      : `Another tolerance than the report's own, ${tauName(DEFAULT_TARGET)}, was chosen${DATA.rungs.includes(view.target) ? '' : ', and is in none of its tables'}: an order that changes with it is no order. `;
+  ground.querySelectorAll('p.whole').forEach((told) => told.remove());  // of the whole report alone
+  ground.querySelector('p.limits').replaceChildren(limit, element('a', {href: '#statistics'}, 'All limits'), '.');
 }
 
 function makeGlance(glance) {

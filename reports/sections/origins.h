@@ -35,4 +35,7 @@ std::string origin_text(const Comparison& comparison, std::size_t problem, std::
 // "gd (3.8e-5, tuned)", in tables of one problem; the label alone where no table chose.
 std::string setting_text(const Comparison& comparison, std::size_t problem, std::size_t optimizer);
 
+// A sentence: how many methods have rates of tables; empty where no run used one.
+std::string rates_text(const Comparison& comparison);
+
 }  // namespace isoline::reports

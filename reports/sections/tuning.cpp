@@ -149,32 +149,48 @@ Plot best_of_plot(const Comparison& c, const std::vector<Rates>& all) {
   return plot;
 }
 
-// How many methods have rates of which origin, and what is open about them.
-std::vector<Reading> readings_of(const Comparison& c, const std::vector<Rates>& all) {
-  std::size_t tuned = 0, published = 0, rows = 0, edges = 0, never = 0;
-  std::set<std::string> methods;
+// What is open about rates that were tuned.
+std::string edges_text(const std::vector<Rates>& all) {
+  std::size_t rows = 0, edges = 0, never = 0;
   for (const Rates& rates : all) {
-    methods.insert(c.optimizers[rates.optimizer].method);
-    tuned += !rates.tuned.empty();
-    published += rates.tuned.empty() && rates.published > 0;
     rows += rates.tuned.size();
     edges += rates.at_edge;
     never += rates.never;
   }
-  std::vector<Reading> readings = {
-      {"", fmt::format("Of {} methods {} have rates tuned on the very {}s they are judged on, on "
-                       "other seeds; {} more have published ones; the others run as asked or at "
-                       "their defaults.",
-                       methods.size(), tuned, setting_noun(c), published)}};
-  if (rows > 0)
-    readings.push_back(
-        {"", fmt::format("Of {} tuned rates {} stand at an edge of their grid, and {} are the best "
-                         "of values none of which got there while it was tuned.",
-                         rows, edges, never)});
-  return readings;
+  if (rows == 0) return "";
+  return fmt::format(
+      "Of {} tuned rates {} stand at an edge of their grid, and {} are the best of values none of "
+      "which got there while it was tuned.",
+      rows, edges, never);
+}
+
+std::vector<Rates> all_rates(const Comparison& c) {
+  std::vector<Rates> all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.push_back(rates_of(c, s));
+  return all;
 }
 
 }  // namespace
+
+std::string rates_text(const Comparison& c) {
+  std::set<std::string> methods, tuned, published;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const std::string& method = c.optimizers[s].method;
+    methods.insert(method);
+    for (std::size_t p = 0; p < c.problems.size(); ++p) {
+      const Origin origin = origin_of(c, p, s);
+      if (origin == Origin::tuned) tuned.insert(method);
+      if (origin == Origin::published) published.insert(method);
+    }
+  }
+  if (tuned.empty() && published.empty()) return "";
+  for (const std::string& method : tuned) published.erase(method);
+  return fmt::format(
+      "Of {} methods {} have rates tuned on the very {}s they are judged on, on other seeds{}; the "
+      "others run as asked or at their defaults.",
+      methods.size(), tuned.size(), setting_noun(c),
+      published.empty() ? "" : fmt::format(", and {} published ones", published.size()));
+}
 
 Section tuning_section(const Comparison& c) {
   Section section{.id = "tuning",
@@ -182,14 +198,11 @@ Section tuning_section(const Comparison& c) {
                   .otherwise =
                       "No run of this report used a table of rates: all methods run as "
                       "asked, or at their defaults."};
-  std::vector<Rates> all;
-  bool has_any = false;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    all.push_back(rates_of(c, s));
-    has_any = has_any || !all.back().is_empty();
-  }
-  if (has_any) {
-    section.readings = readings_of(c, all);
+  const std::vector<Rates> all = all_rates(c);
+  if (const std::string text = rates_text(c); !text.empty()) {
+    section.readings.push_back({"", text});
+    if (const std::string edges = edges_text(all); !edges.empty())
+      section.readings.push_back({"", edges});
     section.tables.push_back(rates_table(c, all));
     if (Plot plot = best_of_plot(c, all); !plot.series.empty())
       section.plots.push_back(std::move(plot));
