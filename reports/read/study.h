@@ -10,7 +10,7 @@
 #include "core/records/record.h"
 #include "core/records/sheet.h"
 #include "core/threads.h"
-#include "reports/read/tuning.h"
+#include "reports/read/tuned_rates.h"
 
 namespace isoline::reports {
 

@@ -1,5 +1,5 @@
 // Reads rows of tables of rates.
-#include "reports/read/tuning.h"
+#include "reports/read/tuned_rates.h"
 
 #include <algorithm>
 
