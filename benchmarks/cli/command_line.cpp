@@ -28,7 +28,8 @@ constexpr const char* kExamples =
     "  isoline audit gd adam sip          scaling, invariance, order: measured\n"
     "  isoline compare results/old results/new    what got worse?\n"
     "  isoline claims notebook            is what the notebook prints reproduced?\n\n"
-    "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable.";
+    "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable,\n"
+    "130 interrupted.";
 
 const CLI::Range kJobs(1, 1024), kThreads(1, 256);
 
@@ -190,13 +191,18 @@ void CommandLine::add_compare() {
       ->delimiter(',');
   verb.add_option("--noise", given.noise, "Least band of noise of times, relative (default: 0.1)")
       ->check(CLI::Range(0.0, 10.0));
-  verb.add_flag("--common", given.is_common_only, "Let cells that only BASE has pass");
+  verb.add_option("--allow", given.allowed,
+                  "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
+  verb.add_flag("--common", given.is_common_only, "Let NEW lack any cell of BASE");
+  verb.add_option("--trend", given.trend,
+                  "Folder of earlier baselines, whose headline figures are shown, by file name");
   CLI::Option* json = verb.add_flag("--json", given.as_json, "As JSON");
   verb.add_flag("--markdown", given.as_markdown, "As Markdown")->excludes(json);
   verb.footer(
-      "Exit codes: 0 no worse and no better, 2 worse, 3 better only, 4 not comparable: another "
-      "build\n"
-      "or instruction set without --tolerance, or cells of BASE that NEW lacks without --common.\n"
+      "Exit codes: 0 no worse and no better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
+      "4 not comparable: a clock ended a cell, its record is in doubt, or it is of another build\n"
+      "and --tolerance is not given. Cells are paired by what was asked of them, with seed and\n"
+      "budget, so that a changed default is compared, and named.\n"
       "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
       "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise "
       "that\n"

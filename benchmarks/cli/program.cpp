@@ -8,6 +8,7 @@
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
+#include "core/exit.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
 #include "core/threads.h"
@@ -34,10 +35,10 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
     return benchmarks::parse_and_run(program, count, arguments, session);
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return benchmarks::kUsage;
+    return kUsage;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return benchmarks::kWorse;
+    return kWorse;
   }
 }
 

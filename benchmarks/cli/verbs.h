@@ -6,13 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "core/exit.h"
+
 namespace isoline::benchmarks {
 
 class Session;
-
-// Exit codes of every verb.
-enum Exit { kGood = 0, kUsage = 1, kWorse = 2, kBetterOnly = 3, kNotComparable = 4 };
-inline constexpr int kInterrupted = 130;  // what a shell expects after Ctrl-C
 
 struct RunArguments {
   std::string suite, problem, optimizer, seeds, time, out, rates = "builtin";
@@ -34,6 +32,7 @@ struct CompareArguments {
   std::string before, after;
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
   std::vector<std::string> timed;
+  std::string allowed, trend;  // a list of cells that NEW may lack; a folder of earlier baselines
   bool is_common_only = false, as_markdown = false, as_json = false;
 };
 int compare_verb(const CompareArguments& given, Session& session);

@@ -41,6 +41,13 @@ Json run_schema() {
   return schema;
 }
 
+Json result_of(const Json& record) {
+  Json result = without_timings(record);
+  result.erase("provenance");
+  result.at("request").erase("rates");  // which file chose the options: they are in the cell
+  return result;
+}
+
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
