@@ -15,11 +15,11 @@ namespace {
 // the tolerance when perturbed move beyond it elsewhere.
 constexpr Real kMargin = 0.1;
 
-using Reached = std::array<bool, kTolerances.size()>;
+using Tolerances = std::array<bool, kTolerances.size()>;
 
 // In the sense of the aim that BASE knows of.
-Reached reached_by(const Subject& subject, Aim aim) {
-  Reached reached{};
+Tolerances reached_by(const Subject& subject, Aim aim) {
+  Tolerances reached{};
   for (std::size_t t = 0; t < reached.size(); ++t)
     reached[t] = work_to(subject, aim, kTolerances[t].tau) < kNever;
   return reached;
@@ -65,7 +65,7 @@ Perturbed perturbed_of(const Subject& unperturbed, const std::vector<Subject>& p
   for (const Subject& subject : perturbed) {
     found.moved = std::max(found.moved, movement(unperturbed, subject));
     found.states.push_back(subject.state);
-    const Reached reached = reached_by(subject, unperturbed.aim);
+    const Tolerances reached = reached_by(subject, unperturbed.aim);
     for (std::size_t t = 0; t < reached.size(); ++t) found.reached[t] += reached[t];
   }
   return found;
@@ -78,7 +78,7 @@ bool is_chaotic(const Subject& subject, const std::optional<Real>& tolerance) {
 std::vector<Difference> coarse_differences(const Subject& before, const Subject& after) {
   std::vector<Difference> all;
   if (auto difference = status_difference(before, after)) all.push_back(std::move(*difference));
-  const Reached then = reached_by(before, before.aim), now = reached_by(after, before.aim);
+  const Tolerances then = reached_by(before, before.aim), now = reached_by(after, before.aim);
   const Perturbed& others = *before.perturbed;
   for (std::size_t t = 0; t < now.size(); ++t) {
     const bool by_all = then[t] && others.reached[t] == others.states.size();
