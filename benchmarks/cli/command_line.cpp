@@ -161,6 +161,7 @@ void CommandLine::add_run() {
                   "Result folder (default: results/SUITE; of a matrix of your own or a part of a "
                   "suite, a name made of its cells, the same for the same plan)");
   verb.add_flag("--force", given.force, "Repeat cells that are done");
+  verb.add_flag("--reuse", given.reuse, "Keep cells that another build has done");
   CLI::Option* dry =
       verb.add_flag("--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
   verb.add_flag("--all", given.lists_all, "With --dry-run: every cell, not the first 20")
