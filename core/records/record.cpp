@@ -44,7 +44,10 @@ Json run_schema() {
 Json result_of(const Json& record) {
   Json result = without_timings(record);
   result.erase("provenance");
-  result.at("request").erase("rates");  // which file chose the options: they are in the cell
+  Json& request = result.at("request");
+  request.erase(
+      "rates");  // which file chose the options, and how they were typed: the cell has them
+  for (const char* component : {"problem", "optimizer"}) request.at(component).erase("asked");
   return result;
 }
 

@@ -80,9 +80,8 @@ std::string digest_of(const Json& json) {
 
 // The path apart from the rest, so that each is called by its name.
 void add_digests(Subject& subject, const Record& record) {
-  Json json = without_timings(to_json(record));
-  for (const char* known : {"provenance", "build", "cell", "schema"}) json.erase(known);
-  json.at("request").erase("rates");
+  Json json = result_of(to_json(record));
+  for (const char* known : {"build", "build_parts", "cell", "schema"}) json.erase(known);
   Json path = Json::object();
   for (const char* name : {"curve", "trajectory", "series", "exhibit", "hits"})
     if (json.contains(name)) {
@@ -96,7 +95,7 @@ void add_digests(Subject& subject, const Record& record) {
 
 Given given(const Component& component) {
   return {.name = component.name,
-          .asked = component.spec,
+          .asked = component.asked.empty() ? component.spec : component.asked,
           .spec = component.spec,
           .options = component.options};
 }
@@ -128,6 +127,7 @@ Subject subject_of(const Record& record, const BestKnown& reference) {
   subject.title = title_of(subject.problem, subject.optimizer, request.seed);
   subject.terms = terms_of(request);
   subject.builds = {record.build};
+  subject.parts = record.build_parts;
   subject.aim = record.aim;
   add_seconds(subject, record.repeat_wall_seconds);
   subject.is_cut = is_cut(record);

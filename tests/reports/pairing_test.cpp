@@ -156,9 +156,8 @@ TEST(Pairing, AChangedDefaultIsComparedAndNamed) {
 }
 
 TEST(Pairing, AChangedDefaultWithTheSameFiguresIsAChange) {
-  const GateResult result = compared(of_optimizer("adam", [](Record& record) {
-    record.request.optimizer.options.set("epsilon", 1e-2);
-  }));
+  const GateResult result = compared(of_optimizer(
+      "adam", [](Record& record) { record.request.optimizer.options.set("epsilon", 1e-2); }));
   EXPECT_EQ(result.exit_code, kGood);
   EXPECT_TRUE(has(result.verdict, "adam: default of epsilon 1e-8 → 0.01")) << result.verdict;
 }
@@ -181,8 +180,8 @@ TEST(Pairing, ATabledRateThatChangedIsNoDefault) {
 }
 
 TEST(Pairing, AnotherBudgetIsAnotherQuestion) {
-  const GateResult result = compared(of_optimizer(
-      "gd", [](Record& record) { record.request.budget.iterations += 1; }));
+  const GateResult result =
+      compared(of_optimizer("gd", [](Record& record) { record.request.budget.iterations += 1; }));
   EXPECT_EQ(result.joined, 8U);
   EXPECT_EQ(result.only_before.size(), 4U);
   EXPECT_EQ(result.exit_code, kWorse);
@@ -192,9 +191,7 @@ TEST(Pairing, PartsOfTheBuildThatDifferAreNamedFirst) {
   const auto parts = [](const std::string& platform, const std::string& optimizer) {
     return [=](Record& record) {
       record.build = "b" + platform + optimizer;
-      Build build{.commit = "abc"};
-      build.parts = {{"platform", platform}, {"harness", "h"}, {"optimizer", optimizer}};
-      record.provenance = Provenance(build);
+      record.build_parts = {{"platform", platform}, {"harness", "h"}, {"optimizer", optimizer}};
     };
   };
   const Results results;
@@ -242,9 +239,8 @@ TEST(Pairing, AnOlderBaselineTellsNoMoreThanTitles) {
   Json cells = Json::array();
   for (const Record& record : read_study({results.before.path()}).runs)
     cells.push_back({{"cell", record.cell},
-                     {"title", record.request.problem.spec + " × " +
-                                   record.request.optimizer.spec + ", seed " +
-                                   std::to_string(record.request.seed)},
+                     {"title", record.request.problem.spec + " × " + record.request.optimizer.spec +
+                                   ", seed " + std::to_string(record.request.seed)},
                      {"status", "budget"},
                      {"build", record.build},
                      {"trace", "0"},
