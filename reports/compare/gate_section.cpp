@@ -67,9 +67,10 @@ Row row_of(const Headline& headline) {
 }
 
 void add_what_differs(Section& section, const GateResult& result) {
-  add_table(section, {.title = "Builds that differ", .columns = {"part"}}, result.builds, line);
-  add_table(section, {.title = "Options that differ", .columns = {"option"}}, result.settings,
-            line);
+  add_table(section, {.title = "Builds that differ", .columns = {"part"}, .names = 0},
+            result.builds, line);
+  add_table(section, {.title = "Options that differ", .columns = {"option"}, .names = 0},
+            result.settings, line);
   add_table(section,
             {.title = "Differences by optimizer",
              .columns = {"", "cells", "the largest", "figure", "change"},

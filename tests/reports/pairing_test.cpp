@@ -1,5 +1,4 @@
-// Who answers whom in a comparison: by what was asked, with changed defaults and builds named, and
-// nothing missing without a reason.
+// Who answers whom in a comparison: by what was asked, with changed defaults and builds named.
 #include "reports/compare/pairing.h"
 
 #include <gtest/gtest.h>
@@ -7,9 +6,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/errors.h"
-#include "core/json.h"
-#include "core/records/schema.h"
 #include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
 #include "tests/reports/fixture.h"
@@ -67,74 +63,6 @@ GateResult held_to_baseline(const Edit& edit, const GateOptions& options) {
   fill(results.after, edit);
   results.before.add_file("baseline.json", baseline_json(read_study({results.before.path()})));
   return compare_results(results.before.path() / "baseline.json", results.after.path(), options);
-}
-
-void without_adam(const ResultFolder& folder) {
-  for (const Record& record : read_study({folder.path()}).runs)
-    if (record.request.optimizer.name == "adam")
-      std::filesystem::remove(folder.path() / "runs" / record.file_name());
-}
-
-GateResult compared_without_adam(const AllowedList& allowed) {
-  const Results results;
-  fill(results.before, as_it_was);
-  fill(results.after, as_it_was);
-  without_adam(results.after);
-  return compare_results(results.before.path(), results.after.path(), {.allowed = allowed});
-}
-
-TEST(Pairing, AMissingOptimizerIsWorseAndNamedInOneLine) {
-  const GateResult result = compared_without_adam({});
-  EXPECT_EQ(result.exit_code, kWorse);
-  EXPECT_EQ(result.only_before.size(), 4U);
-  ASSERT_EQ(result.lacking.size(), 1U);
-  EXPECT_EQ(result.lacking[0].cells, 4U);
-  EXPECT_TRUE(has(result.verdict, "NEW lacks 4 cells of BASE (all 4 of adam)")) << result.verdict;
-  EXPECT_TRUE(has(gate_terminal(result), "all 4: adam")) << gate_terminal(result);
-}
-
-TEST(Pairing, WhatTheListAllowsMayBeMissingAndStandsWithItsReason) {
-  const GateResult result =
-      compared_without_adam({{.problem = "*", .optimizer = "ad*m", .reason = "it was renamed"}});
-  EXPECT_EQ(result.exit_code, kGood) << gate_terminal(result);
-  EXPECT_TRUE(result.only_before.empty());
-  EXPECT_EQ(result.allowed.size(), 4U);
-  EXPECT_TRUE(has(gate_terminal(result), "it was renamed")) << gate_terminal(result);
-  const GateResult half =
-      compared_without_adam({{.problem = "sine", .optimizer = "adam", .reason = "gone"}});
-  EXPECT_EQ(half.exit_code, kWorse);
-  EXPECT_EQ(half.only_before.size(), 2U);
-}
-
-TEST(Pairing, AnEntryOfTheListThatIsNotNeededIsNamed) {
-  const GateResult result = compared_without_adam(
-      {{.optimizer = "adam", .reason = "gone"}, {.optimizer = "gd", .reason = "gone"}});
-  EXPECT_EQ(result.exit_code, kGood);
-  EXPECT_TRUE(has(gate_terminal(result), "* × gd, which NEW does not lack"))
-      << gate_terminal(result);
-}
-
-TEST(Pairing, AListOfAllowedCellsKeepsToItsSchemaAndGivesReasons) {
-  const std::filesystem::path tree = ISOLINE_SOURCE_DIR;
-  const Json schema = read_json(tree / "benchmarks/schemas/allowed.json");
-  EXPECT_EQ(schema_violations(read_json(tree / "benchmarks/baselines/allowed.json"), schema),
-            std::vector<std::string>());
-  Json list = {{"schema", kAllowedSchema},
-               {"cells", {{{"optimizer", "ceres-*"}, {"reason", "built without Ceres"}}}}};
-  EXPECT_EQ(schema_violations(list, schema), std::vector<std::string>());
-  EXPECT_EQ(allowed_from_json(list).at(0).problem, "*");
-  list["cells"][0]["reason"] = "";
-  EXPECT_THROW(allowed_from_json(list), UsageError);
-  list["cells"][0] = {{"reason", "everything"}};
-  EXPECT_THROW(allowed_from_json(list), UsageError);
-  EXPECT_THROW(allowed_from_json({{"schema", "isoline.run/1"}}), UsageError);
-}
-
-TEST(Pairing, AStarStandsForAnyText) {
-  for (const char* pattern : {"*", "sine*", "*[xi=32]", "s*[*]", "sine[xi=32]", "**32*"})
-    EXPECT_TRUE(matches(pattern, "sine[xi=32]")) << pattern;
-  for (const char* pattern : {"", "sine", "*sine", "sine[xi=3]", "cos*", "*33*"})
-    EXPECT_FALSE(matches(pattern, "sine[xi=32]")) << pattern;
 }
 
 // The digest of all four cells is another one; what was asked is not.
