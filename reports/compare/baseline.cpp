@@ -125,6 +125,19 @@ Json minima_json(const Study& study, const BestKnown& best) {
 
 }  // namespace
 
+Json headline_json(const Headline& headline) {
+  Json leaders = Json::array();
+  for (const HeadlineMethod& method : headline.leaders)
+    leaders.push_back({{"optimizer", method.name},
+                       {"solved", method.solved},
+                       {"runs", method.runs},
+                       {"median_work", json_number(method.median_work)}});
+  return {{"runs", headline.runs},
+          {"failed", headline.failed},
+          {"solved", headline.solved},
+          {"leaders", std::move(leaders)}};
+}
+
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed) {
   const BestKnown best(study);
   const std::vector<Subject> subjects = subjects_of(study, best);

@@ -42,6 +42,23 @@ void remark_on(const Study& study, const std::filesystem::path& path,
                     study.superseded, path.string()));
 }
 
+// Of the baselines in a folder, ordered by name; what is none is left out.
+std::vector<Headline> headlines_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::vector<Headline> all;
+  for (const fs::path& file : files) try {
+      Baseline baseline = baseline_from_json(read_json(file));
+      baseline.headline.label = file.stem().string();
+      all.push_back(std::move(baseline.headline));
+    } catch (const UsageError&) {  // of a time before this schema
+    }
+  return all;
+}
+
 // Earlier baselines, the one compared with, and NEW.
 void add_trend(GateResult& result, const GateOptions& options, Headline before, Headline after) {
   if (!options.earlier) return;

@@ -3,11 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
-
-#include "core/errors.h"
-#include "core/json.h"
-#include "reports/compare/baseline.h"
 
 namespace isoline::reports {
 namespace {
@@ -47,48 +42,6 @@ Headline headline_of(const std::string& label, const std::vector<Subject>& subje
   }
   headline.leaders = leaders_among(works_of);
   return headline;
-}
-
-Json headline_json(const Headline& headline) {
-  Json leaders = Json::array();
-  for (const HeadlineMethod& method : headline.leaders)
-    leaders.push_back({{"optimizer", method.name},
-                       {"solved", method.solved},
-                       {"runs", method.runs},
-                       {"median_work", json_number(method.median_work)}});
-  return {{"runs", headline.runs},
-          {"failed", headline.failed},
-          {"solved", headline.solved},
-          {"leaders", std::move(leaders)}};
-}
-
-Headline headline_from_json(const std::string& label, const Json& json) {
-  Headline headline{.label = label, .leaders = {}};
-  json.at("runs").get_to(headline.runs);
-  json.at("failed").get_to(headline.failed);
-  json.at("solved").get_to(headline.solved);
-  for (const Json& method : json.at("leaders"))
-    headline.leaders.push_back({.name = method.at("optimizer").get<std::string>(),
-                                .solved = method.at("solved").get<std::size_t>(),
-                                .runs = method.at("runs").get<std::size_t>(),
-                                .median_work = real_of(method.at("median_work"))});
-  return headline;
-}
-
-std::vector<Headline> headlines_in(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  if (std::filesystem::is_directory(folder))
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (entry.path().extension() == ".json") files.push_back(entry.path());
-  std::ranges::sort(files);
-  std::vector<Headline> all;
-  for (const std::filesystem::path& file : files) try {
-      Baseline baseline = baseline_from_json(read_json(file));
-      baseline.headline.label = file.stem().string();
-      all.push_back(std::move(baseline.headline));
-    } catch (const UsageError&) {  // of a time before this schema
-    }
-  return all;
 }
 
 }  // namespace isoline::reports

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,8 +27,5 @@ Headline headline_of(const std::string& label, const std::vector<Subject>& subje
 
 Json headline_json(const Headline& headline);  // without the label
 Headline headline_from_json(const std::string& label, const Json& json);
-
-// Of the baselines in a folder, ordered by name; what is none is left out.
-std::vector<Headline> headlines_in(const std::filesystem::path& folder);
 
 }  // namespace isoline::reports

@@ -47,6 +47,12 @@ std::string incomparable_cause(const std::vector<Incomparable>& all) {
   return all.size() == 1 ? first : fmt::format("{} cells, as {}", all.size(), first);
 }
 
+std::string settings_cause(const std::vector<std::string>& settings) {
+  if (settings.size() <= 1) return joined(settings);
+  return fmt::format("{}, and {} of options", settings[0],
+                     counted(settings.size() - 1, "other change"));
+}
+
 std::string with_causes(const std::string& verdict, std::vector<std::string> causes) {
   std::erase(causes, "");
   return causes.empty() ? verdict : verdict + ": " + joined(causes, "; ");
@@ -67,24 +73,21 @@ void conclude(GateResult& result, const GateOptions& options) {
       options.is_common_only ? "" : lack_cause(result.lacking, result.only_before.size());
   const std::string slower = time_cause(result.times, 1, "slower");
   const std::string faster = time_cause(result.times, -1, "faster");
-  const auto defaults = [&]() -> std::string {
-    if (result.settings.size() <= 1) return joined(result.settings);
-    return fmt::format("{}, and {} of options", result.settings[0],
-                       counted(result.settings.size() - 1, "other change"));
-  };
   if (has(Change::worse) || !slower.empty() || !lacks.empty())
-    settle(kWorse, with_causes("worse", {defaults(), lacks, cause_in(result.groups, Change::worse),
-                                         slower}));
+    settle(kWorse, with_causes("worse", {settings_cause(result.settings), lacks,
+                                         cause_in(result.groups, Change::worse), slower}));
   else if (result.joined == 0)
     settle(kNotComparable, "not comparable: no cell is in both");
   else if (!result.incomparable.empty())
     settle(kNotComparable, with_causes("not comparable in part, nothing worse in the rest",
                                        {incomparable_cause(result.incomparable)}));
   else if (has(Change::better) || !faster.empty())
-    settle(kBetterOnly, with_causes("better, nothing worse",
-                                    {defaults(), cause_in(result.groups, Change::better), faster}));
+    settle(kBetterOnly,
+           with_causes("better, nothing worse", {settings_cause(result.settings),
+                                                 cause_in(result.groups, Change::better), faster}));
   else if (has(Change::changed) || !result.settings.empty())
-    settle(kGood, with_causes("changed, neither better nor worse", {defaults()}));
+    settle(kGood,
+           with_causes("changed, neither better nor worse", {settings_cause(result.settings)}));
   else
     settle(kGood, "equal");
 }

@@ -142,7 +142,8 @@ TEST(Chaos, TheCoarseTargetsAreThoseOfTheAim) {
                                                                     found(20)(record);
                                                                     record.summary.loss *= 2;
                                                                   }}})}));
-    return compare_results(before.path() / "baseline.json", after.path(), {kTolerance});
+    return compare_results(before.path() / "baseline.json", after.path(),
+                           {.tolerance = kTolerance});
   };
   const auto then = [&](std::size_t hits) {
     return [&, hits](Record& record) {

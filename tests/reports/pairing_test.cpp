@@ -71,7 +71,8 @@ TEST(Pairing, AChangedDefaultIsComparedAndNamed) {
     record.request.optimizer.options.set("initial-damping", 1e4);
     record.summary.loss *= 3;
   });
-  for (const GateResult& result : {compared(damped), held_to_baseline(damped, {kTolerance})}) {
+  for (const GateResult& result :
+       {compared(damped), held_to_baseline(damped, {.tolerance = kTolerance})}) {
     EXPECT_EQ(result.joined, 12U);
     EXPECT_EQ(result.exit_code, kWorse) << gate_terminal(result);
     EXPECT_EQ(result.settings,
@@ -129,7 +130,8 @@ TEST(Pairing, PartsOfTheBuildThatDifferAreNamedFirst) {
   });
   results.before.add_file("baseline.json", baseline_json(read_study({results.before.path()})));
   for (const auto& before : {results.before.path(), results.before.path() / "baseline.json"}) {
-    const GateResult result = compare_results(before, results.after.path(), {kTolerance});
+    const GateResult result =
+        compare_results(before, results.after.path(), {.tolerance = kTolerance});
     EXPECT_EQ(result.builds,
               std::vector<std::string>({"another source of the optimizers gd: 4 cells"}));
     const std::string text = gate_terminal(result);
@@ -181,8 +183,8 @@ TEST(Pairing, AnOlderBaselineTellsNoMoreThanTitles) {
                     {"minima", Json::array()},
                     {"cells", cells}};
   results.before.add_file("old.json", old.dump());
-  const GateResult result =
-      compare_results(results.before.path() / "old.json", results.after.path(), {kTolerance});
+  const GateResult result = compare_results(results.before.path() / "old.json",
+                                            results.after.path(), {.tolerance = kTolerance});
   EXPECT_EQ(result.joined, 12U);
   EXPECT_EQ(result.exit_code, kWorse);
   ASSERT_EQ(result.groups.size(), 1U);
