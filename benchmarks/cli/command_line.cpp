@@ -69,6 +69,7 @@ class CommandLine {
   void add_compare();
   void add_baseline();
   void add_merge();
+  void add_best();
   void add_claims();
   void add_list();
   void add_describe();
@@ -96,6 +97,7 @@ CommandLine::CommandLine(const std::string& program, Session& session)
   add_compare();
   add_baseline();
   add_merge();
+  add_best();
   add_claims();
   add_list();
   add_describe();
@@ -235,6 +237,18 @@ void CommandLine::add_merge() {
       "anything but timings and provenance the record is left out, the cell is named on standard\n"
       "error, OUT/conflicts.json remembers it, and the exit code is 2; all else is written. To\n"
       "resolve a conflict remove the wrong record, or --force its run, and merge again.");
+}
+
+void CommandLine::add_best() {
+  const auto [verb, given] =
+      add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
+  verb.add_option("DIR", given.folders, "Result folders of `isoline run`")->required();
+  verb.add_option("--out", given.out, "Table of best losses; of two the lesser stays")
+      ->capture_default_str();
+  verb.footer(
+      "Runs measure their targets from the best loss known where a problem declares none. The "
+      "table\n"
+      "is built into the program, and is part of the build that a record names.");
 }
 
 void CommandLine::add_claims() {
