@@ -52,40 +52,37 @@ Json BestLosses::to_json() const {
   return {{"schema", kSchema}, {"rows", rows}};
 }
 
-const BestLosses::Row* BestLosses::row_of(const Component& problem) const {
+std::size_t BestLosses::place_of(const Component& problem) const {
   const auto row = std::ranges::find_if(rows_, [&](const Row& each) {
     return each.problem == problem.name && each.options == problem.options;
   });
-  return row == rows_.end() ? nullptr : &*row;
+  return static_cast<std::size_t>(row - rows_.begin());
 }
 
 std::optional<Real> BestLosses::find(const Component& problem, std::uint64_t seed) const {
-  const Row* row = row_of(problem);
-  if (!row) return std::nullopt;
-  const auto known = row->losses.find(seed);
-  return known == row->losses.end() ? std::nullopt : std::optional(known->second.loss);
+  const std::size_t place = place_of(problem);
+  if (place == rows_.size()) return std::nullopt;
+  const auto known = rows_[place].losses.find(seed);
+  return known == rows_[place].losses.end() ? std::nullopt : std::optional(known->second.loss);
 }
 
 std::string BestLosses::text_of(const Component& problem) const {
-  const Row* row = row_of(problem);
-  if (!row) return "";
+  const std::size_t place = place_of(problem);
+  if (place == rows_.size()) return "";
   Json losses = Json::object();
-  for (const auto& [seed, known] : row->losses) losses[std::to_string(seed)] = known.loss;
+  for (const auto& [seed, known] : rows_[place].losses) losses[std::to_string(seed)] = known.loss;
   return losses.dump();
 }
 
 bool BestLosses::add(const Record& record) {
   const Real loss = record.summary.best_loss;
   if (!std::isfinite(loss) || record.status == Status::inapplicable) return false;
-  Row* row = const_cast<Row*>(row_of(record.request.problem));
-  if (!row) {
-    row = &rows_.emplace_back();
-    row->problem = record.request.problem.name;
-    row->options = record.request.problem.options;
-  }
-  const auto known = row->losses.find(record.request.seed);
-  if (known != row->losses.end() && known->second.loss <= loss) return false;
-  row->losses[record.request.seed] = {loss, record.request.optimizer.spec};
+  const Component& problem = record.request.problem;
+  const std::size_t place = place_of(problem);
+  if (place == rows_.size()) rows_.push_back({problem.name, problem.options, {}});
+  const auto [known, is_new] = rows_[place].losses.try_emplace(record.request.seed);
+  if (!is_new && known->second.loss <= loss) return false;
+  known->second = {loss, record.request.optimizer.spec};
   return true;
 }
 

@@ -37,7 +37,7 @@ class BestLosses {
     OptionValues options;  // all of them
     std::map<std::uint64_t, Loss> losses;
   };
-  const Row* row_of(const Component& problem) const;
+  std::size_t place_of(const Component& problem) const;  // of its row; their number where none is
 
   std::vector<Row> rows_;
 };

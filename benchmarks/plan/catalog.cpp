@@ -2,7 +2,7 @@
 #include "benchmarks/plan/catalog.h"
 
 #include "benchmarks/plan/best.h"
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/digest.h"
 
 namespace isoline::benchmarks {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
 #include "core/errors.h"
