@@ -84,7 +84,7 @@ endforeach()
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 // Generated from the sources: what computes each component, as digests.
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 
 namespace isoline::benchmarks {
 

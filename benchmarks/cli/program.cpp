@@ -7,7 +7,7 @@
 #include "benchmarks/cli/command_line.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 #include "core/exit.h"
 #include "core/records/provenance.h"

@@ -50,6 +50,12 @@ struct MergeArguments {
 };
 int merge_verb(const MergeArguments& given, Session& session);
 
+struct BestArguments {
+  std::vector<std::string> folders;
+  std::string out = "benchmarks/best.json";
+};
+int best_verb(const BestArguments& given, Session& session);
+
 struct ClaimArguments {
   std::vector<std::string> names;
   std::string out = "results/claims";

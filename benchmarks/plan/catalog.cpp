@@ -1,7 +1,8 @@
 // The built-in catalog, and components completed from their names and options.
 #include "benchmarks/plan/catalog.h"
 
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/best.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/digest.h"
 
 namespace isoline::benchmarks {
@@ -62,6 +63,8 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
     const std::string network = parse_spec(problem.options.text("network")).name;
     problem.learning_sources = source_digest(networks::network_registry().at(network).file);
   }
+  const std::string best = BestLosses::builtin().text_of(problem);
+  if (!best.empty()) problem.sources = digest(problem.sources + best);
   return problem;
 }
 
@@ -85,7 +88,15 @@ Component complete_optimizer(const Catalog& catalog, const Spec& spec) {
 
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
   const ProblemEntry& entry = catalog.problems.at(problem.name);
-  return entry.make(problem.options, Draw(seed, problem.name));
+  Problem made = entry.make(problem.options, Draw(seed, problem.name));
+  const std::optional<Real> best = BestLosses::builtin().find(problem, seed);
+  if (best && !made.minimum()) made.set_minimum(*best);
+  return made;
+}
+
+bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
+  const ProblemEntry& entry = catalog.problems.at(problem.name);
+  return entry.make(problem.options, Draw(seed, problem.name)).minimum().has_value();
 }
 
 }  // namespace isoline::benchmarks

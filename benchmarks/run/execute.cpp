@@ -9,7 +9,7 @@
 #include <new>
 #include <sstream>
 
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/perturbation.h"
 #include "core/ladder.h"
 #include "core/records/provenance.h"

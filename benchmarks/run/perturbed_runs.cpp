@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 
 namespace isoline::benchmarks {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/clock.h"
 #include "core/records/provenance.h"
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/records/request.h"
 #include "core/records/sheet.h"
 #include "problems/problem.h"
 

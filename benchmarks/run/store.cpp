@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"

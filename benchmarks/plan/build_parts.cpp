@@ -1,5 +1,5 @@
 // Digests of sources, looked up by file and joined to that of a build.
-#include "benchmarks/plan/sources.h"
+#include "benchmarks/plan/build_parts.h"
 
 #include <sstream>
 
