@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
@@ -187,12 +188,27 @@ void CommandLine::add_run() {
 }
 
 void CommandLine::add_report() {
-  const auto [verb, given] =
-      add("report",
-          "Write index.html, report.md, report.tex, report.csv, statistics.csv and report.json",
-          report_verb);
+  const std::string about = "Write " + format_names();
+  const auto [verb, given] = add("report", about.c_str(), report_verb);
   option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
   option(verb, "--out", given.out, "Where to write (default: report/ in the first DIR)");
+  const std::vector<std::string> measures(reports::kMeasureNames.begin(),
+                                          reports::kMeasureNames.end());
+  option(verb, "--by", given.by, "What is counted, in orders, tables and plots")
+      ->check(CLI::IsMember(measures))
+      ->capture_default_str();
+  option(verb, "--tolerance", given.tolerance,
+         "What may be left of a loss, or of an error in x, to count as solved")
+      ->check(CLI::Range(1e-10, 1.0))
+      ->default_str("1e-6");
+  verb.footer(
+      "Results know 51 tolerances, five a decade from 1 to 1e-10: one between two of them counts as "
+      "the\n"
+      "next stricter one. Work is oracle calls at declared prices, which any machine repeats; cost "
+      "is\n"
+      "the same calls at measured prices. Times mean something of runs with --exclusive: others "
+      "are\n"
+      "marked ≈.");
 }
 
 void CommandLine::add_compare() {

@@ -24,7 +24,8 @@ int run_verb(const RunArguments& given, Session& session);
 
 struct ReportArguments {
   std::vector<std::string> folders;
-  std::string out;
+  std::string out, by = "work";
+  double tolerance = 1e-6;
 };
 int report_verb(const ReportArguments& given, Session& session);
 

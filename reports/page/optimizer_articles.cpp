@@ -35,7 +35,7 @@ Deeds deeds_of(const Comparison& c, std::size_t s) {
       deeds.inapplicable += problem_link(c, p, cell.inapplicable);
       continue;
     }
-    const Spread& work = cell.work[kTightest];
+    const Spread& work = cell.headline[kTightest];
     if (cell.is_best[kTightest])
       deeds.won += problem_link(c, p, fmt::format("{} forward solves", figure(work.median)));
     if (cell.failed > 0) {

@@ -1,6 +1,7 @@
 // The rows and columns of a study: which problems and optimizers it holds, and under which names.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,17 +12,24 @@ namespace isoline::reports {
 
 // Names of optimizers. A file of rates gives one method other options on every problem; the method
 // then keeps one row under its name, unless some problem has two of that name. A method with tuned
-// rates stands beside itself, as "adam, tuned".
+// rates stands beside itself, as "adam, tuned". A method that sees what others do not on some
+// problems and no more than they on others is two: "sip, given P⁻¹" and "sip".
 class OptimizerLabels {
  public:
   explicit OptimizerLabels(const Study& study);
   std::string operator()(const std::string& problem, const std::string& spec) const;
   std::string method(const std::string& spec) const;
+  std::string whole(const std::string& problem, const std::string& spec) const;  // of all meanings
+  bool has_meanings(const std::string& whole) const { return meanings_.contains(whole); }
 
  private:
+  void find_meanings(const Study& study);
+
   std::set<std::pair<std::string, std::string>> tuned_;  // problem and optimizer, as specs
   std::set<std::string> by_name_;                        // names that stand for all their specs
   std::map<std::string, std::string> names_;             // by spec, as records have them
+  // By label of all meanings and problem: what is given there beyond the problem, or nothing.
+  std::map<std::string, std::map<std::string, std::string>> meanings_;
 };
 
 std::vector<ProblemAxis> problem_axis(const Study& study);

@@ -137,6 +137,14 @@ void read_audit(Study& study, const fs::path& folder) {
     }
 }
 
+void read_rates_of(Study& study, const fs::path& folder) {
+  try {
+    for (TunedRate& rate : read_rates(folder)) study.rates.push_back(std::move(rate));
+  } catch (const std::exception& error) {
+    study.unreadable.push_back({folder / "rates.json", error.what()});
+  }
+}
+
 }  // namespace
 
 std::optional<Exhibit> Study::pictures_of(const Record& record) const {
@@ -164,6 +172,7 @@ Study read_study(const std::vector<fs::path>& folders, const Listener& listener)
     read_plan(study, folder, cells);
     read_sheets(study, folder, sheets);
     read_audit(study, folder);
+    read_rates_of(study, folder);
   }
   std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
   read_runs(study, folders, listener);
