@@ -9,7 +9,7 @@
 
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/merge/identity.h"
+#include "benchmarks/merge/contradictions.h"
 #include "benchmarks/plan/resources.h"
 #include "core/errors.h"
 #include "core/json.h"

@@ -1,5 +1,5 @@
 // Holds the names of records to what they hold.
-#include "benchmarks/merge/identity.h"
+#include "benchmarks/merge/contradictions.h"
 
 #include <fmt/format.h>
 
