@@ -45,6 +45,7 @@ void fields(Like<MeasuredPrice> auto& price, auto& field) {
   field("high", price.high, kNotNegative);
   field("rounds", price.rounds, kPositive);
   field("calls", price.calls, kPositive);
+  field.forgiven("resolved", price.resolved);
 }
 
 void fields(Like<MeasuredPrices> auto& prices, auto& field) {

@@ -33,6 +33,7 @@ struct MeasuredPrice {
   std::int64_t declared = 0;
   Real price = 0, low = 0, high = 0;  // the median of the rounds, and their middle 80 %
   std::int64_t rounds = 0, calls = 0;
+  bool resolved = true;  // else overhead and noise: the declared one says more
 };
 
 // Measured at the published instance of a problem, with nothing else running.
