@@ -164,6 +164,9 @@ struct ProblemEntry {
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know
   OptionTable options = {};
+  // Whether `*` of a suite means it: not where a forward solve takes over a millisecond or an
+  // argument is required.
+  bool in_all = true;
   int revision = 1;                // raised when results change
   std::vector<Panel> panels = {};  // figures to draw of its runs
   std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};
