@@ -49,7 +49,7 @@ TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
   for (const Request& cell :
        given.suite.empty() ? cells_named(catalog, given) : cells_of(catalog, given)) {
     const std::string& name = cell.optimizer.name;
-    const Tunable& tunable = catalog.optimizers.at(name).tunable;
+    const optimizers::Tunable& tunable = catalog.optimizers.at(name).tunable;
     if (tunable.option.empty() || !known.emplace(cell.problem.spec, name).second) continue;
     const Rates::Row* row = rates.find(cell.problem, name);
     plan.pairs.push_back({.problem = cell.problem,

@@ -18,7 +18,6 @@
 
 namespace isoline::benchmarks {
 
-using optimizers::Family;
 using optimizers::Tunable;
 namespace {
 
