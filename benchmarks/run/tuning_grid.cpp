@@ -103,7 +103,9 @@ Knob knob_named(const Catalog& catalog, const std::string& optimizer, const Comp
 }
 
 OptionValues with_value(const Knob& knob, OptionValues given, Real value) {
-  if (knob.rule.empty())
+  if (knob.is_whole)
+    given.set(knob.option, static_cast<Index>(std::round(value)));
+  else if (knob.rule.empty())
     given.set(knob.option, value);
   else
     given.set(kNested, fmt::format("{}[{}={}]", knob.rule, knob.option, value));
