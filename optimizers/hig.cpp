@@ -96,8 +96,7 @@ void register_hig(OptimizerRegistry& registry) {
            "By the smaller Gram matrix for cut-offs of 1e-7 and more, else by the SVD of J.",
        .needs = {Oracle::forward, Oracle::jacobian},
        .most_rank = 2048,
-       .tunable = {.option = "rate", .below = 4},
-       .revision = 2}));
+       .tunable = {.option = "rate", .below = 4}}));
 }
 
 }  // namespace isoline::optimizers

@@ -128,8 +128,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
                                          .needs = {Oracle::forward, Oracle::jacobian},
                                          .is_input_scale_invariant = true,
                                          .most_rank = 2048,
-                                         .tunable = {.option = "initial-damping", .factor = 10},
-                                         .revision = 2}));
+                                         .tunable = {.option = "initial-damping", .factor = 10}}));
 }
 
 }  // namespace isoline::optimizers

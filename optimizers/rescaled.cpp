@@ -69,8 +69,8 @@ void register_rescaled(OptimizerRegistry& registry) {
                 .needs = {Oracle::forward, Oracle::network},
                 .options = option_table<Options>(),
                 .tunable = {.option = "network-optimizer", .below = 6},
-                .revision = 2,
                 .needs_for = needs_for,
+                .inside = NetworkDescent::inside,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Rescaled>(read_options<Options>(options), known);

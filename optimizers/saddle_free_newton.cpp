@@ -53,8 +53,7 @@ void register_saddle_free_newton(OptimizerRegistry& registry) {
        .note = "S̄ is the geometric mean of |S|; directions without curvature stay.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
        .most_unknowns = 2048,
-       .tunable = {.option = "rate", .below = 5},
-       .revision = 2}));
+       .tunable = {.option = "rate", .below = 5}}));
 }
 
 }  // namespace isoline::optimizers

@@ -123,8 +123,8 @@ void register_sip(OptimizerRegistry& registry) {
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
                 .tunable = {.option = "step", .below = 5},
-                .revision = 2,
                 .needs_for = needs_for,
+                .inside = NetworkDescent::inside,
                 .objection = objection,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {

@@ -50,6 +50,7 @@ void register_supervised(OptimizerRegistry& registry) {
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
                 .tunable = {.option = "network-optimizer"},
+                .inside = NetworkDescent::inside,
                 .objection = objection,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {

@@ -7,6 +7,7 @@
 #include "benchmarks/cli/command_line.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
@@ -28,6 +29,7 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
          const SourceTree& tree) {
   prepare_libraries(arguments);
   if (!tree.commit.empty()) set_program_tree(tree.commit, tree.is_dirty);
+  benchmarks::set_program_sources(tree.sources);
   const std::string program = std::filesystem::path(arguments[0]).filename().string();
   benchmarks::Session session(command_of(program, count, arguments), catalog);
   try {

@@ -19,7 +19,7 @@ struct RunArguments {
   std::int64_t iterations = 0, work = 0, memory_bytes = 0;  // 0: as the suite or the runner has it
   double target = -1;                                       // −1: as the suite has it
   int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
-  bool force = false, is_dry = false, lists_all = false, exclusive = false;
+  bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
   bool no_report = false, quiet = false;
 };
 int run_verb(const RunArguments& given, Session& session);
@@ -50,6 +50,12 @@ struct MergeArguments {
   std::string out;
 };
 int merge_verb(const MergeArguments& given, Session& session);
+
+struct BestArguments {
+  std::vector<std::string> folders;
+  std::string out = "benchmarks/best.json";
+};
+int best_verb(const BestArguments& given, Session& session);
 
 struct ClaimArguments {
   std::vector<std::string> names;

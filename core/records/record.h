@@ -55,6 +55,7 @@ inline std::string record_file_name(const std::string& cell, const std::string& 
 
 struct Record {
   std::string cell, build;  // digests
+  BuildParts build_parts;   // digests of what `build` is of; older records lack them
   Request request;
   Status status = Status::running;
   std::string message;

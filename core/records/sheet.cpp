@@ -72,6 +72,7 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field("inverse", sheet.inverse);
   field("unknowns", sheet.unknowns);
   field("residuals", sheet.residuals);
+  field.optional("aim", sheet.aim);
   field("target", sheet.target);
   field("truth", sheet.truth);
   field.optional("panels", sheet.panels);

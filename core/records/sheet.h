@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/aim.h"
 #include "core/grid.h"
 #include "core/records/panel.h"
 
@@ -53,6 +54,7 @@ struct Sheet {
   std::string family;                   // of an optimizer
   std::string inverse;                  // of a problem: none, exact, damped or estimate
   Index unknowns = 0, residuals = 0;    // of a problem
+  std::optional<Aim> aim;               // of a problem: what its user wants
   std::optional<Landscape> landscape_x, landscape_y;  // of a problem with two unknowns, two outputs
   std::vector<Real> target;                           // y*, where small
   std::vector<Real> truth;                            // x*, where small and known
