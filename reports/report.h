@@ -4,22 +4,34 @@
 // - statistics/: numbers in, numbers out: medians, profiles, ranks, tests, the bootstrap.
 // - read/: folders to records, records to cells, axes, standings, costs and curves.
 // - sections/: cells to sections of sentences, tables and plots, one file a topic; `Document`.
-// - formats/: a document to text, one file a format; formats.h lists them.
+// - formats/: a document to text, one file a format.
 // - page/: a document to the page, its charts' data, its style and its scripts.
 // - compare/: the gate: what changed from one set of results to another; baselines.
 //
 // A new statistic is a function in a file of sections/ and its name in sections/evidence.h; a new
-// format is a file of formats/ and its name in formats/formats.h.
+// format is a file of formats/ and its name in `kFormats` below.
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "reports/formats/formats.h"
+#include "reports/page/page.h"
 #include "reports/read/study.h"
 #include "reports/sections/document.h"
 #include "reports/sections/sections.h"
 
 namespace isoline::reports {
+
+// All that are written: a format is, once it is named here.
+struct Format {
+  const char* file;
+  std::string (*text)(const Document&);
+};
+inline constexpr Format kFormats[] = {
+    {"index.html", html_report},  {"report.csv", csv_report},
+    {"report.json", json_report}, {"report.md", markdown_report},
+    {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
 
 // Writes every format into the folder, which it makes.
 void write_report(const Document& document, const std::filesystem::path& out);

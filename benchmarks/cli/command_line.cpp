@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "benchmarks/cli/notes.h"
+#include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
@@ -13,22 +15,6 @@
 
 namespace isoline::benchmarks {
 namespace {
-
-constexpr const char* kAbout =
-    "Isoline compares optimizers on physical inverse problems: every problem of a registry "
-    "against\n"
-    "every optimizer of a registry, one JSON record a run, and a report.";
-constexpr const char* kExamples =
-    "Examples:\n"
-    "  isoline run                        the default suite, then its report\n"
-    "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
-    "  isoline run quick --optimizer adam     the cells of a suite that have this optimizer\n"
-    "  isoline describe sip               formula, options, needs and source\n"
-    "  isoline check rosenbrock           are its derivatives right?\n"
-    "  isoline audit gd adam sip          scaling, invariance, order: measured\n"
-    "  isoline compare results/old results/new    what got worse?\n"
-    "  isoline claims notebook            is what the notebook prints reproduced?\n\n"
-    "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable.";
 
 const CLI::Range kJobs(1, 1024), kThreads(1, 256);
 
@@ -186,12 +172,20 @@ void CommandLine::add_run() {
 }
 
 void CommandLine::add_report() {
-  const auto [verb, given] =
-      add("report",
-          "Write index.html, report.md, report.tex, report.csv, statistics.csv and report.json",
-          report_verb);
+  const std::string about = "Write " + format_names();
+  const auto [verb, given] = add("report", about.c_str(), report_verb);
   option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
   option(verb, "--out", given.out, "Where to write (default: report/ in the first DIR)");
+  const std::vector<std::string> measures(reports::kMeasureNames.begin(),
+                                          reports::kMeasureNames.end());
+  option(verb, "--by", given.by, "What is counted, in orders, tables and plots")
+      ->check(CLI::IsMember(measures))
+      ->capture_default_str();
+  option(verb, "--tolerance", given.tolerance,
+         "What may be left of a loss, or of an error in x, to count as solved")
+      ->check(CLI::Range(1e-10, 1.0))
+      ->default_str("1e-6");
+  verb.footer(kReportNotes);
 }
 
 void CommandLine::add_compare() {
@@ -207,17 +201,14 @@ void CommandLine::add_compare() {
       ->delimiter(',');
   option(verb, "--noise", given.noise, "Least band of noise of times, relative (default: 0.1)")
       ->check(CLI::Range(0.0, 10.0));
-  flag(verb, "--common", given.is_common_only, "Let cells that only BASE has pass");
+  option(verb, "--allow", given.allowed,
+         "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
+  flag(verb, "--common", given.is_common_only, "Let NEW lack any cell of BASE");
+  option(verb, "--trend", given.trend,
+         "Folder of earlier baselines, whose headline figures are shown, by file name");
   CLI::Option* json = flag(verb, "--json", given.as_json, "As JSON");
   flag(verb, "--markdown", given.as_markdown, "As Markdown")->excludes(json);
-  verb.footer(
-      "Exit codes: 0 no worse and no better, 2 worse, 3 better only, 4 not comparable: another "
-      "build\n"
-      "or instruction set without --tolerance, or cells of BASE that NEW lacks without --common.\n"
-      "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
-      "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise "
-      "that\n"
-      "the repetitions show. Without --time-cells the 20 slowest such cells of BASE are judged.");
+  verb.footer(kCompareNotes);
 }
 
 void CommandLine::add_baseline() {
@@ -230,27 +221,14 @@ void CommandLine::add_baseline() {
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
   option(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
-  verb.footer(
-      "A line a cell: status, digest of the trace, final figures, work to 1e-1, 1e-3 and 1e-6.\n"
-      "Each cell is run again from starts that differ in the last bit. A cell whose figures then\n"
-      "move by more than the tolerance of a comparison is chaotic: it is judged by its status and\n"
-      "by which of 1e-1, 1e-3 and 1e-6 it reaches, so that rounding alone makes nothing worse.\n"
-      "Made by the portable preset it means the same on every x86-64-v3 machine:\n"
-      "  ISOLINE_PRESET=portable isoline run quick --out results/quick\n"
-      "  ISOLINE_PRESET=portable isoline baseline results/quick --out baseline.json\n"
-      "  isoline compare baseline.json results/quick");
+  verb.footer(kBaselineNotes);
 }
 
 void CommandLine::add_merge() {
   const auto [verb, given] = add("merge", "Unite result folders into a new one", merge_verb);
   option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
   option(verb, "--out", given.out, "The new result folder")->required();
-  verb.footer(
-      "Records of the same cell and build become one with the timings of all. Where they differ "
-      "in\n"
-      "anything but timings and provenance the record is left out, the cell is named on standard\n"
-      "error, OUT/conflicts.json remembers it, and the exit code is 2; all else is written. To\n"
-      "resolve a conflict remove the wrong record, or --force its run, and merge again.");
+  verb.footer(kMergeNotes);
 }
 
 void CommandLine::add_best() {
@@ -259,10 +237,7 @@ void CommandLine::add_best() {
   option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
   option(verb, "--out", given.out, "Table of best losses; of two the lesser stays")
       ->capture_default_str();
-  verb.footer(
-      "Runs measure their targets from the best loss known where a problem declares none. The "
-      "table\n"
-      "is built into the program, and is part of the build that a record names.");
+  verb.footer(kBestNotes);
 }
 
 void CommandLine::add_claims() {
@@ -275,11 +250,7 @@ void CommandLine::add_claims() {
   flag(verb, "--json", given.as_json, "As JSON");
   flag(verb, "--no-run", given.no_run, "Judge by the runs that are there");
   flag(verb, "--long", given.with_long, "Run also what takes hours");
-  verb.footer(
-      "A claim is reproduced where what is measured lies within the source's own error of "
-      "reading,\n"
-      "partly where only the direction holds. --out results/quick judges the runs of a suite.\n"
-      "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 none can be compared.");
+  verb.footer(kClaimsNotes);
 }
 
 void CommandLine::add_list() {

@@ -9,6 +9,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
+#include "core/exit.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
 #include "core/threads.h"
@@ -36,10 +37,10 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
     return benchmarks::parse_and_run(program, count, arguments, session);
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return benchmarks::kUsage;
+    return kUsage;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return benchmarks::kWorse;
+    return kWorse;
   }
 }
 

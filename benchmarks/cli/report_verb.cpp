@@ -8,12 +8,28 @@
 #include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
+#include "reports/read/yardstick.h"
 
 namespace isoline::benchmarks {
 
 namespace fs = std::filesystem;
 using reports::read_study;
 using reports::Study;
+namespace {
+
+// The tolerance asked for, or the next stricter one that results know.
+reports::Yardstick yardstick_of(const ReportArguments& given) {
+  const reports::Yardstick yardstick =
+      reports::yardstick_at(*reports::measure_of(given.by), given.tolerance);
+  const reports::Tolerance& taken = yardstick.tightest();
+  constexpr double kRounding = 1e-9;
+  if (taken.tau < given.tolerance * (1 - kRounding))
+    fmt::print(stderr, "--tolerance {}: taken as {}, the next stricter one of the 51\n",
+               given.tolerance, taken.name);
+  return yardstick;
+}
+
+}  // namespace
 
 int report_verb(const ReportArguments& given, Session& session) {
   const std::vector<fs::path> folders(given.folders.begin(), given.folders.end());
@@ -26,8 +42,9 @@ int report_verb(const ReportArguments& given, Session& session) {
     return fmt::format("no records in {}{}: `isoline run --out FOLDER` writes them",
                        fmt::join(given.folders, ", "), damaged);
   });
+  const reports::Yardstick yardstick = yardstick_of(given);
   write_and_print(study, given.out.empty() ? folders.front() / "report" : fs::path(given.out),
-                  session);
+                  session, false, yardstick);
   return kGood;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/session.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
 
@@ -22,11 +23,17 @@ std::vector<Judgement> judged(const std::vector<Claim>& claims, const std::vecto
   return judge(json_of(claims), runs);
 }
 
+std::string format_names() {
+  std::vector<std::string> names;
+  for (const reports::Format& format : reports::kFormats) names.emplace_back(format.file);
+  return reports::joined(names);
+}
+
 void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,
-                     bool quiet) {
+                     bool quiet, const reports::Yardstick& yardstick) {
   std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
   std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
-  const Document document = document_of(compare_optimizers(study), std::move(claims));
+  const Document document = document_of(compare_optimizers(study, yardstick), std::move(claims));
   write_report(document, out);
   if (!quiet)
     fmt::print("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string());

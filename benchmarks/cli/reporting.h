@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "benchmarks/plan/claim_cells.h"
@@ -13,7 +14,10 @@ namespace isoline::benchmarks {
 class Session;
 
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
-                     Session& session, bool quiet = false);
+                     Session& session, bool quiet = false,
+                     const reports::Yardstick& yardstick = {});
+
+std::string format_names();  // "index.html, report.csv, …"
 
 std::vector<reports::Judgement> judged(const std::vector<Claim>& claims,
                                        const std::vector<Record>& runs);

@@ -6,13 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "core/exit.h"
+
 namespace isoline::benchmarks {
 
 class Session;
-
-// Exit codes of every verb.
-enum Exit { kGood = 0, kUsage = 1, kWorse = 2, kBetterOnly = 3, kNotComparable = 4 };
-inline constexpr int kInterrupted = 130;  // what a shell expects after Ctrl-C
 
 struct RunArguments {
   std::string suite, problem, optimizer, seeds, time, out, rates = "builtin";
@@ -26,7 +24,8 @@ int run_verb(const RunArguments& given, Session& session);
 
 struct ReportArguments {
   std::vector<std::string> folders;
-  std::string out;
+  std::string out, by = "work";
+  double tolerance = 1e-6;
 };
 int report_verb(const ReportArguments& given, Session& session);
 
@@ -34,6 +33,7 @@ struct CompareArguments {
   std::string before, after;
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
   std::vector<std::string> timed;
+  std::string allowed, trend;  // a list of cells that NEW may lack; a folder of earlier baselines
   bool is_common_only = false, as_markdown = false, as_json = false;
 };
 int compare_verb(const CompareArguments& given, Session& session);

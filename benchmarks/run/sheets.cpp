@@ -7,6 +7,7 @@
 
 #include "benchmarks/run/isolate.h"
 #include "benchmarks/run/prices.h"
+#include "core/decompose.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr Index kGrid = 81;   // points a side of a landscape
 constexpr Index kSmall = 16;  // largest target and truth that a sheet shows
+constexpr Index kMostEntries = 256 * 256;  // of a Jacobian that is factorized: 20 ms
 constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate"};
 
 std::vector<std::string> names_of(OracleSet oracles) {
@@ -35,6 +37,22 @@ Real grid_point(Real low, Real high, Index i) {
 std::vector<Real> small(const Matrix& values) {
   if (values.size() > kSmall) return {};
   return {values.data(), values.data() + values.size()};
+}
+
+// σ_max / σ_min of J; nothing where it is too large, or no number.
+std::optional<Real> condition_of(const Problem& problem) {
+  const bool is_small = problem.unknowns() * problem.residuals() <= kMostEntries;
+  if (problem.is_learned() || !problem.has_identity_network() || !is_small) return std::nullopt;
+  const auto& truth = problem.truth();
+  const Vector theta = truth ? Vector(truth->reshaped()) : problem.start();
+  Point at;
+  Matrix J;
+  Svd svd;
+  problem.forward(theta, at);
+  problem.jacobian(J, at);
+  if (!J.allFinite() || !thin_svd(J, svd)) return std::nullopt;
+  const Real least = J.rows() < J.cols() ? 0 : svd.sigma[svd.sigma.size() - 1];
+  return least > 0 ? svd.sigma[0] / least : std::numeric_limits<Real>::infinity();
 }
 
 // L over the problem's window in x, and over the box in y that the window maps into.
@@ -113,6 +131,7 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
               .aim = entry.aim,
               .target = small(problem.target())};
   sheet.panels = entry.panels;
+  sheet.condition = condition_of(problem);
   if (problem.truth()) sheet.truth = small(*problem.truth());
   if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
   return sheet;

@@ -92,6 +92,9 @@ Record read_record(const std::filesystem::path& path);
 
 Json run_schema();  // what benchmarks/schemas/run.json holds
 
+// All of a record that two runs of one build must agree on.
+Json result_of(const Json& record);
+
 // The record without what may differ between two runs of one build: times, memory, concurrency.
 Json without_timings(Json record);
 

@@ -2,6 +2,9 @@
 // row a figure of the statistics.
 #include <fmt/format.h>
 
+#include <functional>
+
+#include "core/oracle.h"
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
@@ -9,66 +12,101 @@
 namespace isoline::reports {
 namespace {
 
-void add(std::string& row, std::string_view field) {
-  if (!row.empty() && row.back() != '\n') row += ',';
-  row += field;
+struct Column {
+  std::string name;
+  std::function<std::string(const Run&)> text;
+};
+
+void add_reached(std::vector<Column>& columns, const Yardstick& yardstick, const char* what,
+                 Measure by) {
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    columns.push_back({fmt::format("{}_to_{}", what, yardstick.tolerances[t].name),
+                       [by, t](const Run& run) { return exact_figure(run.taken[by][t]); }});
 }
 
-std::string header() {
-  std::string row =
-      "problem,optimizer,seed,status,iterations,work,start_loss,loss,best_loss,x_error";
-  for (const Tolerance& tolerance : kTolerances) row += fmt::format(",work_to_{}", tolerance.name);
-  for (const Tolerance& tolerance : kTolerances) row += fmt::format(",cost_to_{}", tolerance.name);
-  for (const Tolerance& tolerance : kTolerances)
-    row += fmt::format(",seconds_to_{}", tolerance.name);
-  row += ",cost";
-  for (const std::string_view oracle : kOracleNames) row += fmt::format(",{}", oracle);
-  return row +
-         ",wall_seconds,timed_alone,peak_memory_bytes,privileges,message,claimed,cell,build,"
-         "command\n";
+void add_figures(std::vector<Column>& columns, const Yardstick& yardstick) {
+  const auto figure_of = [&](const char* name, Real Summary::*value) {
+    columns.push_back(
+        {name, [value](const Run& run) { return exact_figure(run.record->summary.*value); }});
+  };
+  const auto count_of = [&](const char* name, std::int64_t Summary::*value) {
+    columns.push_back(
+        {name, [value](const Run& run) { return std::to_string(run.record->summary.*value); }});
+  };
+  count_of("iterations", &Summary::iterations);
+  count_of("work", &Summary::work);
+  figure_of("start_loss", &Summary::start_loss);
+  figure_of("loss", &Summary::loss);
+  figure_of("best_loss", &Summary::best_loss);
+  figure_of("x_error", &Summary::x_error);
+  add_reached(columns, yardstick, "work", Measure::work);
+  add_reached(columns, yardstick, "cost", Measure::cost);
+  add_reached(columns, yardstick, "seconds", Measure::time);
+  add_reached(columns, yardstick, "iterations", Measure::iterations);
+  columns.push_back({"cost", [](const Run& run) { return exact_figure(run.spent); }});
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    columns.push_back({std::string(kOracleNames[kind]), [kind](const Run& run) {
+                         return std::to_string(run.record->counts[kind]);
+                       }});
+  figure_of("wall_seconds", &Summary::wall_seconds);
+  columns.push_back({"timed_alone", [](const Run& run) -> std::string {
+                       return run.is_timed_alone ? "true" : "false";
+                     }});
+  count_of("peak_memory_bytes", &Summary::peak_memory_bytes);
 }
 
-std::string row_of(const Run& run) {
-  const Record& record = *run.record;
-  const Request& request = record.request;
-  const Summary& summary = record.summary;
-  std::string row = csv_field(request.problem.spec);
-  add(row, csv_field(request.optimizer.spec));
-  add(row, std::to_string(request.seed));
-  add(row, name_of(record.status));
-  add(row, std::to_string(summary.iterations));
-  add(row, std::to_string(summary.work));
-  for (const Real value : {summary.start_loss, summary.loss, summary.best_loss, summary.x_error})
-    add(row, exact_figure(value));
-  for (const Real work : run.work) add(row, exact_figure(work));
-  for (const Real cost : run.cost) add(row, exact_figure(cost));
-  for (const Real seconds : run.seconds) add(row, exact_figure(seconds));
-  add(row, exact_figure(run.spent));
-  for (const std::int64_t count : record.counts) add(row, std::to_string(count));
-  add(row, exact_figure(summary.wall_seconds));
-  add(row, run.is_timed_alone ? "true" : "false");
-  add(row, std::to_string(summary.peak_memory_bytes));
-  add(row, csv_field(joined(record.privileges, "; ")));
-  for (const std::string& text :
-       {record.message, record.claimed, record.cell, record.build, rerun_command(request)})
-    add(row, csv_field(text));
-  return row + '\n';
+std::vector<Column> columns_of_runs(const Yardstick& yardstick) {
+  const auto words = [](auto text) {
+    return [text](const Run& run) { return csv_field(text(*run.record)); };
+  };
+  std::vector<Column> columns = {
+      {"problem", words([](const Record& record) { return record.request.problem.spec; })},
+      {"optimizer", words([](const Record& record) { return record.request.optimizer.spec; })},
+      {"seed", [](const Run& run) { return std::to_string(run.record->request.seed); }},
+      {"status", words([](const Record& record) { return name_of(record.status); })}};
+  add_figures(columns, yardstick);
+  for (Column column : std::initializer_list<Column>{
+           {"privileges", words([](const Record& r) { return joined(r.privileges, "; "); })},
+           {"message", words([](const Record& r) { return r.message; })},
+           {"claimed", words([](const Record& r) { return r.claimed; })},
+           {"cell", words([](const Record& r) { return r.cell; })},
+           {"build", words([](const Record& r) { return r.build; })},
+           {"command", words([](const Record& r) { return rerun_command(r.request); })}})
+    columns.push_back(std::move(column));
+  return columns;
 }
 
-// As many fields as any other row; all figures empty.
-std::string row_of(const PlannedCell& cell) {
-  const std::string before_cell(23 + kOracles, ',');
-  return fmt::format("{},{},{},missing{}{},,\n", csv_field(cell.problem), csv_field(cell.optimizer),
-                     cell.seed, before_cell, csv_field(cell.cell));
+// Of a planned cell that has not run: all figures are empty.
+std::string text_of(const PlannedCell& cell, const std::string& column) {
+  if (column == "problem") return csv_field(cell.problem);
+  if (column == "optimizer") return csv_field(cell.optimizer);
+  if (column == "seed") return std::to_string(cell.seed);
+  if (column == "status") return "missing";
+  return column == "cell" ? csv_field(cell.cell) : "";
+}
+
+template <class Text>
+void add_line(std::string& csv, const std::vector<Column>& columns, Text text) {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (i > 0) csv += ',';
+    csv += text(columns[i]);
+  }
+  csv += '\n';
 }
 
 }  // namespace
 
 std::string csv_report(const Document& document) {
-  std::string text = header();
-  for (const Run& run : document.comparison.runs) text += row_of(run);
-  for (const PlannedCell& cell : document.comparison.missing) text += row_of(cell);
-  return text;
+  const Comparison& c = document.comparison;
+  const std::vector<Column> columns = columns_of_runs(c.yardstick);
+  std::string csv;
+  add_line(csv, columns, [](const Column& column) { return column.name; });
+  for (const Run& run : c.runs)
+    if (!run.is_repeated)
+      add_line(csv, columns, [&](const Column& column) { return column.text(run); });
+  for (const PlannedCell& cell : c.missing)
+    add_line(csv, columns, [&](const Column& column) { return text_of(cell, column.name); });
+  return csv;
 }
 
 std::string statistics_csv(const Document& document) {

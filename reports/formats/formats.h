@@ -1,4 +1,4 @@
-// The formats of a report, one file each: functions of a document.
+// The formats of a report that are plain text, one file each: functions of a document.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,25 +9,15 @@
 
 namespace isoline::reports {
 
-std::string html_report(const Document& document);      // the page
 std::string markdown_report(const Document& document);  // short enough for the summary of a CI job
 std::string latex_report(const Document& document);     // tables ready to paste
 std::string csv_report(const Document& document);       // one row a run
 std::string statistics_csv(const Document& document);   // table,row,column,value
 std::string json_report(const Document& document);      // schema isoline.report/1
 
-// All that are written: what is declared above is, once it is named here.
-struct Format {
-  const char* file;
-  std::string (*text)(const Document&);
-};
-inline constexpr Format kFormats[] = {
-    {"index.html", html_report},  {"report.csv", csv_report},
-    {"report.json", json_report}, {"report.md", markdown_report},
-    {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
-
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
 std::string terminal_section(const Section& section);  // within a hundred columns
+std::string markdown_section(const Section& section);
 
 // Parts of report.json.
 nlohmann::json statistics_json(const Document& document);

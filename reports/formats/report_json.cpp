@@ -27,10 +27,10 @@ Json to_json(const std::map<Status, std::size_t>& statuses) {
   return json;
 }
 
-Json by_tolerance(const std::array<Spread, kTolerances.size()>& spreads) {
+Json by_tolerance(const Comparison& c, const Cell& cell, Measure by) {
   Json json = Json::object();
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    json[std::string(kTolerances[t].name)] = to_json(spreads[t]);
+    json[std::string(c.yardstick.tolerances[t].name)] = to_json(cell.taken[by][t]);
   return json;
 }
 
@@ -52,8 +52,8 @@ Json calls_json(const Comparison& c, const Cell& cell) {
   Json json = Json::object();
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
-    if (run.work[kTightest] == kNever) continue;
-    const OracleCounts counts = counts_at(*run.record, run.work[kTightest]);
+    if (run.taken[Measure::work][kTightest] == kNever) continue;
+    const OracleCounts counts = counts_at(*run.record, run.taken[Measure::work][kTightest]);
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       json[std::string(kOracleNames[kind])].push_back(counts[kind]);
   }
@@ -74,11 +74,12 @@ Json cell_json(const Comparison& c, std::size_t p, std::size_t s) {
             {"builds", builds_of(c, cell)}};
   if (!cell.inapplicable.empty()) json["inapplicable"] = cell.inapplicable;
   if (!cell.is_measured()) return json;
-  json["figures"] = {{"work", by_tolerance(cell.work)}, {"loss", to_json(cell.loss)}};
+  json["figures"] = {{"work", by_tolerance(c, cell, Measure::work)}, {"loss", to_json(cell.loss)}};
   if (cell.x_error.n > 0) json["figures"]["x_error"] = to_json(cell.x_error);
-  json["costs"] = by_tolerance(cell.cost);
+  json["costs"] = by_tolerance(c, cell, Measure::cost);
   json["calls"] = calls_json(c, cell);
-  json["times"] = {{"seconds", by_tolerance(cell.seconds)}, {"timed_alone", cell.is_timed_alone}};
+  json["times"] = {{"seconds", by_tolerance(c, cell, Measure::time)},
+                   {"timed_alone", cell.is_timed_alone}};
   return json;
 }
 
@@ -90,14 +91,15 @@ Json profiles_json(const Comparison& c) {
     for (std::size_t s = 0; s < profile.solvers.size(); ++s)
       lines[c.optimizers[s].label] = {{"problems", profile.solvers[s].problems},
                                       {"ratios", profile.solvers[s].ratios}};
-    json[std::string(kTolerances[t].name)] = {{"optimizers", lines},
-                                              {"reading", profile_reading(c, t)}};
+    json[std::string(c.yardstick.tolerances[t].name)] = {{"optimizers", lines},
+                                                         {"reading", profile_reading(c, t)}};
   }
   return json;
 }
 
 Json standing_json(const Standing& standing) {
-  return {{"solved", standing.solved},
+  return {{"settings", standing.settings},
+          {"solved", standing.solved},
           {"wins", standing.wins},
           {"reached", standing.reached},
           {"typical", json_number(standing.typical)},
@@ -113,16 +115,33 @@ Json standings_json(const Comparison& c) {
               {"applicable", optimizer.applicable}, {"runs", optimizer.runs},
               {"failed", optimizer.failed}};
     for (std::size_t t = 0; t < kTolerances.size(); ++t)
-      json["standings"][std::string(kTolerances[t].name)] = standing_json(optimizer.standings[t]);
+      json["standings"][std::string(c.yardstick.tolerances[t].name)] =
+          standing_json(optimizer.standings[t]);
     list.push_back(std::move(json));
   }
   return list;
 }
 
-Json leader_json(const Comparison& c, const std::optional<Leader>& leader) {
-  if (!leader) return nullptr;
-  return {{"optimizer", c.optimizers[leader->optimizer].label},
-          {"stays_first", leader->stays_first}};
+Json rivals_json(const Comparison& c, const Lead& lead) {
+  Json list = Json::array();
+  for (const Rival& rival : lead.rivals)
+    list.push_back({{"optimizer", c.optimizers[rival.optimizer].label},
+                    {"typical", json_number(rival.pairing.typical())},
+                    {"wins", rival.pairing.wins},
+                    {"losses", rival.pairing.losses},
+                    {"ties", rival.pairing.ties},
+                    {"p", rival.p},
+                    {"adjusted_p", rival.adjusted}});
+  return list;
+}
+
+Json leader_json(const Comparison& c, const std::optional<Lead>& lead) {
+  if (!lead) return nullptr;
+  return {{"optimizer", c.optimizers[lead->ranked[0].optimizer].label},
+          {"tied", lead->tied},
+          {"settled", lead->is_settled},
+          {"stays_first", lead->stays_first},
+          {"others", rivals_json(c, *lead)}};
 }
 
 Json missing_json(const Comparison& c) {
@@ -155,6 +174,13 @@ Json audit_json(const Document& document) {
   return json;
 }
 
+Json yardstick_json(const Yardstick& yardstick) {
+  Json tolerances = Json::array();
+  for (const Tolerance& tolerance : yardstick.tolerances)
+    tolerances.push_back({{"name", tolerance.name}, {"tau", tolerance.tau}});
+  return {{"by", name_of(yardstick.by)}, {"tolerances", tolerances}};
+}
+
 Json verdict_json(const Document& document) {
   Json sentences = Json::array();
   for (const Reading& reading : document.section("standings").readings)
@@ -182,11 +208,12 @@ std::string json_report(const Document& document) {
                   {"superseded", c.study->superseded},
                   {"unreadable", unreadable},
                   {"failures", failures_json(c)},
+                  {"yardstick", yardstick_json(c.yardstick)},
                   {"verdict", verdict_json(document)},
                   {"claims", claims_json(document.claims)},
                   {"audit", audit_json(document)},
-                  {"leader", leader_json(c, c.leader)},
-                  {"open_leader", leader_json(c, c.open_leader)},
+                  {"leader", leader_json(c, c.lead)},
+                  {"open_leader", leader_json(c, c.open_lead)},
                   {"optimizers", standings_json(c)},
                   {"profiles", profiles_json(c)},
                   {"statistics", statistics_json(document)},

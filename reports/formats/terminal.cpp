@@ -6,6 +6,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -63,31 +64,6 @@ std::string wrapped(const std::string& text) {
   return out + "\n";
 }
 
-std::string standings(const Comparison& c) {
-  const std::size_t width = widest_label(c);
-  std::string text = "\n" + left("", width + 4) +
-                     "  solved  best on  x least      runs  failed  solved at 1e-3  at 1e-1\n";
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const OptimizerAxis& optimizer = c.optimizers[s];
-    const Standing& standing = optimizer.tightest();
-    text += fmt::format("{:>2}  {}", s + 1, left(label_of(optimizer), width));
-    text += right(fmt::format("{}/{}", standing.solved, optimizer.planned), 8);
-    text += right(standing.wins == 0 ? "." : std::to_string(standing.wins), 9);
-    text += right(standing.typical == kNever ? "✗" : fmt::format("{:.3g}", standing.typical), 9);
-    text += right(fmt::format("{}/{}", standing.reached, optimizer.runs), 10);
-    text += right(optimizer.failed == 0 ? "." : std::to_string(optimizer.failed), 8);
-    text += right(std::to_string(optimizer.standings[1].solved), 16);
-    text += right(std::to_string(optimizer.standings[0].solved), 9) + "\n";
-  }
-  return text + "\n" +
-         wrapped(
-             "Ranked by their performance profiles at 1e-6, the share of the first loss that may "
-             "be left. solved: problems where the median over seeds gets there, of those given to "
-             "it; best on: with the least work of all; x least: median over problems of its work "
-             "over the least, ✗ if it solves fewer than half; runs: that get there; failed: "
-             "errors, crashes, time or memory limits.");
-}
-
 // "sine             sip † 2", two a line where they fit.
 std::string best_of_each(const Comparison& c) {
   std::vector<std::string> lines;
@@ -96,16 +72,16 @@ std::string best_of_each(const Comparison& c) {
     width = std::max(width, width_of(name_of_spec(problem.spec)));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::vector<std::size_t> order = ranking(c, p);
-    const bool is_solved = !order.empty() && c.cell(p, order[0]).work[kTightest].is_solved();
-    const std::string best = is_solved
-                                 ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
-                                               figure(c.cell(p, order[0]).work[kTightest].median))
-                                 : "nobody";
+    const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
+    const std::string best = is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
+                                                     matrix_text(c, c.cell(p, order[0]), kTightest))
+                                       : "nobody";
     lines.push_back("  " + left(name_of_spec(c.problems[p].spec), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }
   const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
-  std::string text = "\nLeast median work to 1e-6, in forward solves\n";
+  std::string text =
+      fmt::format("\nLeast median {} to {}, in {}\n", counted_name(c), tau_name(c), unit_name(c));
   for (std::size_t i = 0; i < half; ++i) {
     const bool is_pair = half < lines.size() && i + half < lines.size();
     text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";
@@ -118,11 +94,11 @@ std::string line_of(const Comparison& c, std::size_t p, std::size_t s, std::size
   std::string line = "  " + left(label_of(c.optimizers[s]), width);
   if (cell.runs.empty()) return line + "  missing\n";
   if (!cell.is_measured()) return line + "  n/a: " + terminal_text(cell.inapplicable) + "\n";
-  const Spread& work = cell.work[kTightest];
+  const Spread& work = cell.headline[kTightest];
   line += right(fmt::format("{}/{}", work.n - work.unsolved, work.n), 6);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    line += right(reached_figure(cell.work[t].median) + (cell.is_best[t] ? "*" : " "), 8);
-  const Spread& seconds = cell.seconds[kTightest];
+    line += right(matrix_text(c, cell, t) + (cell.is_best[t] ? "*" : " "), 8);
+  const Spread& seconds = cell.taken[Measure::time][kTightest];
   const bool is_marked = !cell.is_timed_alone && seconds.is_solved();
   line += right(milliseconds(seconds.median) + (is_marked ? "≈" : " "), 9);
   return line + right(reached_figure(cell.loss.median), 11) + "  " + status_text(cell.statuses) +
@@ -135,15 +111,18 @@ std::string every_cell(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     text +=
         fmt::format("\n{}\n{}", terminal_text(shown_spec(c.problems[p].spec)), left("", width + 2));
-    text += "  runs  to 1e-1    1e-3    1e-6       ms        loss  status\n";
+    text += "  runs";
+    for (std::size_t t = 0; t < kTolerances.size(); ++t)
+      text += right(fmt::format("{}{} ", t == 0 ? "to " : "", c.yardstick.tolerances[t].name), 8);
+    text += "      ms         loss  status\n";
     for (const std::size_t s : ranking(c, p)) text += line_of(c, p, s, width);
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
-  std::string marks =
-      "Median work in forward solves until 1e-1, 1e-3, 1e-6 of the first loss is left; runs: that "
-      "reach 1e-6; ms to 1e-6; final loss. * least of its problem, ✗ not reached by half of the "
-      "runs, n/a: makes no sense";
+  std::string marks = fmt::format(
+      "Median {} in {} to each tolerance; runs: that get to {}; ms to {}; final loss. {} * least of "
+      "its problem, ✗ not reached by half of the runs, n/a: makes no sense",
+      counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
   if (c.is_any_timed_together) marks += ", ≈ timed beside other runs";
   return text + "\n" + wrapped(marks + ".");
 }
@@ -219,6 +198,9 @@ std::string table_text(const Table& table) {
   return text + (table.caption.empty() ? "" : wrapped(table.caption));
 }
 
+// The first of its tables: of who is not ranked the sentences below tell.
+std::string standings(const Section& section) { return "\n" + table_text(section.tables[0]); }
+
 }  // namespace
 
 std::string terminal_section(const Section& section) {
@@ -245,7 +227,7 @@ std::string terminal_table(const Document& document) {
   if (cells <= kFewCells)
     text += every_cell(c);
   else
-    text += standings(c) + best_of_each(c) + "\n";
+    text += standings(document.section("standings")) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
   if (has_privileges) text += "† sees what others do not.\n";

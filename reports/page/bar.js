@@ -96,7 +96,7 @@ function makePick(pick) {
 
 function makeSlider(slider) {
   const presets = document.getElementById('target-presets');
-  for (const target of [5, 15, 30]) {
+  for (const target of DATA.rungs) {
     const button = pressable(tauName(target), target === view.target, () => changeView(() => { view.target = target; }));
     button.dataset.target = target;
     presets.append(button);

@@ -8,7 +8,7 @@ const PROFILE_END = 64;  // the factor up to which a profile's area ranks
 const present = (list) => (list === undefined || list.length === 0 ? undefined : list);
 for (const problem of DATA.problems) {
   problem.cells = problem.cells.map(([s, reached = [], work = '', time = '', failed = 0, missing = 0]) =>
-    ({s, reached, work, time, failed, missing}));
+    ({s, reached, work, time, failed, missing, origin: problem.origins?.[s]}));
   problem.curves = problem.curves.map(([s, iterations, work, seconds, gap, low, high, error, least, greatest]) => ({
     s, iterations, work, seconds, gap, gap_low: present(low), gap_high: present(high),
     x_error: present(error), x_error_low: present(least), x_error_high: present(greatest),
@@ -27,8 +27,11 @@ const halved = (code) => parseInt(code, 36) / 2;
 const power = (code) => Number(`${parseInt(code.slice(0, -1), 36)}e${code.charCodeAt(code.length - 1) - 74}`);
 
 const isMeasured = (cell) => cell.reached.length > 0;
+// What the report counts: work unless asked otherwise, in its unit. Of counts the medians are whole
+// or halves; costs and times come as printed.
+const isCount = DATA.by === 'work' || DATA.by === 'iterations';
 function workOf(cell, target) {
-  cell.works ??= listOf(cell.work, halved);
+  cell.works ??= listOf(cell.work, isCount ? halved : power);
   return cell.works[target] ?? Infinity;
 }
 function timeOf(cell, target) {  // ms
@@ -49,8 +52,9 @@ function figure(value) {
   return value.toExponential(3).replace(/\.?0*e\+?/, 'e');
 }
 
-// Work over the least of the same problem; below one forward solve counts as one.
-const ratioOf = (work, low) => (work === Infinity ? Infinity : Math.max(work, 1) / Math.max(low, 1));
+// Work over the least of the same problem; below one forward solve, or a microsecond, counts as one.
+const LEAST_UNIT = DATA.by === 'time' ? 1e-3 : 1;
+const ratioOf = (work, low) => (work === Infinity ? Infinity : Math.max(work, LEAST_UNIT) / Math.max(low, LEAST_UNIT));
 const scoreOf = (ratio) => Math.max(0, Math.log2(PROFILE_END) - Math.log2(ratio)) / Math.log2(PROFILE_END);
 
 const order = (a, b) => (a < b ? -1 : a > b ? 1 : 0);  // also of two infinities
@@ -78,22 +82,30 @@ function addCell(standing, cell, low, target) {
   standing.failed += cell.failed;
 }
 
-// Best first. `isAsked` says which optimizers are compared.
-function standingsOf(target, isAsked = (s) => isShown('s', s)) {
-  const all = DATA.optimizers.map((_, s) => emptyStanding(s));
-  for (const p of shownOf('p')) {
-    const cells = DATA.problems[p].cells.filter((cell) => isAsked(cell.s)), low = leastWork(cells, target);
-    for (const cell of cells) addCell(all[cell.s], cell, low, target);
+// Best first, on settings that all of these optimizers were given.
+function standingsAmong({settings, methods}, target, isAsked) {
+  const all = new Map(methods.filter(isAsked).map((s) => [s, emptyStanding(s)]));
+  for (const p of settings.filter((index) => isShown('p', index))) {
+    const cells = DATA.problems[p].cells.filter((cell) => all.has(cell.s)), low = leastWork(cells, target);
+    for (const cell of cells) addCell(all.get(cell.s), cell, low, target);
   }
-  const asked = all.filter((standing) => standing.problems > 0);
+  const asked = [...all.values()].filter((standing) => standing.problems > 0);
   for (const standing of asked) standing.score /= standing.problems;
   return asked.sort((a, b) => b.score - a.score || b.reached - a.reached || a.s - b.s);
+}
+
+// Those of the common order, best first; then those apart, each as it is compared with them.
+const rankedOf = (target, isAsked = (s) => isShown('s', s)) => standingsAmong(DATA.order, target, isAsked);
+function standingsOf(target, isAsked = (s) => isShown('s', s)) {
+  const apart = DATA.order.apart.filter(({s}) => isAsked(s)).flatMap((placed) =>
+      standingsAmong(placed, target, isAsked).filter(({s}) => s === placed.s).map((standing) => ({...standing, isApart: true})));
+  return [...rankedOf(target, isAsked), ...apart];
 }
 
 // [problems, ratio, …] an optimizer, ascending: those solved.
 function profileOf(target) {
   const profile = new Map();
-  for (const standing of standingsOf(target))
+  for (const standing of rankedOf(target))
     profile.set(standing.s, [standing.problems, ...standing.ratios.filter((ratio) => ratio < Infinity).sort((a, b) => a - b)]);
   return profile;
 }

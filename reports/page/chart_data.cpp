@@ -11,6 +11,8 @@
 #include "reports/page/page.h"
 #include "reports/read/curves.h"
 #include "reports/read/reached.h"
+#include "reports/sections/measure_words.h"
+#include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -74,8 +76,7 @@ std::string work_code(Real work) {
 
 // The very digits that the tables print, as a whole number, and a capital for the power of ten: J
 // is 0, I is −1. "0.0931" is 931 and F.
-std::string time_code(Real seconds) {
-  const std::string text = milliseconds(seconds);
+std::string digits_code(const std::string& text) {
   const std::size_t e = std::min(text.find('e'), text.size());
   int power = e < text.size() ? std::stoi(text.substr(e + 1)) : 0;
   std::string digits = text.substr(0, e);
@@ -85,6 +86,14 @@ std::string time_code(Real seconds) {
   }
   if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return "";
   return alphanumeric(std::stoull(digits)) + static_cast<char>('J' + std::clamp(power, -9, 9));
+}
+std::string time_code(Real seconds) { return digits_code(milliseconds(seconds)); }
+
+// Of costs, which are no whole numbers and no less than one.
+std::string cost_code(Real cost) { return digits_code(fmt::format("{:.9g}", cost)); }
+
+auto code_of(Measure by) {
+  return by == Measure::time ? time_code : by == Measure::cost ? cost_code : work_code;
 }
 
 // Medians to the 51 targets, comma-separated; nothing stands for the same as before.
@@ -108,7 +117,7 @@ std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const std::size_t missing = cell.planned - cell.runs.size();
   return fmt::format("[{},{},\"{}\",\"{}\"{}]", s,
                      list(medians.reached, [](std::size_t n) { return std::to_string(n); }),
-                     targets_text(medians.work, work_code),
+                     targets_text(medians.counted, code_of(c.yardstick.by)),
                      targets_text(medians.seconds, time_code),
                      cell.failed + missing > 0 ? fmt::format(",{},{}", cell.failed, missing) : "");
 }
@@ -126,6 +135,21 @@ std::string curves_json(const Comparison& c, std::size_t problem) {
   return list(ranking(c, problem), [&](std::size_t s) {
     return curve_json(median_curve(c, c.cell(problem, s), points), s);
   });
+}
+
+std::string indices_json(const std::vector<std::size_t>& all) {
+  return list(all, [](std::size_t index) { return std::to_string(index); });
+}
+
+// Who is compared with whom, and on what; and how those are that stand apart.
+std::string orders_json(const Comparison& c) {
+  const auto placed_json = [](const Placed& placed) {
+    return fmt::format("{{\"s\":{},\"settings\":{},\"methods\":{}}}", placed.optimizer,
+                       indices_json(placed.among.settings), indices_json(placed.among.methods));
+  };
+  return fmt::format("{{\"settings\":{},\"methods\":{},\"apart\":{}}}",
+                     indices_json(c.order.settings), indices_json(c.order.methods),
+                     list(c.apart, placed_json));
 }
 
 std::string point(Real a, Real b) { return number(a) + "," + number(b); }
@@ -159,12 +183,32 @@ std::string plane_json(const Landscape& landscape, const std::vector<Path>& all,
                      list(all, ranked_path), list(goal, number));
 }
 
+// {"optimizer": "3.8e-5, tuned"}, of those whose options a table of rates chose.
+std::string origins_json(const Comparison& c, std::size_t p) {
+  std::string text;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (const std::string origin = origin_text(c, p, s); !origin.empty())
+      text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", s, json_quoted(origin));
+  return text.empty() ? "" : ",\"origins\":{" + text + "}";
+}
+
+// The norm of the solution, the median over runs, where an x is sought.
+std::string goal_json(const Comparison& c, std::size_t p) {
+  if (c.problems[p].aim != Aim::x) return "";
+  std::vector<Real> scales;
+  for (const Cell& cell : c.cells[p])
+    for (const std::size_t run : cell.runs)
+      if (const auto& scale = c.runs[run].record->x_scale) scales.push_back(*scale);
+  return scales.empty() ? "" : fmt::format(",\"goal\":{}", number(median_of(scales)));
+}
+
 std::string problem_json(const Comparison& c, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
   std::string text =
       fmt::format("{{\"spec\":{},\"asked\":{},\"name\":{},\"cells\":{},\"curves\":{}",
                   json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec),
                   json_quoted(problem.name), cells_json(c, p), curves_json(c, p));
+  text += origins_json(c, p) + goal_json(c, p);
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)
@@ -202,8 +246,11 @@ std::string claims_about(const Document& document) {
 std::string page_data(const Document& document) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
-      "{{\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
-      "\"figures\":{},\"problems\":[",
+      "{{\"by\":\"{}\",\"unit\":\"{}\",\"counted\":\"{}\",\"rungs\":{},\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
+      "\"order\":{},\"figures\":{},\"problems\":[",
+      name_of(c.yardstick.by), unit_name(c), counted_name(c),
+      list(c.yardstick.tolerances,
+           [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       list(c.optimizers,
            [](const OptimizerAxis& optimizer) { return json_quoted(shown_spec(optimizer.label)); }),
       list(c.optimizers,
@@ -215,7 +262,7 @@ std::string page_data(const Document& document) {
       list(
           c.optimizers,
           [](const OptimizerAxis& optimizer) { return json_quoted(joined(optimizer.privileges)); }),
-      claims_about(document), figures_json(document.figures));
+      claims_about(document), orders_json(c), figures_json(document.figures));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (p > 0) text += ',';
     text += problem_json(c, p);

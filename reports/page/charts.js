@@ -106,9 +106,9 @@ const AXES = {
   gap: 'what is left of the loss', x_error: 'error in x',
 };
 
-// The tolerance of the page, as a line to cross.
-function toleranceLine(from, to) {
-  const tau = tauOf(view.target);
+// The tolerance of the page, as a line to cross: of what is left of the loss, or of x.
+function toleranceLine(scale, from, to) {
+  const tau = scale * tauOf(view.target);
   return {
     label: `τ = ${tauName(view.target)}`, data: [{x: from, y: tau}, {x: to, y: tau}], showLine: true, pointRadius: 0,
     pointHitRadius: 0, borderColor: cssColour('--soft'), borderDash: [3, 4], borderWidth: 1.2, order: 5,
@@ -127,7 +127,9 @@ function drawCurves(place, state, reading) {
   const across = ends('x'), up = ends('y');
   if (state.vertical === 'gap') {
     up[1] = Math.min(up[1] * 1.5, HIGHEST);
-    datasets.push(toleranceLine(...across));
+    if (state.problem.goal === undefined) datasets.push(toleranceLine(1, ...across));
+  } else if (state.problem.goal !== undefined) {
+    datasets.push(toleranceLine(state.problem.goal, ...across));
   }
   const scales = {x: logAxis(AXES[state.horizontal], ...across), y: logAxis(AXES[state.vertical], ...up)};
   const label = `${AXES[state.vertical]} against ${AXES[state.horizontal]} on ${state.problem.spec}. ${reading}`;

@@ -6,8 +6,11 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
-#include "reports/read/leaders.h"
+#include "reports/read/fields.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/leading.h"
+#include "reports/sections/measure_words.h"
+#include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -15,15 +18,12 @@ namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kPodium = 6;
-constexpr Real kSure = 0.95;
 
 std::string name_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& optimizer = c.optimizers[s];
   return fmt::format("<a href=\"#optimizer-{}\">{}</a>{}", s,
                      html_text(shown_spec(optimizer.label)), dagger(optimizer.privileges));
 }
-
-std::string times(Real ratio) { return ratio == kNever ? "∞" : fmt::format("{:.2g}×", ratio); }
 
 std::string podium(const Comparison& c, const Lead& lead) {
   std::string html = "<ol class=podium>";
@@ -34,32 +34,24 @@ std::string podium(const Comparison& c, const Lead& lead) {
   return html + "</ol>";
 }
 
-std::string factor_html(const Comparison& c, const Lead& lead) {
-  if (lead.ranked.size() < 2 || lead.compared == 0) return "<dd>no other solves anything</dd>";
-  const bool is_open = lead.interval.low <= 1 && lead.interval.high >= 1;
-  return fmt::format(
-      "<dd><b>{}</b> the work for {}, the next: median over {} problems; 95 % of resamplings "
-      "{} to {}{}</dd>",
-      times(lead.factor), name_html(c, lead.ranked[1].optimizer), lead.compared,
-      times(lead.interval.low), times(lead.interval.high), is_open ? ", which holds 1×" : "");
+std::string winner_html(const Comparison& c, const Lead& lead) {
+  if (lead.tied == 1) return name_html(c, lead.ranked[0].optimizer);
+  return "tied: " + html_text(first_text(c, lead));
 }
 
 std::string card(const Comparison& c, const std::optional<Lead>& lead, const char* who,
                  const std::string& title) {
   std::string html = fmt::format("<article class=card data-who={}><h3>{}</h3>", who, title);
   if (!lead)
-    return html + "<p class=winner>nobody</p><p>None solves any problem to 1e-6.</p></article>";
-  const Scored& first = lead->ranked[0];
-  return html +
-         fmt::format(
-             "<p class=winner>{}</p><p class=deeds>solves <b>{} of {}</b> problems to τ = 1e-6, "
-             "<b>{}</b> of them with the least work</p><dl><dt>by how much</dt>{}<dt>how sure</dt>"
-             "<dd><b>{}</b> of resamplings of the problems leave it first: {}</dd></dl>{}"
-             "</article>\n",
-             name_html(c, first.optimizer), first.solved, first.problems, first.wins,
-             factor_html(c, *lead), percent(lead->stays_first),
-             lead->stays_first >= kSure ? "settled for problems like these" : "not settled",
-             podium(c, *lead));
+    return html +
+           fmt::format("<p class=winner>nobody</p><p>None solves any {} to {}.</p></article>",
+                       setting_noun(c), tau_name(c));
+  return html + fmt::format(
+                    "<p class=winner>{}</p><p class=deeds>{}</p><dl><dt>how sure</dt><dd>{}</dd>"
+                    "<dt>what these data tell</dt><dd>{}</dd></dl>{}</article>\n",
+                    winner_html(c, *lead), html_text(deeds_text(c, lead->ranked[0])),
+                    html_text(settled_text(c, *lead)), html_text(power_text(c, *lead)),
+                    podium(c, *lead));
 }
 
 std::string counts_html(const Comparison& c) {
@@ -76,14 +68,17 @@ std::string counts_html(const Comparison& c) {
 }
 
 // What cannot be concluded, in a sentence, with the lists that say more.
-std::string open_html(const Comparison& c, const std::optional<Lead>& lead) {
+std::string open_html(const Comparison& c) {
   std::string text;
-  if (lead && lead->ranked.size() > 1 && lead->interval.low <= 1 && lead->interval.high >= 1)
-    text = fmt::format("Whether {} needs less work than {} on problems like these. ",
-                       shown_spec(c.optimizers[lead->ranked[0].optimizer].label),
-                       shown_spec(c.optimizers[lead->ranked[1].optimizer].label));
-  if (const auto limits = limits_of_evidence(c); !limits.empty()) text += limits[0] + " ";
+  if (const auto limits = limits_of_evidence(c); !limits.empty())
+    text = limits.front() + " " + limits.back() + " ";
   return html_text(text) + "<a href=\"#statistics\">All limits</a>.";
+}
+
+// What is told of the whole report alone: of prices, rates, and who is not in the order of the
+// cards.
+std::string told_html(const std::string& text) {
+  return text.empty() ? "" : fmt::format("<p class=whole>{}</p>", html_text(text));
 }
 
 std::string verdict_html(const Comparison& c) {
@@ -101,21 +96,21 @@ std::string dagger(const std::vector<std::string>& privileges) {
 }
 
 std::string glance_html(const Comparison& c) {
-  const bool is_order = c.names >= kFewProblems;  // fewer problems give no order over them
-  const auto all = is_order ? lead_of(c, false) : std::nullopt;
-  const auto open = is_order ? lead_of(c, true) : std::nullopt;
+  const bool is_order = has_order(c);  // fewer problems give no order over them
   const auto plain = std::ranges::count_if(
-      c.optimizers, [](const OptimizerAxis& axis) { return axis.privileges.empty(); });
+      c.order.methods, [&](std::size_t s) { return c.optimizers[s].privileges.empty(); });
   std::string html = is_order ? "<div class=glance>" : verdict_html(c) + "<div class=glance>";
   if (is_order)
-    html +=
-        card(c, all, "all", fmt::format("Of all {} methods", c.optimizers.size())) +
-        card(c, open, "open", fmt::format("Of the {} that see no more than they are given", plain));
+    html += card(c, c.lead, "all",
+                 fmt::format("Of the {} methods that are ranked", c.order.methods.size())) +
+            card(c, c.open_lead, "open",
+                 fmt::format("Of the {} of them that see no more than they are given", plain));
   return html +
          fmt::format(
-             "<article class=\"card ground\"><h3>On what</h3>{}<h3>What cannot be concluded</h3>"
-             "<p>{}</p></article></div>\n",
-             counts_html(c), open_html(c, open));
+             "<article class=\"card ground\"><h3>On what</h3>{}{}{}{}<h3>What cannot be concluded</h3>"
+             "<p class=limits>{}</p></article></div>\n",
+             counts_html(c), is_order ? told_html(prices_text(c)) : "", told_html(rates_text(c)),
+             is_order ? told_html(apart_sentence(c)) : "", open_html(c));
 }
 
 }  // namespace isoline::reports

@@ -8,6 +8,8 @@
 #include "core/json.h"
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
+#include "reports/sections/leading.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -35,9 +37,9 @@ Deeds deeds_of(const Comparison& c, std::size_t s) {
       deeds.inapplicable += problem_link(c, p, cell.inapplicable);
       continue;
     }
-    const Spread& work = cell.work[kTightest];
+    const Spread& work = cell.headline[kTightest];
     if (cell.is_best[kTightest])
-      deeds.won += problem_link(c, p, fmt::format("{} forward solves", figure(work.median)));
+      deeds.won += problem_link(c, p, fmt::format("{} {}", amount(c, work.median), unit_name(c)));
     if (cell.failed > 0) {
       const Record* failed = nullptr;
       for (const std::size_t run : cell.runs)
@@ -111,19 +113,34 @@ std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet)
       html_text(sheet.name), rows);
 }
 
+// "3rd of 36 on the 17 settings that all ranked methods were given", or where it stands apart.
+std::string place_text(const Comparison& c, std::size_t s) {
+  const auto apart = std::ranges::find(c.apart, s, &Placed::optimizer);
+  if (apart != c.apart.end()) return "Not ranked with the others; " + placed_text(c, *apart);
+  const Real score = c.optimizers[s].tightest().score;
+  const auto before = std::ranges::count_if(c.order.methods, [&](std::size_t other) {
+    const Real theirs = c.optimizers[other].tightest().score;
+    return theirs > score && !are_tied(theirs, score);
+  });
+  return fmt::format("{} of {} on the {} that all ranked methods were given",
+                     ordinal(1 + static_cast<std::size_t>(before)), c.order.methods.size(),
+                     counted_settings(c, c.order.settings.size()));
+}
+
 // What its figures amount to.
 std::string reading(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
   const Standing& standing = axis.tightest();
   if (axis.runs == 0) return axis.applicable == 0 ? "It applies to none of these problems." : "";
-  std::string text =
-      fmt::format("Ranked {} of {}: solves {} of {} problem{} to 1e-6", s + 1, c.optimizers.size(),
-                  standing.solved, axis.planned, axis.planned == 1 ? "" : "s");
-  if (standing.wins > 0) text += fmt::format(", {} with the least work of all", standing.wins);
+  std::string text = fmt::format("{}: solves {} of these {} to {}", place_text(c, s),
+                                 standing.solved, standing.settings, tau_name(c));
+  if (standing.wins > 0)
+    text += fmt::format(", {} with the least {} of all", standing.wins, counted_name(c));
   if (standing.typical < kNever)
-    text += fmt::format(", typically for {:.3g}× the least work", standing.typical);
-  return text + fmt::format("; {} of {} runs get there{}.", standing.reached, axis.runs,
-                            axis.failed > 0 ? fmt::format(", {} failed", axis.failed) : "");
+    text += fmt::format(", typically for {:.3g}× the least", standing.typical);
+  return text + fmt::format(
+                    "; {} of {} runs get there{}.", standing.reached, standing.runs,
+                    axis.failed > 0 ? fmt::format("; of all its runs {} failed", axis.failed) : "");
 }
 
 std::string sheet_html(const OptimizerAxis& axis) {

@@ -8,7 +8,8 @@
 #include <string_view>
 
 #include "reports/formats/escape.h"
-#include "reports/formats/formats.h"
+#include "reports/read/fields.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -82,11 +83,10 @@ std::string remarks_html(const Document& document) {
 
 // Empty where problems are too few to say anything: then there is no chart either.
 std::string profile_html(const Comparison& c) {
-  if (c.problems.size() < kFewProblems)
+  if (!has_order(c))
     return fmt::format(
-        "<p class=reading>With {} problem{} a profile says no more than the table "
-        "above; none is drawn.</p>",
-        c.problems.size(), c.problems.size() == 1 ? "" : "s");
+        "<p class=reading>With {} a profile says no more than the table above; none is drawn.</p>",
+        counted_settings(c, c.problems.size()));
   return fmt::format(
       "<p class=reading id=profile-reading>{}</p><div class=\"chart profile\"></div>",
       html_text(profile_reading(c, kTightest)));
@@ -100,6 +100,14 @@ std::string html_report(const Document& document) {
       {"style",
        std::string(embedded_page_css()).append(embedded_parts_css()).append(embedded_plots_css())},
       {"headline", html_text(document.headline)},
+      {"tau", tau_name(c)},
+      {"success", html_text(success_text(c))},
+      {"counted", std::string(counted_name(c))},
+      {"unit", std::string(unit_name(c))},
+      {"setting", std::string(setting_noun(c))},
+      {"prices", c.yardstick.by == Measure::work
+                     ? ": each gradient, Jacobian or inverse at its declared price"
+                     : ""},
       {"alerts", alerts_html(document)},
       {"tiles", tiles_html(c)},
       {"remarks", remarks_html(document)},

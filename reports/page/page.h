@@ -1,4 +1,4 @@
-// Parts of the HTML page. An element with data-s or data-p, the index of an optimizer or problem,
+// The HTML page and its parts. An element with data-s or data-p, the index of an optimizer or problem,
 // is hidden where the reader filters that one out; with both, where either is.
 #pragma once
 
@@ -7,6 +7,8 @@
 #include "reports/sections/document.h"
 
 namespace isoline::reports {
+
+std::string html_report(const Document& document);  // one file that asks nothing of the network
 
 // A section as every other: sentences, plots, tables. Complete without scripts.
 std::string section_html(const Section& section);

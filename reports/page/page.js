@@ -63,7 +63,7 @@ function curveSwitches(state, problem, redraw) {
   const choose = (key) => (value) => { state[key] = value; redraw(); };
   const switches = [newSwitch('against', {iterations: 'iterations', work: 'work', seconds: 'time'}, 'work', choose('horizontal'))];
   if (problem.curves.some((curve) => curve.x_error !== undefined))
-    switches.push(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, 'gap', choose('vertical')));
+    switches.push(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, state.vertical, choose('vertical')));
   if (problem.curves.some((curve) => curve.gap_low !== undefined))
     switches.push(newSwitch('seeds', {band: 'band', median: 'median'}, 'band', choose('seeds')));
   return switches;
@@ -72,7 +72,8 @@ function curveSwitches(state, problem, redraw) {
 // Built at the first call, drawn anew at each.
 function problemDrawer(article, problem) {
   const ranked = problem.curves.map((curve) => curve.s), choice = newChoice(ranked);
-  const state = {problem, visible: new Set(), horizontal: 'work', vertical: 'gap', seeds: 'band'};
+  const aimed = problem.goal === undefined ? 'gap' : 'x_error';  // what the user of the problem wants
+  const state = {problem, visible: new Set(), horizontal: 'work', vertical: aimed, seeds: 'band'};
   const reading = article.querySelector('.reading'), plainReading = reading.textContent;
   const curves = article.querySelector('.curves'), place = document.createElement('div');
   const draws = [redrawer(place, () => drawCurves(place, state, reading.textContent))];

@@ -6,40 +6,45 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
+#include "reports/sections/measure_words.h"
+#include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
 // How far from the best, as a class of the style sheet: h0 the least, then by factors of two.
-std::string heat(Real work, Real least) {
+std::string heat(Real work, Real least, Measure by) {
   constexpr Real kDarkest = 7;
-  const Real doublings = std::log2(std::max(work, 1.0) / std::max(least, 1.0));
+  const Real unit = by == Measure::time ? 1e-6 : 1;  // less counts as that
+  const Real doublings = std::log2(std::max(work, unit) / std::max(least, unit));
   return fmt::format("h{:.0f}", std::min(std::ceil(doublings), kDarkest));
 }
 
 std::string shown_html(const std::string& spec) { return html_text(shown_spec(spec)); }
 
 // Cells and rows are left open, as HTML allows: with ten thousand of them it is a megabyte.
-std::string matrix_cell(const Cell& cell, std::size_t p, Real least) {
-  const std::string text = matrix_text(cell, kTightest);
+std::string matrix_cell(const Comparison& c, const Cell& cell, std::size_t p, Real least) {
+  const std::string text = matrix_text(c, cell, kTightest);
   if (cell.planned == 0) return fmt::format("<td data-p={} class=none>", p);
   if (cell.runs.empty()) return fmt::format("<td data-p={} class=lost>missing", p);
   if (!cell.is_measured()) return fmt::format("<td data-p={} class=na>n/a", p);
-  const Spread& work = cell.work[kTightest];
+  const Spread& work = cell.headline[kTightest];
   const bool is_partial = work.unsolved > 0 && work.unsolved < work.n;
   const bool is_told = is_partial || cell.failed > 0 || cell.planned > cell.runs.size();
   const std::string count =
       is_told ? fmt::format("<small>{}</small>", count_text(cell, kTightest)) : "";
   if (!work.is_solved()) return fmt::format("<td data-p={} class=no>✗{}", p, count);
-  return fmt::format("<td data-p={} class={}>{}{}", p,
-                     cell.is_best[kTightest] ? "\"h0 best\"" : heat(work.median, least), text,
-                     count);
+  return fmt::format(
+      "<td data-p={} class={}>{}{}", p,
+      cell.is_best[kTightest] ? "\"h0 best\"" : heat(work.median, least, c.yardstick.by), text,
+      count);
 }
 
 Real least_work(const Comparison& c, std::size_t problem) {
   Real least = kNever;
-  for (const Cell& cell : c.cells[problem]) least = std::min(least, cell.work[kTightest].median);
+  for (const Cell& cell : c.cells[problem])
+    least = std::min(least, cell.headline[kTightest].median);
   return least;
 }
 
@@ -90,7 +95,7 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
   const Cell& cell = c.cell(p, s);
   std::string row =
       fmt::format("<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, shown_html(c.problems[p].spec),
-                  shown_html(c.optimizers[s].label), cell.privileges.empty() ? "" : "<sup>†</sup>");
+                  html_text(setting_text(c, p, s)), cell.privileges.empty() ? "" : "<sup>†</sup>");
   if (!cell.is_measured()) {
     row += cell.runs.empty() ? "<td>" : "<td>n/a";
     for (int empty = 0; empty < 8; ++empty) row += "<td>";
@@ -99,10 +104,11 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
                                                  : "n/a: " + html_text(cell.inapplicable));
   }
   row += fmt::format("<td>{}", count_text(cell, kTightest));
+  const Measure by = c.yardstick.by == Measure::time ? Measure::work : c.yardstick.by;
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.work[t], cell.is_best[t] ? " class=best" : "");
+    row += spread_cell(cell.taken[by][t], cell.is_best[t] ? " class=best" : "");
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += time_cell(cell.seconds[t], cell.is_timed_alone);
+    row += time_cell(cell.taken[Measure::time][t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
   return row +
          fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, s, budgets));
@@ -112,34 +118,37 @@ std::string standing_row(const Comparison& c, std::size_t s) {
   const OptimizerAxis& optimizer = c.optimizers[s];
   const Standing& standing = optimizer.tightest();
   const Real share =
-      optimizer.planned == 0 ? 0 : 100 * Real(standing.solved) / Real(optimizer.planned);
+      standing.settings == 0 ? 0 : 100 * Real(standing.solved) / Real(standing.settings);
   return fmt::format(
       "<tr data-s={}><td>{}<th scope=row><a href=\"#optimizer-{}\">{}</a>{}<td>{:.3f}<td "
       "class=bar><i style=--w:{:.0f}></i>{}<small>/{}</small>"
       "<td>{}<td>{}<td>{}<small>/{}</small><td{}>{}\n",
-      s, s + 1, s, shown_html(optimizer.label), dagger(optimizer.privileges), standing.score, share,
-      standing.solved, optimizer.planned, standing.wins == 0 ? "·" : std::to_string(standing.wins),
+      s, c.order.has(s) ? std::to_string(s + 1) : "–", s, shown_html(optimizer.label),
+      dagger(optimizer.privileges), standing.score, share, standing.solved, standing.settings,
+      standing.wins == 0 ? "·" : std::to_string(standing.wins),
       standing.typical == kNever ? "✗" : fmt::format("{:.3g}×", standing.typical), standing.reached,
-      optimizer.runs, optimizer.failed > 0 ? " class=lost" : "",
+      standing.runs, optimizer.failed > 0 ? " class=lost" : "",
       optimizer.failed == 0 ? "·" : std::to_string(optimizer.failed));
 }
 
 }  // namespace
 
 std::string standings_html(const Comparison& c) {
-  std::string html =
-      "<table class=\"standings sortable\" id=standings-table><caption>Standings to 1e-6"
-      "</caption><thead><tr><th scope=col>#<th scope=col>optimizer<th scope=col>score"
-      "<th scope=col>problems solved<th scope=col>best on<th scope=col>× least work"
-      "<th scope=col>runs<th scope=col>failed<tbody>\n";
+  std::string html = fmt::format(
+      "<table class=\"standings sortable\" id=standings-table><caption>Standings to {}</caption>"
+      "<thead><tr><th scope=col>#<th scope=col>optimizer<th scope=col>score"
+      "<th scope=col>{}s solved<th scope=col>best on<th scope=col>× least {}"
+      "<th scope=col>runs<th scope=col>failed<tbody>\n",
+      tau_name(c), setting_noun(c), name_of(c.yardstick.by));
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += standing_row(c, s);
   return html + "</table>";
 }
 
 std::string matrix_html(const Comparison& c) {
-  std::string html =
-      "<table class=matrix id=matrix><caption>Median work to 1e-6, in forward solves</caption>"
-      "<thead><tr><th scope=col>optimizer<th scope=col>solved";
+  std::string html = fmt::format(
+      "<table class=matrix id=matrix><caption>Median {} to {}, in {}</caption>"
+      "<thead><tr><th scope=col>optimizer<th scope=col>solved",
+      counted_name(c), tau_name(c), unit_name(c));
   std::vector<Real> least;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     html += fmt::format("<th scope=col data-p={0}><a href=\"#problem-{0}\"><span>{1}</span></a>", p,
@@ -155,7 +164,7 @@ std::string matrix_html(const Comparison& c) {
         s, shown_html(optimizer.label), dagger(optimizer.privileges), optimizer.tightest().solved,
         optimizer.planned);
     for (std::size_t p = 0; p < c.problems.size(); ++p)
-      html += matrix_cell(c.cell(p, s), p, least[p]);
+      html += matrix_cell(c, c.cell(p, s), p, least[p]);
     html += "\n";
   }
   return html + "</table>";
@@ -172,10 +181,12 @@ std::string details_html(const Comparison& c) {
   std::string html = fmt::format(
       "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th "
       "scope=col>problem<th scope=col>"
-      "optimizer<th scope=col>runs<br>to 1e-6",
-      html_text("[" + joined(quoted) + "]"));
-  for (const char* what : {"work", "time, ms,"})
-    for (const Tolerance& tolerance : kTolerances)
+      "optimizer<th scope=col>runs<br>to {}",
+      html_text("[" + joined(quoted) + "]"), tau_name(c));
+  const std::string_view counted =
+      c.yardstick.by == Measure::time ? "work" : name_of(c.yardstick.by);
+  for (const std::string_view what : {counted, std::string_view("time, ms,")})
+    for (const Tolerance& tolerance : c.yardstick.tolerances)
       html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);
   html +=
       "<th scope=col>final loss<th scope=col>error in x<th scope=col>how the runs ended<th "

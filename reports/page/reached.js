@@ -13,18 +13,23 @@ function workBar(work, low, most) {
 
 function reachedRow(cell, low, most) {
   const work = workOf(cell, view.target), time = timeOf(cell, view.target);
-  const name = element('th', {scope: 'row'}, swatch(cell.s, false), DATA.optimizers[cell.s]);
+  const name = element('th', {scope: 'row'}, swatch(cell.s, false), DATA.optimizers[cell.s], ...originOf(cell));
   const taken = element('td', {className: 'taken'});
   if (work === Infinity) taken.append(element('span', {className: 'cross'}, '✗'));
-  else taken.append(workBar(Math.max(work, 1), Math.max(low, 1), Math.max(most, 1)), figure(work));
+  else taken.append(workBar(...[work, low, most].map((one) => Math.max(one, LEAST_UNIT))), figure(work));
   const row = element('tr', {}, name, taken, element('td', {}, time === Infinity ? '' : String(time)),
       element('td', {}, `${reachedOf(cell, view.target)}/${cell.reached.length}`));
   row.dataset.s = cell.s;
   return row;
 }
 
+// Value and origin of its rate on this very problem, where a table chose it.
+function originOf(cell) {
+  return cell.origin === undefined ? [] : [element('small', {}, ` (${cell.origin})`)];
+}
+
 function headRow() {
-  const heads = ['optimizer', 'work', 'ms', 'runs'].map((text) => element('th', {scope: 'col'}, text));
+  const heads = ['optimizer', DATA.by === 'time' ? 'time' : DATA.by, 'ms', 'runs'].map((text) => element('th', {scope: 'col'}, text));
   return element('thead', {}, element('tr', {}, ...heads));
 }
 
@@ -33,7 +38,7 @@ function drawReached(place, problem, isWhole) {
   const works = ranked.map((cell) => workOf(cell, view.target)).filter((work) => work < Infinity);
   const shown = isWhole ? ranked : ranked.slice(0, MOST_ROWS);
   const body = element('tbody', {}, ...shown.map((cell) => reachedRow(cell, works[0], works[works.length - 1])));
-  const caption = element('caption', {}, `Median work, time and runs to τ = ${tauName(view.target)}: ${works.length} of ${ranked.length} get there`);
+  const caption = element('caption', {}, `Median ${DATA.counted}, time and runs to τ = ${tauName(view.target)}: ${works.length} of ${ranked.length} get there`);
   place.replaceChildren(element('table', {}, caption, headRow(), body));
   if (ranked.length <= MOST_ROWS) return;
   const more = pressable(isWhole ? `first ${MOST_ROWS}` : `all ${ranked.length}`, undefined, () => {
@@ -52,6 +57,6 @@ function curveReading(problem) {
   if (solved === 0) return `None of the ${ranked.length} shown reaches ${tau}.`;
   const isTied = solved > 1 && works[1] === works[0];
   const next = isTied ? `, tied with ${DATA.optimizers[ranked[1].s]}` : solved > 1 ? `; next ${DATA.optimizers[ranked[1].s]}, ${multiple(ratioOf(works[1], works[0]))} as much` : '';
-  return `Least median work to ${tau} among the shown: ${DATA.optimizers[ranked[0].s]}, ${figure(works[0])} forward solves${next}. ` +
+  return `Least median ${DATA.counted} to ${tau} among the shown: ${DATA.optimizers[ranked[0].s]}, ${figure(works[0])} ${DATA.unit}${next}. ` +
       (solved === ranked.length ? `All ${solved} get there.` : `${ranked.length - solved} of ${ranked.length} do not get there.`);
 }

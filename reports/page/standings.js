@@ -14,13 +14,13 @@ function drawStandings(table) {
   standingsOf(view.target).forEach((standing, place) => {
     const row = rows.get(standing.s), [rank, , score, solved, wins, typical, runs, failed] = row.cells;
     const bar = solved.querySelector('i');
-    setText(rank, String(place + 1));
+    setText(rank, standing.isApart === true ? '–' : String(place + 1));
     setText(score, standing.score.toFixed(3));
     setText(solved, '');
     bar.style.setProperty('--w', 100 * standing.solved / standing.problems);
     solved.append(bar, String(standing.solved), element('small', {}, `/${standing.problems}`));
     setText(wins, standing.wins === 0 ? '·' : String(standing.wins));
-    setText(typical, multiple(median(standing.ratios)));
+    setText(typical, multiple(2 ** median(standing.ratios.map(Math.log2))));
     setText(runs, String(standing.reached), `/${standing.runs}`);
     setText(failed, standing.failed === 0 ? '·' : String(standing.failed));
     failed.className = standing.failed === 0 ? '' : 'lost';
@@ -45,7 +45,7 @@ function drawCell(place, cell, low) {
 function drawMatrix(table) {
   const rows = new Map([...table.tBodies[0].rows].map((row) => [Number(row.dataset.s), row]));
   const standings = standingsOf(view.target);
-  table.caption.textContent = `Median work to ${tauName(view.target)}, in forward solves`;
+  table.caption.textContent = `Median ${DATA.counted} to ${tauName(view.target)}, in ${DATA.unit}`;
   for (const p of shownOf('p')) {
     const cells = shownCells(DATA.problems[p]), low = leastWork(cells, view.target);
     for (const cell of cells) drawCell(rows.get(cell.s).cells[p + 2], cell, low);
@@ -72,6 +72,6 @@ function leadersWithin(profile, factor) {
 function profileReading(profile) {
   const near = leadersWithin(profile, 2), ever = leadersWithin(profile, Infinity), tau = tauName(view.target);
   if (ever.share === 0) return `No method shown solves any of its problems to ${tau}.`;
-  return `Among the shown, within 2× of the least work to ${tau}: ${(100 * near.share).toFixed(0)} % of its problems, by ` +
+  return `Among the shown, within 2× of the least ${DATA.counted} to ${tau}: ${(100 * near.share).toFixed(0)} % of its problems, by ` +
       `${near.who}; at any price: ${(100 * ever.share).toFixed(0)} %, by ${ever.who}.`;
 }

@@ -91,6 +91,9 @@ function closeRows(plot) {
   plot.setAttribute('viewBox', `${left} ${top} ${width} ${edge + step * place}`);
 }
 
+const OWN_TAU = tauName(DEFAULT_TARGET);
+const COUNTED_IN_CELLS = DATA.by === 'time' ? 'work' : DATA.counted;
+
 // What the table of all cells says of one of them: the matrix has no room for it.
 function explanationOf(row) {
   const [problem, optimizer, runs, , , work, , , time, loss, error, fate] = [...row.cells].map((cell) => {
@@ -98,7 +101,7 @@ function explanationOf(row) {
     return (cell.firstChild?.textContent ?? '') + (range ? ` (${range})` : '');
   });
   const lines = work === '' ? [fate] : [
-    `${runs} runs to 1e-6`, `work to 1e-6: ${work} forward solves`, `time: ${time} ms`, `final loss: ${loss}`,
+    `${runs} runs to ${OWN_TAU}`, `${COUNTED_IN_CELLS} to ${OWN_TAU}: ${work}`, `time: ${time} ms`, `final loss: ${loss}`,
     ...(error === '' ? [] : [`error in x: ${error}`]), `ended by: ${fate}`];
   return [`${optimizer} on ${problem}`, ...lines];
 }

@@ -3,7 +3,7 @@
 'use strict';
 
 const TARGETS = 51;  // τ = 10^(−j/5), j from 0
-const DEFAULT_TARGET = 30;
+const DEFAULT_TARGET = DATA.rungs[DATA.rungs.length - 1];  // the report's own
 const KINDS = {s: {names: DATA.optimizers, address: 'o'}, p: {names: DATA.problems.map((problem) => problem.spec), address: 'p'}};
 const view = {target: DEFAULT_TARGET, hidden: {s: new Set(), p: new Set()}};
 

@@ -35,6 +35,17 @@ std::map<std::string, std::string> names_by_spec(const Study& study, Component R
   return names;
 }
 
+// "P⁻¹" where the physics are inverted for it; else in the words of its records.
+std::string given_by(const std::set<std::string>& privileges) {
+  std::string text;
+  for (const std::string& privilege : privileges) {
+    const bool is_inverse = privilege.find("inverse of the physics") != std::string::npos;
+    const std::string given = is_inverse ? "P⁻¹" : privilege;
+    if (text.find(given) == std::string::npos) text += (text.empty() ? "" : " and ") + given;
+  }
+  return text;
+}
+
 }  // namespace
 
 OptimizerLabels::OptimizerLabels(const Study& study)
@@ -53,12 +64,68 @@ OptimizerLabels::OptimizerLabels(const Study& study)
   }
   for (const auto& [where, count] : specs)
     if (count > 1) by_name_.erase(where.second);
+  find_both_ways(study);
+  find_meanings(study);
 }
 
-std::string OptimizerLabels::operator()(const std::string& problem, const std::string& spec) const {
+// Where one problem has a method both ways, with different options.
+void OptimizerLabels::find_both_ways(const Study& study) {
+  std::set<std::pair<std::string, std::string>> plain;  // problem and name, at the defaults
+  for (const Record& record : study.runs) {
+    const Component& optimizer = record.request.optimizer;
+    const auto pair = std::pair(record.request.problem.spec, optimizer.name);
+    if (optimizer.spec == optimizer.name)
+      plain.insert(pair);
+    else if (!record.request.rates.empty() && !record.request.rates.ends_with("-tuned.json"))
+      rated_.insert(pair);
+  }
+  for (const auto& pair : rated_)
+    if (plain.contains(pair)) both_ways_.insert(pair.second);
+}
+
+// Of runs that happened: an inapplicable pair has seen nothing, and says nothing of a method.
+void OptimizerLabels::find_meanings(const Study& study) {
+  std::map<std::string, std::map<std::string, std::set<std::string>>> seen;  // label, problem
+  for (const Record& record : study.runs) {
+    if (record.status == Status::inapplicable) continue;
+    const std::string& problem = record.request.problem.spec;
+    for (const std::string& whole : wholes(problem, record.request.optimizer.spec))
+      seen[whole][problem].insert(record.privileges.begin(), record.privileges.end());
+  }
+  for (const auto& [label, problems] : seen) {
+    const auto sees = [](const auto& of_problem) { return !of_problem.second.empty(); };
+    if (std::ranges::all_of(problems, sees) || std::ranges::none_of(problems, sees)) continue;
+    for (const auto& [problem, privileges] : problems)
+      meanings_[label][problem] = given_by(privileges);
+  }
+}
+
+std::string OptimizerLabels::meaning(const std::string& problem, const std::string& whole) const {
+  const auto meanings = meanings_.find(whole);
+  if (meanings == meanings_.end()) return whole;
+  const auto given = meanings->second.find(problem);
+  if (given == meanings->second.end() || given->second.empty()) return whole;
+  return whole + ", given " + given->second;
+}
+
+std::vector<std::string> OptimizerLabels::of(const std::string& problem,
+                                             const std::string& spec) const {
+  std::vector<std::string> labels;
+  for (const std::string& whole : wholes(problem, spec)) labels.push_back(meaning(problem, whole));
+  return labels;
+}
+
+std::vector<std::string> OptimizerLabels::wholes(const std::string& problem,
+                                                 const std::string& spec) const {
   const std::string& name = names_.at(spec);
-  if (tuned_.contains({problem, spec})) return name + ", tuned";
-  return by_name_.contains(name) ? name : spec;
+  const std::string tuned = name + ", tuned";
+  if (tuned_.contains({problem, spec})) return {tuned};
+  if (both_ways_.contains(name)) {
+    if (spec != name) return {rated_.contains({problem, name}) ? tuned : spec};
+    if (!rated_.contains({problem, name})) return {name, tuned};
+    return {name};
+  }
+  return {by_name_.contains(name) ? name : spec};
 }
 
 std::string OptimizerLabels::method(const std::string& spec) const { return names_.at(spec); }
@@ -75,23 +142,31 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;
     if (could_declare && !record.minimum) at->is_minimum_declared = false;
+    if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
   }
   return axis;
 }
 
 std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& label) {
-  std::map<std::string, std::string> specs;  // by label, any of them
+  struct Known {
+    std::string spec, whole;
+  };
+  std::map<std::string, Known> labels;  // any spec of them
+  const auto know = [&](const std::string& problem, const std::string& spec) {
+    for (const std::string& whole : label.wholes(problem, spec))
+      labels.emplace(label.meaning(problem, whole), Known{spec, whole});
+  };
   for (const Record& record : study.runs)
-    specs.emplace(label(record.request.problem.spec, record.request.optimizer.spec),
-                  record.request.optimizer.spec);
-  for (const PlannedCell& cell : study.plan.cells)
-    specs.emplace(label(cell.problem, cell.optimizer), cell.optimizer);
+    know(record.request.problem.spec, record.request.optimizer.spec);
+  for (const PlannedCell& cell : study.plan.cells) know(cell.problem, cell.optimizer);
   std::vector<OptimizerAxis> axis;
-  for (const auto& [name, spec] : specs)
+  for (const auto& [name, known] : labels)
     axis.push_back({.label = name,
-                    .method = label.method(spec),
-                    .sheet = sheet_of(study, "optimizer", spec, label.method(spec)),
+                    .method = label.method(known.spec),
+                    .whole = known.whole,
+                    .is_meaning = label.has_meanings(known.whole),
+                    .sheet = sheet_of(study, "optimizer", known.spec, label.method(known.spec)),
                     .privileges = {}});
   return axis;
 }

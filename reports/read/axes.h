@@ -1,6 +1,7 @@
 // The rows and columns of a study: which problems and optimizers it holds, and under which names.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,17 +12,31 @@ namespace isoline::reports {
 
 // Names of optimizers. A file of rates gives one method other options on every problem; the method
 // then keeps one row under its name, unless some problem has two of that name. A method with tuned
-// rates stands beside itself, as "adam, tuned".
+// rates stands beside itself, as "adam, tuned". A method that sees what others do not on some
+// problems and no more than they on others is two: "sip, given P⁻¹" and "sip".
+// Where a study holds a method at its defaults and at the rates of tables, it is "gd" and "gd,
+// tuned"; on a problem where both are the same, its one run stands in both rows.
 class OptimizerLabels {
  public:
   explicit OptimizerLabels(const Study& study);
-  std::string operator()(const std::string& problem, const std::string& spec) const;
+  std::vector<std::string> of(const std::string& problem, const std::string& spec) const;
   std::string method(const std::string& spec) const;
+  // Of all meanings.
+  std::vector<std::string> wholes(const std::string& problem, const std::string& spec) const;
+  std::string meaning(const std::string& problem, const std::string& whole) const;
+  bool has_meanings(const std::string& whole) const { return meanings_.contains(whole); }
 
  private:
+  void find_both_ways(const Study& study);
+  void find_meanings(const Study& study);
+
   std::set<std::pair<std::string, std::string>> tuned_;  // problem and optimizer, as specs
   std::set<std::string> by_name_;                        // names that stand for all their specs
   std::map<std::string, std::string> names_;             // by spec, as records have them
+  std::set<std::string> both_ways_;                      // names at their defaults and with rates
+  std::set<std::pair<std::string, std::string>> rated_;  // problem and name, with another rate
+  // By label of all meanings and problem: what is given there beyond the problem, or nothing.
+  std::map<std::string, std::map<std::string, std::string>> meanings_;
 };
 
 std::vector<ProblemAxis> problem_axis(const Study& study);

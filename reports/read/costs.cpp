@@ -27,9 +27,15 @@ Real between(const std::vector<std::int64_t>& x, const std::vector<Real>& y, Rea
 
 }  // namespace
 
+bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price) {
+  const Real unit = prices.forward_seconds;
+  return unit >= kShortestCall && price.price * unit >= kShortestCall;
+}
+
 Prices::Prices(const Sheet* sheet) {
   if (sheet == nullptr || !sheet->prices) return;
-  for (const MeasuredPrice& each : sheet->prices->oracles) measured_[each.oracle] = each.price;
+  for (const MeasuredPrice& each : sheet->prices->oracles)
+    if (is_told(*sheet->prices, each)) measured_[each.oracle] = each.price;
 }
 
 Real Prices::price(const Record& record, std::size_t kind) const {

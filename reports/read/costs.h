@@ -1,9 +1,10 @@
 // What runs cost in equivalent forward solves: their raw counts at the measured prices of their
-// problem. Where nothing was measured, at the declared ones.
+// problem. Where nothing was measured, or too short a call to be told, at the declared ones.
 #pragma once
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/records/record.h"
@@ -11,12 +12,17 @@
 
 namespace isoline::reports {
 
+// A shorter call takes mostly what a call takes, whatever is called: its price is not its own.
+inline constexpr Real kShortestCall = 1e-6;  // seconds
+bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price);
+
 class Prices {
  public:
   Prices() = default;
   explicit Prices(const Sheet* sheet);  // of this very problem; may be null
 
-  bool are_measured() const { return !measured_.empty(); }
+  bool are_measured() const { return !measured_.empty(); }  // any that is told
+  bool is_measured(std::string_view oracle) const { return measured_.contains(oracle); }
 
   Real cost(const Record& record) const;  // of all that the run asked
   // At each point of the curve.

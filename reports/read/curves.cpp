@@ -19,7 +19,7 @@ std::size_t point_at(const Curve& curve, std::int64_t iteration) {
 // A run's curve with what is taken off its losses.
 struct Traced {
   const Curve* curve;
-  Real minimum, start;
+  Real minimum, scale;
 };
 
 std::vector<std::int64_t> iterations_of(const std::vector<Traced>& curves, std::size_t points) {
@@ -43,8 +43,8 @@ Spread spread_at(const std::vector<Traced>& curves, const std::vector<std::size_
 }
 
 Real gap_of(const Traced& traced, std::size_t point) {
-  const Real descent = traced.start - traced.minimum;
-  return descent > 0 ? std::max(traced.curve->loss[point] - traced.minimum, 0.0) / descent : kNever;
+  return traced.scale > 0 ? std::max(traced.curve->loss[point] - traced.minimum, 0.0) / traced.scale
+                          : kNever;
 }
 
 void add(const Spread& spread, std::vector<Real>& median, std::vector<Real>& low,
@@ -59,7 +59,7 @@ std::vector<Traced> curves_of(const Comparison& comparison, const Cell& cell) {
   for (const std::size_t index : cell.runs) {
     const Run& run = comparison.runs[index];
     if (!run.record->curve.iteration.empty())
-      curves.push_back({&run.record->curve, run.minimum, run.record->summary.start_loss});
+      curves.push_back({&run.record->curve, run.minimum, run.scale});
   }
   return curves;
 }

@@ -10,7 +10,7 @@ namespace isoline::reports {
 
 // Columns of equal length. At each iteration the median over seeds of every column; a run that has
 // ended keeps its last values, a run without a curve counts as infinite. The gap is what is left of
-// the loss, (f − f_L) / (f₀ − f_L): the τ of the tables is a height in its plot.
+// the loss, (f − f_L) / s: the τ of the tables is a height in its plot.
 struct MedianCurve {
   std::vector<Real> iteration, work, seconds, gap, x_error;
   std::vector<Real> gap_low, gap_high, x_error_low, x_error_high;  // least and greatest over seeds

@@ -1,10 +1,13 @@
-// Counts, ranks and resamples. An optimizer is compared on a problem with those that were given the
-// very same problem, and judged over the problems planned for it: a grid too large for a method
-// that factorizes is no defeat, a problem it was given and does not apply to is one.
+// Counts and ranks. An optimizer is compared on settings with those that were given the very same
+// ones: a grid too large for a method that factorizes is no defeat, a problem it was given and does
+// not apply to is one.
 #include "reports/read/leaders.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+
+#include "reports/read/fields.h"
 
 namespace isoline::reports {
 namespace {
@@ -16,101 +19,126 @@ void count(OptimizerAxis& optimizer, const Cell& cell) {
   if (!cell.is_measured()) return;
   optimizer.runs += cell.runs.size();
   optimizer.failed += cell.failed;
+}
+
+// The middle of the costs over the least, in logarithms: infinite where half is unsolved.
+Real typical_of(const Costs& costs, std::size_t s) {
+  std::vector<Real> doublings;
+  for (const auto& row : costs)
+    if (const auto ratio = cost_ratios(row)[s]) doublings.push_back(std::log2(*ratio));
+  return std::exp2(median_of(std::move(doublings)));
+}
+
+// How s stands in an order, at one tolerance.
+Standing standing_in(const Comparison& c, const Order& order, const Costs& costs, std::size_t s,
+                     std::size_t tolerance) {
+  Standing standing{.typical = typical_of(costs, s)};
+  for (const Scored& scored : ranked_by(costs)) {
+    if (scored.optimizer != s) continue;
+    standing.settings = scored.problems;
+    standing.solved = scored.solved;
+    standing.wins = scored.wins;
+    standing.score = scored.score;
+  }
+  for (const std::size_t p : order.settings) {
+    const Cell& cell = c.cell(p, s);
+    if (!cell.is_measured()) continue;
+    const Spread& spread = cell.headline[tolerance];
+    standing.runs += cell.runs.size();
+    standing.reached += spread.n - spread.unsolved;
+  }
+  return standing;
+}
+
+void mark_best(Comparison& c, std::size_t p, std::size_t tolerance) {
+  std::vector<Cell>& row = c.cells[p];
+  const bool is_common = std::ranges::find(c.order.settings, p) != c.order.settings.end();
+  Real least = kNever;
+  for (std::size_t s = 0; s < row.size(); ++s)
+    if (!is_common || c.order.has(s)) least = std::min(least, row[s].headline[tolerance].median);
+  for (Cell& cell : row) {
+    const Real mine = cell.headline[tolerance].median;
+    cell.is_best[tolerance] = mine < kNever && mine <= least;
+  }
+}
+
+void fill_common(Comparison& c) {
   for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-    Standing& standing = optimizer.standings[t];
-    standing.solved += cell.work[t].is_solved();
-    standing.wins += cell.is_best[t];
-    standing.reached += cell.work[t].n - cell.work[t].unsolved;
+    const Costs costs = common_costs(c, t);
+    for (const std::size_t s : c.order.methods)
+      c.optimizers[s].standings[t] = standing_in(c, c.order, costs, s, t);
   }
 }
 
-void fill_typical(Comparison& c, std::size_t tolerance) {
-  std::vector<std::vector<Real>> ratios(c.optimizers.size());
-  const Costs costs = median_costs(c, tolerance);
-  for (const auto& row : costs) {
-    const auto ratio = cost_ratios(row);
-    for (std::size_t s = 0; s < ratio.size(); ++s)
-      if (ratio[s]) ratios[s].push_back(*ratio[s]);
-  }
-  const Profile profile = performance_profile(costs);
-  for (std::size_t s = 0; s < ratios.size() && s < profile.solvers.size(); ++s) {
-    c.optimizers[s].standings[tolerance].typical = median_of(std::move(ratios[s]));
-    c.optimizers[s].standings[tolerance].score = profile.area(s, kProfileEnd);
+void sort_by_score(Order& order, const Costs& costs) {
+  order.methods.clear();
+  for (const Scored& scored : ranked_by(costs)) order.methods.push_back(scored.optimizer);
+}
+
+std::size_t place_of(const std::vector<Scored>& ranked, std::size_t optimizer) {
+  const auto mine = std::ranges::find(ranked, optimizer, &Scored::optimizer);
+  if (mine == ranked.end()) return 0;
+  return 1 + static_cast<std::size_t>(std::ranges::count_if(ranked, [&](const Scored& each) {
+           return each.score > mine->score && !are_tied(each.score, mine->score);
+         }));
+}
+
+void fill_apart(Comparison& c) {
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    if (c.order.has(s)) continue;
+    Placed placed = placed_in(c, s);
+    for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+      const Costs costs = costs_within(c, placed.among, t, c.yardstick.by);
+      c.optimizers[s].standings[t] = standing_in(c, placed.among, costs, s, t);
+    }
+    const Costs costs = costs_within(c, placed.among, kTightest, c.yardstick.by);
+    placed.place = place_of(ranked_by(costs), s);
+    sort_by_score(placed.among, costs);
+    c.apart.push_back(std::move(placed));
   }
 }
 
-// Sorts the optimizers, best first, with all that is stored by their index.
-void rank_optimizers(Comparison& c) {
-  std::vector<std::size_t> order(c.optimizers.size()), place(order.size());
+// The optimizers, best first, those apart after all others.
+std::vector<std::size_t> best_first(const Comparison& c) {
+  std::vector<std::size_t> order(c.optimizers.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+    if (c.order.has(a) != c.order.has(b)) return c.order.has(a);
     const Standing &mine = c.optimizers[a].tightest(), &other = c.optimizers[b].tightest();
-    if (mine.score != other.score) return mine.score > other.score;
+    if (!are_tied(mine.score, other.score)) return mine.score > other.score;
     if (mine.reached != other.reached) return mine.reached > other.reached;
     return c.optimizers[a].standings[0].score > c.optimizers[b].standings[0].score;
   });
+  return order;
+}
+
+// Sorts the optimizers with all that is stored by their index.
+void rank_optimizers(Comparison& c) {
+  const std::vector<std::size_t> order = best_first(c);
+  std::vector<std::size_t> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = i;
   const auto sorted = [&](const auto& values) {
     auto out = values;
     for (std::size_t i = 0; i < order.size(); ++i) out[i] = values[order[i]];
     return out;
   };
+  const auto move = [&](std::size_t& optimizer) { optimizer = place[optimizer]; };
   c.optimizers = sorted(c.optimizers);
   for (auto& row : c.cells) row = sorted(row);
-  for (Run& run : c.runs) run.optimizer = place[run.optimizer];
+  for (Run& run : c.runs) move(run.optimizer);
+  std::ranges::for_each(c.order.methods, move);
+  std::ranges::sort(c.order.methods);
+  for (Placed& placed : c.apart) {
+    move(placed.optimizer);
+    std::ranges::for_each(placed.among.methods, move);
+  }
+  std::ranges::sort(c.apart, {}, &Placed::optimizer);
 }
 
-// Sums of scores and numbers of problems of each optimizer, over problems of one name. Names are
-// what is drawn anew, not rows: two grids of one equation are no two witnesses.
-struct Scores {
-  std::vector<Real> sum, problems;
-  explicit Scores(std::size_t optimizers) : sum(optimizers, 0), problems(optimizers, 0) {}
-  void add(const Scores& other) {
-    for (std::size_t s = 0; s < sum.size(); ++s) {
-      sum[s] += other.sum[s];
-      problems[s] += other.problems[s];
-    }
-  }
-  std::size_t leader() const {
-    std::size_t best = 0;
-    const auto mean = [this](std::size_t s) { return sum[s] / std::max(problems[s], 1.0); };
-    for (std::size_t s = 1; s < sum.size(); ++s)
-      if (mean(s) > mean(best)) best = s;
-    return best;
-  }
-};
-
-std::vector<Scores> scores_by_name(const Comparison& c, const Costs& costs) {
-  std::vector<Scores> scores;
-  for (const auto& [name, problems] : problems_by_name(c)) {
-    Scores& of_name = scores.emplace_back(c.optimizers.size());
-    for (const std::size_t p : problems) {
-      const auto ratios = cost_ratios(costs[p]);
-      for (std::size_t s = 0; s < ratios.size(); ++s) {
-        if (!ratios[s]) continue;
-        of_name.sum[s] += score_of(*ratios[s], kProfileEnd);
-        of_name.problems[s] += 1;
-      }
-    }
-  }
-  return scores;
-}
-
-std::optional<Leader> leader_by(const Comparison& c, const Costs& costs) {
-  const std::size_t optimizers = c.optimizers.size();
-  const std::vector<Scores> scores = scores_by_name(c, costs);
-  Scores all(optimizers);
-  for (const Scores& some : scores) all.add(some);
-  Leader leader{.optimizer = all.leader()};
-  if (optimizers == 0 || all.sum[leader.optimizer] == 0) return std::nullopt;
-  std::size_t times_first = 0;
-  resample(scores.size(), {0, "report", "resample"}, [&](const Places& places) {
-    Scores drawn(optimizers);
-    for (const std::size_t place : places) drawn.add(scores[place]);
-    times_first += drawn.leader() == leader.optimizer;
-  });
-  leader.stays_first = static_cast<Real>(times_first) / static_cast<Real>(kDraws);
-  return leader;
+void fill_other_orders(Comparison& c) {
+  c.other_orders = orders_beside(c, c.order);
+  for (Order& order : c.other_orders)
+    sort_by_score(order, costs_within(c, order, kTightest, c.yardstick.by));
 }
 
 // What privileged methods took does not count: the others are measured by the best of themselves.
@@ -121,57 +149,11 @@ Costs without_privileged(const Comparison& c, Costs costs) {
   return costs;
 }
 
-Costs costs_among(const Comparison& c, bool is_open) {
-  Costs costs = median_costs(c, kTightest);
-  return is_open ? without_privileged(c, std::move(costs)) : costs;
-}
-
-std::vector<Scored> ranked_by(const Costs& costs, std::size_t optimizers) {
-  std::vector<Scored> all(optimizers);
-  for (std::size_t s = 0; s < optimizers; ++s) all[s].optimizer = s;
-  for (const auto& row : costs) {
-    const auto ratios = cost_ratios(row);
-    Real least = kNever;
-    for (const auto& cost : row) least = std::min(least, cost.value_or(kNever));
-    for (std::size_t s = 0; s < ratios.size(); ++s) {
-      if (!ratios[s]) continue;
-      ++all[s].problems;
-      all[s].score += score_of(*ratios[s], kProfileEnd);
-      all[s].solved += *ratios[s] < kNever;
-      all[s].wins += *row[s] < kNever && *row[s] == least;
-    }
-  }
-  std::erase_if(all, [](const Scored& scored) { return scored.problems == 0; });
-  for (Scored& scored : all) scored.score /= static_cast<Real>(scored.problems);
-  std::ranges::stable_sort(all, std::ranges::greater{}, &Scored::score);
-  return all;
-}
-
-// Second's work over first's on problems of one name, where at least one of the two solves them; a
-// name without any is left out.
-std::vector<std::vector<Real>> ratios_of(const Comparison& c, const Costs& costs, std::size_t first,
-                                         std::size_t second) {
-  std::vector<std::vector<Real>> all;
-  for (const auto& [name, problems] : problems_by_name(c)) {
-    std::vector<Real> ratios;
-    for (const std::size_t p : problems) {
-      const auto &mine = costs[p][first], &other = costs[p][second];
-      if (!mine || !other || (*mine == kNever && *other == kNever)) continue;
-      ratios.push_back(*mine == kNever ? 0 : std::max(*other, 1.0) / std::max(*mine, 1.0));
-    }
-    if (!ratios.empty()) all.push_back(std::move(ratios));
-  }
-  return all;
-}
-
-Real pooled_median(const std::vector<std::vector<Real>>& ratios, const Places& places) {
-  std::vector<Real> pooled;
-  for (const std::size_t place : places)
-    pooled.insert(pooled.end(), ratios[place].begin(), ratios[place].end());
-  return median_of(std::move(pooled));
-}
-
 }  // namespace
+
+bool Order::has(std::size_t optimizer) const {
+  return std::ranges::find(methods, optimizer) != methods.end();
+}
 
 void add_missing(std::vector<std::string>& all, const std::vector<std::string>& some) {
   for (const std::string& one : some)
@@ -181,34 +163,24 @@ void add_missing(std::vector<std::string>& all, const std::vector<std::string>& 
 void fill_standings(Comparison& c) {
   for (const auto& row : c.cells)
     for (std::size_t s = 0; s < row.size(); ++s) count(c.optimizers[s], row[s]);
-  for (std::size_t t = 0; t < kTolerances.size(); ++t) fill_typical(c, t);
+  c.order = common_order(c);
+  for (std::size_t p = 0; p < c.cells.size(); ++p)
+    for (std::size_t t = 0; t < kTolerances.size(); ++t) mark_best(c, p, t);
+  fill_common(c);
+  fill_apart(c);
   rank_optimizers(c);
+  fill_other_orders(c);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    c.profiles[t] = performance_profile(median_costs(c, t));
-  c.leader = leader_by(c, costs_among(c, false));
-  c.open_leader = leader_by(c, costs_among(c, true));
+    c.profiles[t] = performance_profile(common_costs(c, t));
+  c.lead = lead_of(c, false, c.yardstick.by);
+  c.open_lead = lead_of(c, true, c.yardstick.by);
   c.names = problems_by_name(c).size();
 }
 
-std::optional<Lead> lead_of(const Comparison& c, bool is_open) {
-  const std::optional<Leader>& leader = is_open ? c.open_leader : c.leader;
-  if (!leader) return std::nullopt;
-  const Costs costs = costs_among(c, is_open);
-  Lead lead{.ranked = ranked_by(costs, c.optimizers.size()),
-            .stays_first = leader->stays_first,
-            .interval = {}};
-  if (lead.ranked.size() < 2) return lead;
-  const auto ratios = ratios_of(c, costs, lead.ranked[0].optimizer, lead.ranked[1].optimizer);
-  for (const auto& of_name : ratios) lead.compared += of_name.size();
-  if (ratios.empty()) return lead;
-  Places all(ratios.size());
-  std::iota(all.begin(), all.end(), 0);
-  lead.factor = pooled_median(ratios, all);
-  std::vector<Real> draws;
-  resample(ratios.size(), {0, "report", "factor"},
-           [&](const Places& places) { draws.push_back(pooled_median(ratios, places)); });
-  lead.interval = interval_of(std::move(draws));
-  return lead;
+std::optional<Lead> lead_of(const Comparison& c, bool is_open, Measure by) {
+  Costs costs = common_costs(c, kTightest, by);
+  if (is_open) costs = without_privileged(c, std::move(costs));
+  return lead_among(costs, groups_of(c), family_of(c, c.order));
 }
 
 }  // namespace isoline::reports

@@ -9,24 +9,20 @@
 
 namespace isoline::reports {
 
-// Mean ranks of each optimizer by name of problem, on problems that were given to all of them.
-// Settings of one problem are no two witnesses: their ranks are averaged.
-std::map<std::string, std::vector<Real>> ranks_by_name(const Comparison& comparison,
-                                                       const Costs& costs);
+// Ranks of the methods of the common order by name of problem, in the order of order.methods:
+// settings of one problem are no two witnesses, so their ranks are averaged and ranked again.
+std::map<std::string, std::vector<Real>> ranks_by_name(const Comparison& comparison, Measure by);
 
-// log(cost of a / cost of b), one a name of problems, where both were asked; 0 where neither solves
-// it.
-std::vector<Real> log_ratios(const Comparison& comparison, const Costs& costs, std::size_t a,
-                             std::size_t b);
+// Friedman's p over these ranks, of the methods that apply to most of the settings.
+Real friedman_of(const Comparison& comparison);
 
-// Minus the digits gained on each problem given to an optimizer, at the best point seen or at the
+// Minus the digits gained on each problem given to an optimizer, of a ranked one the common ones, at the best point seen or at the
 // one returned: the median over seeds. A failed run gains none, which is infinitely few.
 std::vector<Real> lacking_digits(const Comparison& comparison, std::size_t optimizer,
                                  Real Summary::*loss);
 Real lacking_digits(const Comparison& comparison, const Cell& cell, Real Summary::*loss);
 
 // Signed ranks on the log-ratios of work of all pairs of the first k, adjusted after Holm.
-inline constexpr Real kSignificant = 0.05;
 struct RankedPair {
   std::size_t a = 0, b = 0;
   Real p = 1, adjusted = 1;

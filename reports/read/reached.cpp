@@ -7,66 +7,45 @@
 namespace isoline::reports {
 namespace {
 
-void fill_from_hits(Run& run, const Hits& hits) {
-  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-    const std::size_t j = kTolerances[t].hit;
-    if (j >= hits.iteration.size() || hits.iteration[j] < 0) continue;
-    run.work[t] = static_cast<Real>(hits.work[j]);
-    run.seconds[t] = hits.wall_seconds[j];
-  }
+std::vector<Reached> from_hits(const Record& record, const Prices& prices) {
+  const Hits& hits = *record.hits;
+  const std::vector<Real> costs = prices.hit_costs(record);
+  std::vector<Reached> ladder;
+  for (std::size_t j = 0; j < hits.iteration.size() && hits.iteration[j] >= 0; ++j)
+    ladder.push_back({{static_cast<Real>(hits.work[j]), costs[j],
+                       static_cast<Real>(hits.iteration[j]), hits.wall_seconds[j]}});
+  return ladder;
 }
 
-void fill_from_curve(Run& run) {
+// At the first kept points where left[i] ≤ goal(j).
+template <class Goal>
+std::vector<Reached> from_curve(const Run& run, const Prices& prices, const std::vector<Real>& left,
+                                Goal goal) {
   const Curve& curve = run.record->curve;
-  const Real start = run.record->summary.start_loss;
-  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-    const Real goal = run.minimum + kTolerances[t].tau * (start - run.minimum);
-    for (std::size_t i = 0; i < curve.loss.size(); ++i) {
-      if (!(curve.loss[i] <= goal)) continue;
-      run.work[t] = static_cast<Real>(curve.work[i]);
-      run.seconds[t] = curve.wall_seconds[i];
-      break;
-    }
-  }
-}
-
-// Of one run, until it reaches no more.
-struct Reached {
-  std::vector<Real> work, seconds;
-};
-
-Reached from_hits(const Hits& hits) {
-  Reached reached;
-  for (std::size_t j = 0; j < hits.iteration.size() && hits.iteration[j] >= 0; ++j) {
-    reached.work.push_back(static_cast<Real>(hits.work[j]));
-    reached.seconds.push_back(hits.wall_seconds[j]);
-  }
-  return reached;
-}
-
-Reached from_curve(const Run& run) {
-  const Curve& curve = run.record->curve;
-  const Real start = run.record->summary.start_loss;
-  Reached reached;
+  const std::vector<Real> costs = prices.curve_costs(*run.record);
+  std::vector<Reached> ladder;
   std::size_t i = 0;
   for (std::size_t j = 0; j < kTargets; ++j) {
-    const Real goal = run.minimum + rung(j) * (start - run.minimum);
-    while (i < curve.loss.size() && !(curve.loss[i] <= goal)) ++i;
-    if (i == curve.loss.size()) break;
-    reached.work.push_back(static_cast<Real>(curve.work[i]));
-    reached.seconds.push_back(curve.wall_seconds[i]);
+    while (i < left.size() && !(left[i] <= goal(j))) ++i;
+    if (i == left.size()) break;
+    ladder.push_back({{static_cast<Real>(curve.work[i]), costs[i],
+                       static_cast<Real>(curve.iteration[i]), curve.wall_seconds[i]},
+                      i > 0 && curve.iteration[i] > curve.iteration[i - 1] + 1});
   }
-  return reached;
+  return ladder;
 }
 
-Reached reached_by(const Run& run) {
-  if (run.record->status == Status::inapplicable) return {};
-  return run.record->hits ? from_hits(*run.record->hits) : from_curve(run);
+void fill_from(const std::vector<Reached>& ladder, const Yardstick& yardstick,
+               ByMeasure<Real>& taken) {
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    for (const Measure by : kMeasures)
+      if (const std::size_t j = yardstick.tolerances[t].rung; j < ladder.size())
+        taken[by][t] = ladder[j].by(by);
 }
 
-Real median_at(const std::vector<Reached>& runs, std::size_t j, std::vector<Real> Reached::*what) {
+Real median_at(const std::vector<std::vector<Reached>>& runs, std::size_t j, Measure by) {
   std::vector<Real> values;
-  for (const Reached& run : runs) values.push_back(j < run.work.size() ? (run.*what)[j] : kNever);
+  for (const auto& ladder : runs) values.push_back(j < ladder.size() ? ladder[j].by(by) : kNever);
   return median_of(std::move(values));
 }
 
@@ -87,53 +66,81 @@ Real BestKnown::minimum(const Record& record) const {
   return found == least_.end() ? std::nan("") : found->second;
 }
 
+bool returns(const Run& run, Real tau) {
+  const Record& record = *run.record;
+  if (run.aim == Aim::loss) return record.summary.loss <= goal(run, tau);
+  return record.x_scale && record.summary.x_error <= x_goal(tau, *record.x_scale, record.x_floor);
+}
+
+std::vector<Real> losses_left(const Run& run) {
+  std::vector<Real> left;
+  for (const Real loss : run.record->curve.loss)
+    left.push_back(run.scale > 0 ? std::max(loss - run.minimum, 0.0) / run.scale : kNever);
+  return left;
+}
+
+std::vector<Real> left_of_aim(const Run& run) {
+  if (run.aim == Aim::loss) return losses_left(run);
+  const Real scale = run.record->x_scale.value_or(0);
+  std::vector<Real> left;
+  for (const Real error : run.record->curve.x_error)
+    left.push_back(scale > 0 ? error / scale : kNever);
+  return left;
+}
+
+std::vector<Reached> ladder_of(const Run& run, const Prices& prices, Aim aim) {
+  const Record& record = *run.record;
+  if (record.status == Status::inapplicable) return {};
+  if (aim == Aim::x) {
+    if (!record.x_scale) return {};
+    return from_curve(run, prices, record.curve.x_error, [&](std::size_t j) {
+      return x_goal(rung(j), *record.x_scale, record.x_floor);
+    });
+  }
+  if (record.hits) return from_hits(record, prices);
+  return from_curve(run, prices, record.curve.loss,
+                    [&](std::size_t j) { return goal(run, rung(j)); });
+}
+
 std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t count) {
   std::vector<Real> all(count, kNever);
-  const Record& record = *run.record;
-  if (record.status == Status::inapplicable) return all;
-  if (record.hits) {
-    const std::vector<Real> hits = prices.hit_costs(record);
-    std::copy_n(hits.begin(), std::min(count, hits.size()), all.begin());
-    return all;
-  }
-  const std::vector<Real> costs = prices.curve_costs(record);
-  const Real descent = record.summary.start_loss - run.minimum;
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < costs.size(); ++i)
-    for (; j < count && record.curve.loss[i] <= run.minimum + rung(j) * descent; ++j)
-      all[j] = costs[i];
+  const std::vector<Reached> ladder = ladder_of(run, prices, run.aim);
+  for (std::size_t j = 0; j < std::min(count, ladder.size()); ++j)
+    all[j] = ladder[j].by(Measure::cost);
   return all;
 }
 
-void fill_costs(Run& run, const Prices& prices) {
-  const std::vector<Real> costs = target_costs(run, prices, kTolerances.back().hit + 1);
-  for (std::size_t t = 0; t < kTolerances.size(); ++t) run.cost[t] = costs[kTolerances[t].hit];
-  if (run.record->status != Status::inapplicable) run.spent = prices.cost(*run.record);
-}
-
-void fill_reached(Run& run, const BestKnown& best) {
-  run.work.fill(kNever);
-  run.seconds.fill(kNever);
-  if (run.record->status == Status::inapplicable) return;
-  run.minimum = best.minimum(*run.record);
-  if (run.record->hits)
-    fill_from_hits(run, *run.record->hits);
-  else
-    fill_from_curve(run);
+void fill_reached(Run& run, const BestKnown& best, const Prices& prices,
+                  const Yardstick& yardstick) {
+  const Record& record = *run.record;
+  if (record.status == Status::inapplicable) return;
+  run.minimum = best.minimum(record);
+  run.scale = record.scale.value_or(record.summary.start_loss - run.minimum);
+  run.spent = prices.cost(record);
+  const std::vector<Reached> by_loss = ladder_of(run, prices, Aim::loss),
+                             by_x = ladder_of(run, prices, Aim::x);
+  fill_from(by_loss, yardstick, run.reached_loss);
+  fill_from(by_x, yardstick, run.found_x);
+  run.taken = run.aim == Aim::x ? run.found_x : run.reached_loss;
+  const std::vector<Reached>& aimed = run.aim == Aim::x ? by_x : by_loss;
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    if (const std::size_t j = yardstick.tolerances[t].rung; j < aimed.size())
+      run.is_bound[t] = aimed[j].is_bound;
 }
 
 TargetMedians target_medians(const Comparison& comparison, const Cell& cell) {
-  std::vector<Reached> runs;
+  std::vector<std::vector<Reached>> runs;
   TargetMedians medians;
-  for (const std::size_t run : cell.runs) {
-    runs.push_back(reached_by(comparison.runs[run]));
-    medians.reached.push_back(runs.back().work.size());
+  for (const std::size_t index : cell.runs) {
+    const Run& run = comparison.runs[index];
+    runs.push_back(ladder_of(run, comparison.problems[run.problem].prices, run.aim));
+    medians.reached.push_back(runs.back().size());
   }
   for (std::size_t j = 0; j < kTargets && !runs.empty(); ++j) {
-    const Real work = median_at(runs, j, &Reached::work);
-    if (!(work < kNever)) break;
-    medians.work.push_back(work);
-    medians.seconds.push_back(median_at(runs, j, &Reached::seconds));
+    const Real counted = median_at(runs, j, comparison.yardstick.by);
+    if (!(counted < kNever)) break;
+    medians.counted.push_back(counted);
+    medians.seconds.push_back(median_at(runs, j, Measure::time));
   }
   return medians;
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/ladder.h"
 #include "reports/read/comparison.h"
@@ -26,22 +27,39 @@ class BestKnown {
   Minima least_;
 };
 
-// Fills the minimum, work and seconds: exact from the record's hits, otherwise read off the kept
-// curve.
-void fill_reached(Run& run, const BestKnown& best);
+// The loss that counts as reached at τ: f_L + τ s. The one place that says so.
+inline Real goal(const Run& run, Real tau) { return run.minimum + tau * run.scale; }
 
-// Fills the costs, once the minimum is there.
-void fill_costs(Run& run, const Prices& prices);
+// Whether the point a run returned is a success at τ, of the kind its problem aims at.
+bool returns(const Run& run, Real tau);
 
-// Costs at which the run first met the targets τ = 10^(−j/5), j = 0 … count − 1, infinite where it
-// did not.
+// What is left of the way at each kept point: (f − f_L) / s, or the error in x over the solution's
+// norm. Infinite where the way has no length.
+std::vector<Real> losses_left(const Run& run);
+std::vector<Real> left_of_aim(const Run& run);
+
+// What a run had taken when it first met a target.
+struct Reached {
+  std::array<Real, kMeasures.size()> taken{};  // by measure
+  bool is_bound = false;                       // kept points were skipped before: at most that
+
+  Real by(Measure measure) const { return taken[static_cast<std::size_t>(measure)]; }
+};
+// The targets τ = 10^(−j/5), j = 0, 1, … until one that it never met. Of losses exact where the
+// record has hits; all else is read at the kept points of its curve. Needs minimum and scale.
+std::vector<Reached> ladder_of(const Run& run, const Prices& prices, Aim aim);
+
+// Fills all that a run took, and its minimum and scale; its aim must be there.
+void fill_reached(Run& run, const BestKnown& best, const Prices& prices = {},
+                  const Yardstick& yardstick = {});
+
+// Costs at the first `count` targets of its aim, infinite where it did not meet them.
 std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t count);
 
-// What each of the targets took, over seeds: what the page's slider of tolerance reads. Exact from
-// the hits of the records, otherwise read off their kept curves, as the tables are.
+// What each of the targets took, over seeds: what the page's slider of tolerance reads.
 struct TargetMedians {
-  std::vector<Real> work, seconds;   // of the targets whose median work is finite
-  std::vector<std::size_t> reached;  // how many targets each run reached, by seed
+  std::vector<Real> counted, seconds;  // of targets of finite median: by the yardstick; times
+  std::vector<std::size_t> reached;    // how many targets each run reached, by seed
 };
 TargetMedians target_medians(const Comparison& comparison, const Cell& cell);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/records/record.h"
 #include "core/records/sheet.h"
 #include "core/threads.h"
+#include "reports/read/tuned_rates.h"
 
 namespace isoline::reports {
 
@@ -24,8 +26,10 @@ struct Study {
   std::vector<Record> runs;  // one a cell, by its newest build; by problem, optimizer, seed
   std::vector<Sheet> sheets;
   std::vector<AuditedOptimizer> audits;  // by name; of several folders the first that has it
+  std::vector<TunedRate> rates;          // rows of tables of rates that runs used
   std::vector<Unreadable> unreadable;
-  std::size_t superseded = 0;  // readable records left aside for a newer one of the same cell
+  std::size_t superseded = 0;      // readable records left aside for a newer one of the same cell
+  std::set<std::string> disputed;  // cells of which two records of one build hold other results
   std::vector<std::filesystem::path> folders;
 
   // The exhibit of a record that keeps pictures beside it; nothing where they cannot be read.

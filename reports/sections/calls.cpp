@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -24,11 +25,11 @@ Calls calls_of(const Comparison& c, std::size_t s) {
     calls.runs += cell.planned;
     for (const std::size_t index : cell.runs) {
       const Run& run = c.runs[index];
-      if (run.work[kTightest] == kNever) continue;
+      if (run.taken[Measure::work][kTightest] == kNever) continue;
       ++calls.reached;
-      calls.work += run.work[kTightest];
-      calls.cost += run.cost[kTightest];
-      const OracleCounts counts = counts_at(*run.record, run.work[kTightest]);
+      calls.work += run.taken[Measure::work][kTightest];
+      calls.cost += run.taken[Measure::cost][kTightest];
+      const OracleCounts counts = counts_at(*run.record, run.taken[Measure::work][kTightest]);
       for (std::size_t kind = 0; kind < kOracles; ++kind) calls.counts[kind] += Real(counts[kind]);
     }
   }
@@ -37,63 +38,87 @@ Calls calls_of(const Comparison& c, std::size_t s) {
 
 TableCell sum_cell(Real sum) { return {figure(sum), {{"sum", sum}}}; }
 
-const MeasuredPrice* price_of(const Sheet& sheet, std::string_view oracle) {
-  const auto at = std::ranges::find(sheet.prices->oracles, oracle, &MeasuredPrice::oracle);
-  return at == sheet.prices->oracles.end() ? nullptr : &*at;
+const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view oracle) {
+  const auto at = std::ranges::find(prices.oracles, oracle, &MeasuredPrice::oracle);
+  return at == prices.oracles.end() ? nullptr : &*at;
 }
 
-TableCell price_cell(const MeasuredPrice* price) {
+// Also those that are not used.
+const MeasuredPrices* prices_of(const ProblemAxis& problem) {
+  const bool is_own = problem.sheet != nullptr && problem.sheet->spec == problem.spec;
+  return is_own && problem.sheet->prices ? &*problem.sheet->prices : nullptr;
+}
+
+TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
+  const MeasuredPrice* price = price_of(prices, oracle);
   if (price == nullptr) return "";
-  return {fmt::format("{} : {} [{}–{}]", price->declared, figure(price->price), figure(price->low),
-                      figure(price->high)),
-          {{"declared", Real(price->declared)},
-           {"measured", price->price},
-           {"low", price->low},
-           {"high", price->high}}};
+  TableCell cell{fmt::format("{} : {} [{}–{}]", price->declared, figure(price->price),
+                             figure(price->low), figure(price->high)),
+                 {{"declared", Real(price->declared)},
+                  {"measured", price->price},
+                  {"low", price->low},
+                  {"high", price->high}}};
+  if (!is_told(prices, *price)) cell.remark = "declared is used";
+  return cell;
 }
 
-// Who is farthest from the declared price, by its logarithm.
-struct Farthest {
-  Real distance = 0;
-  std::string words;
+// What the prices that are used amount to.
+struct PriceSummary {
+  std::vector<Real> pullbacks;
+  std::size_t measured = 0, untold = 0;
+  Real distance = 0;  // of the one farthest from the declared price, by its logarithm
+  std::string farthest = "none";
 
-  void offer(const MeasuredPrice& price, const std::string& problem) {
-    if (price.declared == 0 || price.price <= 0) return;
-    const Real away = std::abs(std::log(price.price / Real(price.declared)));
-    if (away <= distance) return;
-    distance = away;
-    words = fmt::format("{} of {}, declared {}, measured {}", price.oracle, problem, price.declared,
-                        figure(price.price));
+  void add(const MeasuredPrices& prices, const std::string& problem) {
+    for (const MeasuredPrice& price : prices.oracles) {
+      ++measured;
+      untold += !is_told(prices, price);
+      if (!is_told(prices, price)) continue;
+      if (price.oracle == "pullback") pullbacks.push_back(price.price);
+      if (price.declared == 0) continue;
+      const Real away = std::abs(std::log(price.price / Real(price.declared)));
+      if (away <= distance) continue;
+      distance = away;
+      farthest = fmt::format("{} of {}, declared {}, measured {}", price.oracle, problem,
+                             price.declared, figure(price.price));
+    }
+  }
+  std::string reading() const {
+    if (measured == 0)
+      return "These results hold no measured prices: costs are at the declared ones.";
+    std::string text;
+    if (!pullbacks.empty()) {
+      const Spread spread = spread_of(pullbacks);
+      text = fmt::format(
+          "A pullback, declared as 1, takes {:.3g} forward solves in the median of the {} where it "
+          "can be told, from {:.3g} to {:.3g}; farthest from its declared price: {}. ",
+          spread.median, spread.n, spread.low, spread.high, farthest);
+    }
+    if (untold == 0) return text + "All measured prices are used.";
+    return text + fmt::format(
+                      "Of {} measured prices {} are not used but the declared ones: there a call, "
+                      "or the forward solve that is their unit, takes less than a microsecond, "
+                      "which is mostly the overhead of any call.",
+                      measured, untold);
   }
 };
-
-std::string prices_reading(const std::vector<Real>& pullbacks, const Farthest& farthest) {
-  if (pullbacks.empty())
-    return "These results hold no measured prices: costs are at the declared ones.";
-  const Spread spread = spread_of(pullbacks);
-  return fmt::format(
-      "A pullback, declared as 1, takes {:.3g} forward solves in the median of {} problems, from "
-      "{:.3g} to {:.3g}; farthest from its declared price: {}.",
-      spread.median, spread.n, spread.low, spread.high,
-      farthest.words.empty() ? "none" : farthest.words);
-}
 
 }  // namespace
 
 Table calls_table(const Comparison& c) {
-  Table table{
-      .id = "calls",
-      .title = "Oracle calls",
-      .reading = "",
-      .caption =
-          "Raw counts until 1e-6 was met, summed over the runs that met it; what they come to at "
-          "declared prices (work) and in " +
-          cost_unit(c) + " (cost). Of every single run: report.csv.",
-      .columns = {"optimizer", "runs to 1e-6"},
-      .rows = {}};
+  Table table{.id = "calls",
+              .title = "Oracle calls",
+              .reading = "",
+              .caption = fmt::format(
+                  "Raw counts until {} was met, summed over the runs that met it; what they come "
+                  "to at declared prices (work) and in {} (cost). Of every single run: "
+                  "report.csv.",
+                  tau_name(c), priced_unit(c)),
+              .columns = {"optimizer", "runs to " + tau_name(c)},
+              .rows = {}};
   std::vector<Calls> all;
   std::array<bool, kOracles> is_asked{};
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     all.push_back(calls_of(c, s));
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       is_asked[kind] = is_asked[kind] || all.back().counts[kind] > 0;
@@ -116,7 +141,7 @@ Table calls_table(const Comparison& c) {
   }
   rows_are_optimizers(table);
   table.reading = fmt::format("All that is shown took {} declared forward solves, {} in {}.",
-                              figure(work), figure(cost), cost_unit(c));
+                              figure(work), figure(cost), priced_unit(c));
   return table;
 }
 
@@ -127,35 +152,32 @@ Table prices_table(const Comparison& c) {
       .reading = "",
       .caption =
           "What the first call of an oracle at a fresh point takes, in forward solves: declared : "
-          "measured [middle 80 % of the rounds], in processor time, before the runs. Empty: not "
-          "offered, or left out because it takes too long, and counted at its declared price.",
+          "measured [middle 80 % of the rounds], in processor time, before the runs. Declared is "
+          "used: the call, or the forward solve, takes less than a microsecond. Empty: not offered, "
+          "or left out because it takes too long, and counted at its declared price.",
       .columns = {"problem", "forward, µs"},
       .rows = {}};
   std::vector<std::string_view> oracles;
   for (const std::string_view oracle : kOracleNames)
     if (oracle != "forward" && std::ranges::any_of(c.problems, [&](const ProblemAxis& problem) {
-          return problem.prices.are_measured() && price_of(*problem.sheet, oracle) != nullptr;
+          const MeasuredPrices* prices = prices_of(problem);
+          return prices != nullptr && price_of(*prices, oracle) != nullptr;
         }))
       oracles.push_back(oracle);
   table.columns.insert(table.columns.end(), oracles.begin(), oracles.end());
-  std::vector<Real> pullbacks;
-  Farthest farthest;
+  PriceSummary summary;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const ProblemAxis& problem = c.problems[p];
-    if (!problem.prices.are_measured()) continue;
+    const MeasuredPrices* prices = prices_of(c.problems[p]);
+    if (prices == nullptr) continue;
     table.row_topics.push_back({.problem = p});
-    const std::string name = shown_spec(problem.spec);
-    const Real microseconds = 1e6 * problem.sheet->prices->forward_seconds;
+    const std::string name = shown_spec(c.problems[p].spec);
+    const Real microseconds = 1e6 * prices->forward_seconds;
     std::vector<TableCell> row = {name, {figure(microseconds), {{"microseconds", microseconds}}}};
-    for (const std::string_view oracle : oracles)
-      row.push_back(price_cell(price_of(*problem.sheet, oracle)));
-    for (const MeasuredPrice& price : problem.sheet->prices->oracles) {
-      farthest.offer(price, name);
-      if (price.oracle == "pullback") pullbacks.push_back(price.price);
-    }
+    for (const std::string_view oracle : oracles) row.push_back(price_cell(*prices, oracle));
+    summary.add(*prices, name);
     table.rows.push_back(std::move(row));
   }
-  table.reading = prices_reading(pullbacks, farthest);
+  table.reading = summary.reading();
   return table;
 }
 

@@ -7,12 +7,16 @@
 #include <cmath>
 
 #include "core/threads.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 
 std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
+  return std::min(c.order.methods.size(), most);
+}
+std::size_t listed_optimizers(const Comparison& c, std::size_t most) {
   return std::min(c.optimizers.size(), most);
 }
 
@@ -50,42 +54,106 @@ TableCell share_cell(std::size_t part, std::size_t whole) {
   return {percent(share), {{"share", share}, {"count", Real(part)}}};
 }
 
+Measure cost_measure(const Comparison& c) {
+  return c.yardstick.by == Measure::work ? Measure::cost : c.yardstick.by;
+}
+
+Real spent_by(const Run& run, Measure by) {
+  const Summary& summary = run.record->summary;
+  switch (by) {
+    case Measure::work:
+      return Real(summary.work);
+    case Measure::cost:
+      return run.spent;
+    case Measure::iterations:
+      return Real(summary.iterations);
+    case Measure::time:
+      return summary.wall_seconds;
+  }
+  return kNever;
+}
+
+Real in_units(Measure by, Real value) { return by == Measure::time ? 1e3 * value : value; }
+
 std::string cost_unit(const Comparison& c) {
-  const auto measured = std::ranges::count_if(
-      c.problems, [](const ProblemAxis& problem) { return problem.prices.are_measured(); });
-  const auto all = static_cast<std::ptrdiff_t>(c.problems.size());
+  const Measure by = cost_measure(c);
+  if (by == Measure::iterations) return "iterations";
+  if (by == Measure::time)
+    return c.is_any_timed_together ? "ms of wall time (≈: some runs shared the machine)"
+                                   : "ms of wall time";
+  return priced_unit(c);
+}
+
+std::string priced_unit(const Comparison& c) {
+  const auto measured = static_cast<std::size_t>(std::ranges::count_if(
+      c.problems, [](const ProblemAxis& problem) { return problem.prices.are_measured(); }));
+  const std::size_t all = c.problems.size();
   if (measured == all) return "equivalent forward solves at measured prices";
-  if (measured == 0) return "forward solves at declared prices (no measured ones are here)";
+  if (measured == 0) return "forward solves at declared prices (no measured ones are used)";
   return fmt::format(
-      "equivalent forward solves, at declared prices on {} of {} problems that have "
-      "no measured ones",
-      all - measured, all);
+      "equivalent forward solves, at declared prices on the {} of {} where none was measured or a "
+      "call is too short to be",
+      all - measured, counted_settings(c, all));
 }
 
 std::string denominators(const Comparison& c, std::size_t shown) {
-  std::size_t least = c.problems.size(), most = 0, runs = 0, failed = 0;
+  std::size_t runs = 0, failed = 0;
   for (std::size_t s = 0; s < shown; ++s) {
-    least = std::min(least, c.optimizers[s].planned);
-    most = std::max(most, c.optimizers[s].planned);
     runs += c.optimizers[s].runs;
     failed += c.optimizers[s].failed;
   }
-  return fmt::format("the first {} of {} optimizers; n = {} problems; {} of {} runs failed", shown,
-                     c.optimizers.size(),
-                     least == most ? std::to_string(most) : fmt::format("{} to {}", least, most),
-                     failed, runs);
+  return fmt::format(
+      "the first {} of {} ranked methods; n = {}, given to all of them; {} of {} of "
+      "their runs failed",
+      shown, c.order.methods.size(), counted_settings(c, c.order.settings.size()), failed, runs);
 }
 
-std::vector<Real> cost_grid(Real most) {
+std::vector<Real> cost_grid(Measure by, Real most) {
   constexpr Real kPerDecade = 8;
+  const Real first = by == Measure::time ? -3 * kPerDecade : 0;
   std::vector<Real> grid;
   const Real last = std::ceil(kPerDecade * std::log10(std::max(most, 10.0)));
-  for (Real i = 0; i <= last; ++i) grid.push_back(std::pow(10.0, i / kPerDecade));
+  for (Real i = first; i <= last; ++i) grid.push_back(std::pow(10.0, i / kPerDecade));
   return grid;
 }
 
+std::vector<Real> costs_over_seeds(const Comparison& c, const Cell& cell) {
+  const Measure by = cost_measure(c);
+  std::vector<Real> costs;
+  for (const std::size_t run : cell.runs)
+    costs.push_back(in_units(by, c.runs[run].taken[by][kTightest]));
+  costs.resize(std::max(cell.planned, costs.size()), kNever);
+  return costs;
+}
+
+Interval interval_over_seeds(const std::vector<Real>& values, const std::string& key) {
+  if (values.size() >= kFewestForInterval) return bootstrap_median(values, key);
+  const Spread spread = spread_of(values);
+  return {spread.low, spread.high};
+}
+
+std::string interval_words(const Comparison& c) {
+  if (c.seeds.size() < kFewestForInterval)
+    return fmt::format("the range of {}, which is no interval", c.seeds.size());
+  return "the 95 % bootstrap interval over seeds (1,000 draws), of fewer than 6 their range";
+}
+
+void Leading::offer(Real mine, const std::string& label) {
+  if (mine > value) {
+    value = mine;
+    count = 0;
+    name = label;
+  }
+  count += mine == value && mine > 0;
+}
+
+std::string Leading::names() const {
+  if (count == 0) return "nobody";
+  return count == 1 ? name : fmt::format("{} and {} more", name, count - 1);
+}
+
 std::string highest_at(const Plot& plot, Real x) {
-  Real best = -1;
+  Real best = 0;
   std::vector<std::string> names;
   for (const PlotSeries& line : plot.series) {
     Real y = 0;
@@ -94,7 +162,7 @@ std::string highest_at(const Plot& plot, Real x) {
       best = y;
       names.clear();
     }
-    if (y == best) names.push_back(line.name);
+    if (y == best && y > 0) names.push_back(line.name);
   }
   if (names.empty()) return "nobody";
   return fmt::format("{}{} ({})", names[0],
@@ -102,13 +170,13 @@ std::string highest_at(const Plot& plot, Real x) {
                      percent(best));
 }
 
-Measure column_of(const Costs& costs, std::size_t s) {
-  Measure column;
+Column column_of(const Costs& costs, std::size_t s) {
+  Column column;
   for (const auto& row : costs) column.push_back(row[s]);
   return column;
 }
 
-PlotSeries share_series(const Comparison& c, std::size_t s, const Measure& measure,
+PlotSeries share_series(const Comparison& c, std::size_t s, const Column& measure,
                         const std::vector<Real>& grid) {
   Band band = band_over_names(c, measure, "problems", [&](Real value) {
     std::vector<Real> within;
@@ -127,9 +195,9 @@ Section statistics_section(const Comparison& c) {
     section.readings.push_back({"What cannot be concluded", std::move(sentence)});
   if (c.runs.empty()) return section;
   section.lead = fmt::format(
-      "Orders of methods, ranks and tests among them are by work at declared prices, which any "
-      "machine repeats. What runs cost is in {}; the raw counts stand under Oracle calls and "
-      "Prices.",
+      "Orders of methods, ranks and tests among them are by {}{}. What runs cost is in {}; the raw "
+      "counts stand under Oracle calls and Prices.",
+      counted_name(c), c.yardstick.by == Measure::work ? ", which any machine repeats" : "",
       cost_unit(c));
   constexpr std::size_t kTables = std::size(kStatisticTables), kPlots = std::size(kStatisticPlots);
   section.tables.resize(kTables);

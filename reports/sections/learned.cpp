@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -11,7 +12,7 @@ namespace isoline::reports {
 namespace {
 
 struct LearnedRow {
-  std::size_t optimizer = 0;
+  std::size_t problem = 0, optimizer = 0;
   Spread x_error, loss;             // on the validation, after the last iteration, over seeds
   Real iterations = 0;              // median
   Real milliseconds_each = kNever;  // median time of an iteration
@@ -19,8 +20,10 @@ struct LearnedRow {
   bool is_timed_alone = true;
 };
 
-LearnedRow row_of(const Comparison& c, const Cell& cell, std::size_t optimizer) {
-  LearnedRow row{.optimizer = optimizer,
+LearnedRow row_of(const Comparison& c, std::size_t problem, std::size_t optimizer) {
+  const Cell& cell = c.cell(problem, optimizer);
+  LearnedRow row{.problem = problem,
+                 .optimizer = optimizer,
                  .x_error = cell.x_error,
                  .loss = cell.loss,
                  .runs = cell.runs.size(),
@@ -40,7 +43,7 @@ LearnedRow row_of(const Comparison& c, const Cell& cell, std::size_t optimizer) 
 }
 
 std::string label(const Comparison& c, const LearnedRow& row) {
-  return shown_spec(c.optimizers[row.optimizer].label);
+  return setting_text(c, row.problem, row.optimizer);
 }
 
 // Rows are in order of their error in x.
@@ -89,7 +92,7 @@ Section learned_section(const Comparison& c) {
     if (!c.problems[p].is_learned) continue;
     std::vector<LearnedRow> rows;
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (const Cell& cell = c.cell(p, s); cell.is_measured()) rows.push_back(row_of(c, cell, s));
+      if (c.cell(p, s).is_measured()) rows.push_back(row_of(c, p, s));
     std::ranges::stable_sort(rows, {}, [](const LearnedRow& row) { return row.x_error.median; });
     if (!rows.empty()) section.tables.push_back(table_of(c, p, rows));
   }

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
+#include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/runtimes.h"
 
@@ -26,10 +29,8 @@ std::size_t returned(const Comparison& c, std::size_t s, std::size_t tolerance) 
     std::vector<Real> unmet;
     for (const std::size_t index : c.cell(p, s).runs) {
       const Run& run = c.runs[index];
-      const Summary& summary = run.record->summary;
-      const Real goal =
-          run.minimum + kTolerances[tolerance].tau * (summary.start_loss - run.minimum);
-      const bool is_met = !is_failure(run.record->status) && summary.loss <= goal;
+      const bool is_met =
+          !is_failure(run.record->status) && returns(run, c.yardstick.tolerances[tolerance].tau);
       unmet.push_back(is_met ? 0 : kNever);
     }
     count += c.cell(p, s).is_measured() && median_of(unmet) < kNever;
@@ -50,19 +51,20 @@ Table profile_table(const Comparison& c) {
       .id = "performance-profile",
       .title = "Performance profile",
       .reading = "",
-      .caption =
-          "Share of the problems given to a method that its median run solves to 1e-6 within so "
-          "many times the least declared work (Dolan, Moré 2002). Area: under the profile over "
-          "log2 of the factor up to 64, in closed form, with the 95 % bootstrap interval over "
-          "problems (1,000 draws).",
+      .caption = fmt::format(
+          "Share of the {}s given to a method that its median run solves to {} within so many "
+          "times the least {} (Dolan, Moré 2002). Area: under the profile over log2 of the factor "
+          "up to 64, in closed form, with the 95 % bootstrap interval over problems (1,000 draws). "
+          "Whether an order is more than chance is no matter of these intervals, since all methods "
+          "share the problems: see the pairs.",
+          setting_noun(c), tau_name(c), counted_name(c)),
       .columns = {"optimizer", "≤ 1×", "≤ 2×", "≤ 4×", "≤ 16×", "at all", "area", "interval",
-                  "n problems", "failed"},
+                  n_column(c), "failed"},
       .rows = {}};
   Costs ratios;
-  for (const auto& row : median_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
+  for (const auto& row : common_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
   const Profile& profile = c.profiles[kTightest];
-  std::size_t overlapping = 0;
-  Real low = 0;
+  Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
     const std::size_t n = s < profile.solvers.size() ? profile.solvers[s].problems : 0;
     std::vector<TableCell> row = {optimizer_text(c, s)};
@@ -72,8 +74,7 @@ Table profile_table(const Comparison& c) {
     }
     const Band band = area_band(c, ratios, s);
     const bool has_area = !band.low.empty();
-    if (s == 0 && has_area) low = band.low[0];
-    overlapping += s > 0 && has_area && band.high[0] >= low;
+    if (has_area) first.offer(band.value[0], optimizer_text(c, s));
     row.push_back(has_area ? area_cell(band.value[0]) : "");
     row.push_back(has_area ? interval_cell(band.low[0], band.high[0]) : "");
     row.push_back(count_cell(n));
@@ -81,9 +82,9 @@ Table profile_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  table.reading =
-      fmt::format("{} has the largest area; the intervals of {} other{} reach into its own.",
-                  optimizer_text(c, 0), overlapping, overlapping == 1 ? "" : "s");
+  table.reading = first.count == 0
+                      ? fmt::format("No method solves any {} to {}.", setting_noun(c), tau_name(c))
+                      : fmt::format("The largest area, {:.3f}: {}.", first.value, first.names());
   return table;
 }
 
@@ -93,19 +94,21 @@ Table returned_table(const Comparison& c) {
       .title = "What was returned",
       .reading = "",
       .caption =
-          "History and output: share of the problems given to a method whose median run meets the "
-          "tolerance at the best point it ever evaluated (seen), and at the point it returned; "
-          "and the digits gained there, median over problems. A failed run returns nothing.",
+          "History and output: share of the settings given to a method whose median run meets the "
+          "tolerance at the best point it ever evaluated (seen), and at the point it returned; and "
+          "the digits of the loss gained there, the median over settings, no more than the target "
+          "at which a run is stopped: what lies beyond is overshoot. A failed run returns nothing.",
       .columns = {"optimizer"},
       .rows = {}};
-  for (const Tolerance& tolerance : kTolerances)
+  for (const Tolerance& tolerance : c.yardstick.tolerances)
     for (const char* where : {"seen", "returned"})
       table.columns.push_back(fmt::format("{} {}", tolerance.name, where));
-  for (const char* column : {"digits seen", "digits returned", "n problems", "failed"})
+  for (const std::string& column :
+       std::vector<std::string>{"digits seen", "digits returned", n_column(c), "failed"})
     table.columns.push_back(column);
   std::size_t losing = 0, most = 0;
   std::string worst;
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
     const std::size_t n = c.optimizers[s].planned;
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {
@@ -125,11 +128,12 @@ Table returned_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  table.reading = losing == 0 ? "Every method shown returns to 1e-6 what it has seen to 1e-6."
-                              : fmt::format(
-                                    "{} method{} with a point below 1e-6 seen and not returned on "
-                                    "some problem; most, {}: {}.",
-                                    losing, losing == 1 ? "" : "s", most, worst);
+  const std::string tau = tau_name(c);
+  table.reading =
+      losing == 0
+          ? fmt::format("Every method shown returns to {} what it has seen to {}.", tau, tau)
+          : fmt::format("{} with a point within {} seen and not returned on some {}; most, {}: {}.",
+                        counted(losing, "method"), tau, setting_noun(c), most, worst);
   return table;
 }
 

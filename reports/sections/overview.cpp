@@ -2,7 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
+#include "reports/read/fields.h"
+#include "reports/sections/leading.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -29,7 +33,7 @@ std::string leaders(const Comparison& c, const Profile& profile, Real factor, Re
   constexpr std::size_t kNamed = 3;
   std::vector<std::string> names;
   share = 0;
-  for (std::size_t s = 0; s < profile.solvers.size(); ++s) {
+  for (const std::size_t s : c.order.methods) {
     const Real mine = profile.share(s, factor);
     if (mine > share) names.clear();
     share = std::max(share, mine);
@@ -50,38 +54,61 @@ std::string least_loss_reading(const Comparison& c, std::size_t problem,
   const std::size_t best = *std::ranges::min_element(
       order, {}, [&](std::size_t s) { return c.cell(problem, s).loss.median; });
   const Real loss = c.cell(problem, best).loss.median;
-  if (loss == kNever) return "No method reaches 1e-6, and none ends at a finite loss.";
-  return fmt::format("No method reaches 1e-6; {} ends at the least median loss, {}.",
+  if (loss == kNever)
+    return fmt::format("No method reaches {}, and none ends at a finite loss.", tau_name(c));
+  return fmt::format("No method reaches {}; {} ends at the least median loss, {}.", tau_name(c),
                      shown_spec(c.optimizers[best].label), figure(loss));
 }
 
-// "sip solves 16 of 18 problems to 1e-6, with the least work of all on 9; median 1.2× the least".
-std::string deeds(const Comparison& c, std::size_t s) {
-  const OptimizerAxis& optimizer = c.optimizers[s];
-  const Standing& standing = optimizer.tightest();
-  return fmt::format("{} solves {} of {} problem{} to 1e-6, {} of them with the least work of all",
-                     shown_spec(optimizer.label), standing.solved, optimizer.planned,
-                     optimizer.planned == 1 ? "" : "s", standing.wins);
+// "less on 2 of 3 seeds": of the seeds that both ran, those where the first took less.
+std::string seeds_text(const Comparison& c, const Cell& first, const Cell& second) {
+  std::map<std::uint64_t, Real> taken;
+  const auto amount_of = [&](std::size_t run) {
+    return c.runs[run].taken[c.yardstick.by][kTightest];
+  };
+  for (const std::size_t run : first.runs) taken[c.runs[run].record->request.seed] = amount_of(run);
+  std::size_t both = 0, less = 0;
+  for (const std::size_t run : second.runs) {
+    const auto mine = taken.find(c.runs[run].record->request.seed);
+    if (mine == taken.end()) continue;
+    ++both;
+    less += mine->second < amount_of(run);
+  }
+  return both < 2 ? "" : fmt::format(", more on {} of {} seeds", less, both);
 }
 
-std::string sureness(const Leader& leader) {
-  constexpr Real kSure = 0.95;
-  return fmt::format("Drawing the problems anew, it stays first in {} of draws: {}.",
-                     percent(leader.stays_first),
-                     leader.stays_first >= kSure ? "its lead is settled for problems like these"
-                                                 : "its lead is not settled");
-}
-
-// "; next adam, 1.3× as much", and whether seeds could turn it round.
+// "; next adam, 1.3× as much", and on how many seeds that is so.
 std::string runner_up(const Comparison& c, std::size_t problem, std::size_t first,
                       std::size_t second) {
-  const Spread& best = c.cell(problem, first).work[kTightest];
-  const Spread& next = c.cell(problem, second).work[kTightest];
+  const Spread& best = c.cell(problem, first).headline[kTightest];
+  const Spread& next = c.cell(problem, second).headline[kTightest];
   const std::string name = shown_spec(c.optimizers[second].label);
   if (next.median <= best.median) return fmt::format(", tied with {}", name);
+  const Real unit = least_unit(c.yardstick.by);
   return fmt::format("; next {}, {} as much{}", name,
-                     multiple(next.median / std::max(best.median, 1.0)),
-                     best.n > 1 && best.high >= next.low ? ", their ranges overlapping" : "");
+                     multiple(next.median / std::max(best.median, unit)),
+                     seeds_text(c, c.cell(problem, first), c.cell(problem, second)));
+}
+
+// The first and whether that is settled; "" for the second of two leads that say the same.
+std::vector<std::string> lead_sentences(const Comparison& c, const Lead& lead) {
+  const Scored& first = lead.ranked[0];
+  const OptimizerAxis& axis = c.optimizers[first.optimizer];
+  if (lead.tied > 1) return {fmt::format("Of {}, {}", field_text(c, lead), settled_text(c, lead))};
+  std::string text = fmt::format("Of {}, {} stands first: it {}", field_text(c, lead),
+                                 shown_spec(axis.label), deeds_text(c, first));
+  if (!axis.privileges.empty())
+    text += fmt::format("; but it sees what others do not: {}", joined(axis.privileges));
+  return {text + ". " + settled_text(c, lead), power_text(c, lead)};
+}
+
+// Of few problems no order over them is told, but one on each.
+std::vector<std::string> problem_sentences(const Comparison& c) {
+  constexpr std::size_t kFew = 4;
+  std::vector<std::string> all;
+  for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
+    all.push_back(fmt::format("{}: {}", shown_spec(c.problems[p].spec), curve_reading(c, p)));
+  return all;
 }
 
 }  // namespace
@@ -103,7 +130,7 @@ std::string headline(const Comparison& c) {
   std::string problems = counted(c.names, "problem");
   if (c.problems.size() > c.names) problems += fmt::format(" ({} settings)", c.problems.size());
   return fmt::format("{} on {}, {}, {}", counted(c.optimizers.size(), "optimizer"), problems,
-                     counted(c.seeds.size(), "seed"), counted(c.runs.size(), "run"));
+                     counted(c.seeds.size(), "seed"), counted(c.study->runs.size(), "run"));
 }
 
 std::vector<std::string> remarks(const Comparison& c) {
@@ -133,21 +160,22 @@ std::vector<std::string> remarks(const Comparison& c) {
 }
 
 std::vector<std::string> verdict(const Comparison& c) {
-  if (!c.leader) return {"No optimizer solves any of the problems to 1e-6."};
-  const OptimizerAxis& first = c.optimizers[c.leader->optimizer];
-  std::vector<std::string> all;
-  if (c.names < kFewProblems) {  // no order over problems, but one on each
-    for (std::size_t p = 0; p < c.problems.size() && p < kFewProblems; ++p)
-      all.push_back(fmt::format("{}: {}", shown_spec(c.problems[p].spec), curve_reading(c, p)));
-    return all;
-  }
-  std::string text = deeds(c, c.leader->optimizer);
-  if (!first.privileges.empty())
-    text += fmt::format("; but it sees what others do not: {}", joined(first.privileges));
-  all.push_back(text + ". " + sureness(*c.leader));
-  if (c.open_leader && c.open_leader->optimizer != c.leader->optimizer)
-    all.push_back(fmt::format("Among those that see no more than they are given, {}. {}",
-                              deeds(c, c.open_leader->optimizer), sureness(*c.open_leader)));
+  const bool is_any_solved = std::ranges::any_of(c.cells, [](const auto& row) {
+    return std::ranges::any_of(
+        row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
+  });
+  if (!is_any_solved)
+    return {fmt::format("No optimizer solves any of the problems to {}.", tau_name(c))};
+  if (!has_order(c) || !c.lead) return problem_sentences(c);
+  std::vector<std::string> all = lead_sentences(c, *c.lead);
+  const bool is_other =
+      c.open_lead && c.open_lead->ranked[0].optimizer != c.lead->ranked[0].optimizer;
+  if (is_other)
+    all.push_back("Among those that see no more than they are given: " +
+                  joined(lead_sentences(c, *c.open_lead), " "));
+  all.push_back(prices_text(c));
+  all.push_back(apart_sentence(c));
+  std::erase(all, "");
   return all;
 }
 
@@ -155,27 +183,31 @@ std::string profile_reading(const Comparison& c, std::size_t tolerance) {
   const Profile& profile = c.profiles[tolerance];
   Real near = 0, ever = 0;
   const std::string fast = leaders(c, profile, 2, near), robust = leaders(c, profile, kNever, ever);
-  const std::string_view tau = kTolerances[tolerance].name;
+  const std::string_view tau = c.yardstick.tolerances[tolerance].name;
   if (ever == 0) return fmt::format("No method solves any of its problems to {}.", tau);
   return fmt::format(
-      "{} {} {} of {} problems to {} within 2× of the least work; the most at any price is {}, by "
+      "{} {} {} of {} problems to {} within 2× of the least {}; the most at any price is {}, by "
       "{}.",
       fast, fast.find(' ') == std::string::npos ? "solves" : "solve", percent(near),
-      fast.find(' ') == std::string::npos ? "its" : "their", tau, percent(ever), robust);
+      fast.find(' ') == std::string::npos ? "its" : "their", tau, counted_name(c), percent(ever),
+      robust);
 }
 
 std::string curve_reading(const Comparison& c, std::size_t problem) {
   const std::vector<std::size_t> order = ranking(c, problem);
   if (order.empty()) return "Nothing has run on this problem.";
-  const auto work = [&](std::size_t s) { return c.cell(problem, s).work[kTightest]; };
+  const auto work = [&](std::size_t s) { return c.cell(problem, s).headline[kTightest]; };
   const auto solved = static_cast<std::size_t>(
       std::ranges::count_if(order, [&](std::size_t s) { return work(s).is_solved(); }));
   if (solved == 0) return least_loss_reading(c, problem, order);
-  const std::string range = range_figure(work(order[0]), reached_figure);
-  std::string text =
-      fmt::format("Least median work to 1e-6: {}, {} forward solves{}",
-                  shown_spec(c.optimizers[order[0]].label), figure(work(order[0]).median),
-                  range.empty() ? "" : fmt::format(" ({} over seeds)", range));
+  const Spread first = work(order[0]);
+  const std::string range =
+      range_figure(first, c.yardstick.by == Measure::time ? milliseconds : reached_figure);
+  std::string text = fmt::format("Least median {} to {}: {}, {}{} {}{}", counted_name(c),
+                                 tau_name(c), shown_spec(c.optimizers[order[0]].label),
+                                 c.cell(problem, order[0]).is_bound[kTightest] ? "≤ " : "",
+                                 amount(c, first.median), unit_name(c),
+                                 range.empty() ? "" : fmt::format(" ({} over seeds)", range));
   if (solved > 1) text += runner_up(c, problem, order[0], order[1]);
   return text + "." + unsolved_text(order.size() - solved, order.size());
 }

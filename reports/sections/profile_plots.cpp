@@ -5,8 +5,10 @@
 #include <cmath>
 #include <map>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/runtimes.h"
@@ -34,43 +36,44 @@ constexpr const char* kBand =
 }  // namespace
 
 Plots profile_plot(const Comparison& c) {
-  if (c.problems.size() < kFewProblems) return {};
+  if (!has_order(c)) return {};
   Plot plot{.id = "plot-profile",
             .title = "Performance profile with its uncertainty",
             .reading = "",
-            .caption = std::string(kBand) + "Declared work to 1e-6; " +
-                       denominators(c, shown_optimizers(c, kMostLines)) + ".",
-            .x_label = "factor of the least declared work",
-            .y_label = "share of problems",
+            .caption = fmt::format("{}By {} to {}; {}.", kBand, counted_name(c), tau_name(c),
+                                   denominators(c, shown_optimizers(c, kMostLines))),
+            .x_label = fmt::format("factor of the least {}", counted_name(c)),
+            .y_label = fmt::format("share of {}s", setting_noun(c)),
             .is_log_x = true};
   Costs ratios;
-  for (const auto& row : median_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
+  for (const auto& row : common_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
   std::vector<Real> grid;
   for (Real i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8));
   add_lines(c, plot, ratios, grid);
-  const PlotSeries &first = plot.series[0], &last = plot.series.back();
-  const bool overlaps = plot.series.size() > 1 && plot.series[1].high[24] >= first.low[24];
-  plot.reading = fmt::format(
-      "Least work most often: {}; most within 64 times the least: {}. At 8 times the bands of the "
-      "first two {}, so their order is {}.",
-      highest_at(plot, 1), highest_at(plot, last.x.back()), overlaps ? "overlap" : "are apart",
-      overlaps ? "not settled by these problems" : "more than chance");
+  const PlotSeries& last = plot.series.back();
+  plot.reading = fmt::format("The least most often: {}; most within 64 times the least: {}.",
+                             highest_at(plot, 1), highest_at(plot, last.x.back()));
   return {std::move(plot)};
 }
 
 Plots data_profile_plot(const Comparison& c) {
-  const Costs costs = median_costs(c, kTightest, &Cell::cost);
+  if (c.order.settings.empty()) return {};
+  const Measure by = cost_measure(c);
+  Costs costs = common_costs(c, kTightest, by);
+  for (std::size_t p = 0; p < costs.size(); ++p)
+    for (std::size_t s = 0; s < costs[p].size(); ++s)
+      if (costs[p][s]) costs[p][s] = in_units(by, c.cell(p, s).taken[by][kTightest].median);
   Plot plot{.id = "plot-data-profile",
             .title = "Data profile",
             .reading = "",
-            .caption = std::string(kBand) + "Cost to 1e-6 in " + cost_unit(c) + "; " +
-                       denominators(c, shown_optimizers(c, kMostLines)) + ".",
-            .x_label = "equivalent forward solves",
-            .y_label = "share of problems",
+            .caption = fmt::format("{}To {} in {}; {}.", kBand, tau_name(c), cost_unit(c),
+                                   denominators(c, shown_optimizers(c, kMostLines))),
+            .x_label = std::string(unit_name(by)),
+            .y_label = fmt::format("share of {}s", setting_noun(c)),
             .is_log_x = true};
-  add_lines(c, plot, costs, cost_grid(largest(costs)));
+  add_lines(c, plot, costs, cost_grid(by, largest(costs)));
   const Real end = plot.series[0].x.back();
-  plot.reading = fmt::format("After 100 forward solves {} has solved most, in the end {}.",
+  plot.reading = fmt::format("Most within 100 {}: {}; in the end: {}.", unit_name(by),
                              highest_at(plot, 100), highest_at(plot, end));
   return {std::move(plot)};
 }
@@ -79,16 +82,18 @@ Plots accuracy_plot(const Comparison& c) {
   Plot plot{.id = "plot-accuracy",
             .title = "Accuracy profile",
             .reading = "",
-            .caption = std::string(kBand) + "Best point seen within the budget; " +
-                       denominators(c, shown_optimizers(c, kMostLines)) + ".",
+            .caption = fmt::format(
+                "{}Of the loss at the best point seen within the budget, no more than the target "
+                "at which a run is stopped; {}.",
+                kBand, denominators(c, shown_optimizers(c, kMostLines))),
             .x_label = "digits gained",
-            .y_label = "share of problems"};
+            .y_label = fmt::format("share of {}s", setting_noun(c))};
   Costs lacking(c.problems.size());
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    for (const Cell& cell : c.cells[p])
-      lacking[p].push_back(cell.planned == 0
-                               ? std::nullopt
-                               : std::optional(lacking_digits(c, cell, &Summary::best_loss)));
+  if (c.order.settings.empty()) return {};
+  for (auto& row : lacking) row.resize(c.optimizers.size());
+  for (const std::size_t p : c.order.settings)
+    for (const std::size_t s : c.order.methods)
+      lacking[p][s] = lacking_digits(c, c.cell(p, s), &Summary::best_loss);
   std::vector<Real> grid;
   for (Real i = -64; i <= 0; ++i) grid.push_back(i / 4);
   add_lines(c, plot, lacking, grid);
@@ -96,7 +101,7 @@ Plots accuracy_plot(const Comparison& c) {
     for (auto* column : {&line.x, &line.y, &line.low, &line.high}) std::ranges::reverse(*column);
     for (Real& digits : line.x) digits = 0 - digits;
   }
-  plot.reading = fmt::format("Three digits on most problems: {}; ten: {}.", highest_at(plot, 3),
+  plot.reading = fmt::format("Three digits most often: {}; ten: {}.", highest_at(plot, 3),
                              highest_at(plot, 10));
   return {std::move(plot)};
 }

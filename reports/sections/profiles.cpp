@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/runtimes.h"
 
@@ -18,7 +20,7 @@ std::vector<Real> scores_without(const Comparison& c, Costs costs, std::size_t w
     if (without < row.size()) row[without].reset();
   const Profile profile = performance_profile(costs);
   std::vector<Real> scores;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+  for (const std::size_t s : c.order.methods)
     scores.push_back(s < profile.solvers.size() ? profile.area(s, kProfileEnd) : 0);
   return scores;
 }
@@ -41,38 +43,18 @@ std::array<Real, 2> pair_scores(const Costs& costs, std::size_t a, std::size_t b
   return {profile.area(0, kProfileEnd), profile.area(1, kProfileEnd)};
 }
 
-// Who has the greatest value, ties all.
-struct Leading {
-  Real value = -kNever;
-  std::size_t count = 0;
-  std::string name;
-
-  void offer(Real mine, const std::string& label) {
-    if (mine > value) {
-      value = mine;
-      count = 0;
-      name = label;
-    }
-    count += mine == value;
-  }
-  std::string names() const {
-    if (count == 0) return "by none";
-    return count == 1 ? "by " + name : fmt::format("by {} and {} more", name, count - 1);
-  }
-};
-
 }  // namespace
 
 Table pairwise_table(const Comparison& c) {
   const std::size_t k = shown_optimizers(c, kMostTablePairs);
-  const Costs costs = median_costs(c, kTightest);
+  const Costs costs = common_costs(c, kTightest);
   Table table{
       .id = "pairwise",
       .title = "Pairwise profiles",
       .reading = "",
       .caption =
-          "Profiles of two methods alone, on the problems given to both: the area of the row's "
-          "profile up to 64 times the least work, and the column's. No third method can turn "
+          "Profiles of two methods alone, on the settings given to both: the area of the row's "
+          "profile up to 64 times the least, and the column's. No third method can turn "
           "such a pair round.",
       .columns = {"optimizer"},
       .rows = {}};
@@ -102,8 +84,8 @@ Table pairwise_table(const Comparison& c) {
 }
 
 Table flip_table(const Comparison& c) {
-  const std::size_t k = c.optimizers.size();
-  const Costs costs = median_costs(c, kTightest);
+  const std::size_t k = c.order.methods.size();
+  const Costs costs = common_costs(c, kTightest);
   const std::vector<Real> all = scores_without(c, costs, k);
   Table table{
       .id = "flips",
@@ -141,23 +123,25 @@ Table data_profile_table(const Comparison& c) {
       .id = "data-profile",
       .title = "Data profile",
       .reading = "",
-      .caption =
-          "Share of the problems given to a method that its median run solves to 1e-6 within so "
-          "many " +
-          cost_unit(c) + "; unsolved, inapplicable and missing ones stay in n.",
+      .caption = fmt::format(
+          "Share of the {}s given to a method that its median run solves to {} within so many {}; "
+          "unsolved, inapplicable and missing ones stay in n.",
+          setting_noun(c), tau_name(c), cost_unit(c)),
       .columns = {"optimizer"},
       .rows = {}};
   for (const int work : kWork) table.columns.push_back(fmt::format("≤ {}", work));
-  for (const char* column : {"at all", "n problems", "failed"}) table.columns.push_back(column);
+  for (const std::string& column : std::vector<std::string>{"at all", n_column(c), "failed"})
+    table.columns.push_back(column);
+  const Measure by = cost_measure(c);
   Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
-    const std::size_t n = c.optimizers[s].planned;
+    const std::size_t n = c.order.settings.size();
     for (const Real work : {Real(kWork[0]), Real(kWork[1]), Real(kWork[2]), Real(kWork[3]),
                             Real(kWork[4]), std::numeric_limits<Real>::max()}) {
       std::size_t within = 0;
-      for (std::size_t p = 0; p < c.problems.size(); ++p)
-        within += c.cell(p, s).cost[kTightest].median <= work;
+      for (const std::size_t p : c.order.settings)
+        within += in_units(by, c.cell(p, s).taken[by][kTightest].median) <= work;
       row.push_back(share_cell(within, n));
       if (work == kWork[2] && n > 0) first.offer(Real(within) / Real(n), optimizer_text(c, s));
     }
@@ -166,25 +150,27 @@ Table data_profile_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  table.reading = fmt::format("Largest share solved within 1000 {}: {}, {}.", cost_unit(c),
-                              percent(std::max(first.value, 0.0)), first.names());
+  table.reading = fmt::format("The largest share within 1000 {}: {} ({}).", cost_unit(c),
+                              first.names(), percent(first.value));
   return table;
 }
 
 Table accuracy_table(const Comparison& c) {
-  constexpr std::array<int, 5> kDigits = {1, 3, 6, 10, 15};
+  constexpr std::array<int, 4> kDigits = {1, 3, 6, 10};
   Table table{
       .id = "accuracy",
       .title = "Accuracy profile",
       .reading = "",
       .caption =
-          "Digits gained within the budget, −log10 of what is left of the descent at the best "
-          "point seen, median over seeds: share of the problems with at least so many, and the "
-          "median. A failed run gains none.",
+          "Digits of the loss gained within the budget, −log10 of what is left of its scale at the "
+          "best point seen, median over seeds: share of the settings with at least so many, and "
+          "the median. No more than the target at which a run is stopped: what lies beyond is "
+          "overshoot of its last step. A failed run gains none.",
       .columns = {"optimizer"},
       .rows = {}};
   for (const int digits : kDigits) table.columns.push_back(fmt::format("≥ {}", digits));
-  for (const char* column : {"median", "n problems", "failed"}) table.columns.push_back(column);
+  for (const std::string& column : std::vector<std::string>{"median", n_column(c), "failed"})
+    table.columns.push_back(column);
   Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
     const std::vector<Real> lacking = lacking_digits(c, s, &Summary::best_loss);
@@ -203,8 +189,8 @@ Table accuracy_table(const Comparison& c) {
   }
   rows_are_optimizers(table);
   table.reading = first.count == 0
-                      ? "No method gains a digit in the median over problems."
-                      : fmt::format("Most digits in the median over problems: {:.3g}, {}.",
+                      ? "No method gains a digit in the median over settings."
+                      : fmt::format("Most digits in the median over settings: {:.3g}, by {}.",
                                     first.value, first.names());
   return table;
 }

@@ -6,8 +6,11 @@
 #include <map>
 #include <numeric>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/leading.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/rank_tests.h"
 #include "reports/statistics/runtimes.h"
@@ -16,13 +19,12 @@ namespace isoline::reports {
 namespace {
 
 std::string rank_reading(const Comparison& c, const std::vector<Real>& means, std::size_t names) {
-  if (names == 0) return "No problem was given to every optimizer: no rank has a meaning.";
+  if (names == 0) return "No problem was given to every method: no rank has a meaning.";
   const auto best = static_cast<std::size_t>(std::ranges::min_element(means) - means.begin());
   return fmt::format(
-      "{} has the least mean rank, {:.3g} of {}, over {} problem{}; gaps below {:.3g} cannot be "
-      "told "
-      "from chance.",
-      optimizer_text(c, best), means[best], means.size(), names, names == 1 ? "" : "s",
+      "{} has the least mean rank, {:.3g} of {}, over {}; Nemenyi’s test of all pairs resolves no "
+      "gap below {:.3g}.",
+      optimizer_text(c, best), means[best], means.size(), counted(names, "problem"),
       least_gap(means.size(), names));
 }
 
@@ -51,21 +53,21 @@ TableCell interval_cell(const Interval& interval) {
 }  // namespace
 
 Table rank_table(const Comparison& c) {
-  const auto ranks = ranks_by_name(c, median_costs(c, kTightest));
-  const auto measured = ranks_by_name(c, median_costs(c, kTightest, &Cell::cost));
+  const auto ranks = ranks_by_name(c, c.yardstick.by), measured = ranks_by_name(c, Measure::cost);
   Table table{
       .id = "mean-rank",
       .title = "Mean rank",
       .reading = "",
-      .caption =
-          "Rank by median declared work to 1e-6, 1 the best, ties shared, unsolved ones last; mean "
-          "over the problems given to every optimizer, with the 95 % bootstrap interval over "
-          "problems (1,000 draws). By cost: the same by " +
-          cost_unit(c) + ". Failed: runs that went wrong, of all.",
+      .caption = fmt::format(
+          "Rank by median {} to {}, 1 the best, ties shared, unsolved ones last; settings of one "
+          "problem have one rank. Mean over the problems given to all ranked methods, with its {} "
+          "over problems. By cost: the same by {}. Failed: runs that went wrong, "
+          "of all.",
+          counted_name(c), tau_name(c), interval_name(ranks.size()), cost_unit(c)),
       .columns = {"optimizer", "mean rank", "interval", "by cost", "n problems", "failed"},
       .rows = {}};
   std::vector<Real> means;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+  for (std::size_t s = 0; s < c.order.methods.size(); ++s) {
     const std::vector<Real> own = of_optimizer(ranks, s);
     means.push_back(mean_of(own));
     if (s >= kMostTableRows) continue;
@@ -80,16 +82,53 @@ Table rank_table(const Comparison& c) {
   return table;
 }
 
+Table leader_table(const Comparison& c) {
+  Table table{
+      .id = "leader",
+      .title = "The leader against each of the others",
+      .reading = "There is no leader.",
+      .caption = fmt::format(
+          "One doubling a problem: log2 of the ratio of median {} to {}, the median over its "
+          "settings, within ±6, which is also what solving against not solving counts. × of the "
+          "leader: 2 to the median of them. p: exact two-sided paired sign flips of their mean; "
+          "after Holm over all methods here. A problem that neither solves is left out; so is a "
+          "method that applies to fewer than half of the settings.",
+          counted_name(c), tau_name(c)),
+      .columns = {"optimizer", "× of the leader", "wins : losses", "p", "after Holm", "n problems",
+                  "failed"},
+      .rows = {}};
+  if (!c.lead) return table;
+  const Lead& lead = *c.lead;
+  for (const Rival& rival : lead.rivals) {
+    if (table.rows.size() >= kMostTableRows) break;
+    const Pairing& pairing = rival.pairing;
+    table.row_topics.push_back({.optimizer = rival.optimizer});
+    table.rows.push_back(
+        {optimizer_text(c, rival.optimizer),
+         {fmt::format("{:.3g}", pairing.typical()), {{"ratio", pairing.typical()}}},
+         {fmt::format("{} : {}", pairing.wins, pairing.losses),
+          {{"wins", Real(pairing.wins)}, {"losses", Real(pairing.losses)}}},
+         {fmt::format("{:.2g}", rival.p), {{"p", rival.p}}},
+         {fmt::format("{:.2g}", rival.adjusted), {{"adjusted_p", rival.adjusted}}},
+         count_cell(pairing.doublings.size()),
+         failed_cell(c, rival.optimizer)});
+  }
+  table.reading = settled_text(c, lead) + " " + power_text(c, lead);
+  return table;
+}
+
 Table signed_rank_table(const Comparison& c) {
   const std::size_t k = shown_optimizers(c, kMostTablePairs);
   Table table{
       .id = "signed-rank",
-      .title = "Pairs, by signed ranks",
+      .title = "Pairs of the best, by signed ranks",
       .reading = "",
-      .caption =
-          "Wilcoxon's signed ranks on the logarithm of the ratio of median declared work to 1e-6, "
-          "one ratio a problem, unsolved counting as infinite; p after Holm over all pairs shown. "
-          "In the cell: p, and on how many problems the row needs less work, of n.",
+      .caption = fmt::format(
+          "Wilcoxon’s signed ranks on the doublings of median {} to {}, one a problem, solving "
+          "against not solving counting as 6; p after Holm over all pairs shown. In the cell: p, "
+          "and on how many problems the row needs less, of n. The best are the most alike: the "
+          "leader against each of the others is told above.",
+          counted_name(c), tau_name(c)),
       .columns = {"optimizer"},
       .rows = {}};
   for (std::size_t s = 0; s < k; ++s) {
@@ -118,29 +157,33 @@ Table signed_rank_table(const Comparison& c) {
 
 std::vector<std::string> limits_of_evidence(const Comparison& c) {
   std::vector<std::string> all;
-  const std::size_t k = c.optimizers.size(), names = c.names,
-                    complete = ranks_by_name(c, median_costs(c, kTightest)).size();
+  const std::size_t k = c.order.methods.size(), names = names_of(c, c.order);
   if (k < 2 || names == 0) return all;
-  if (complete >= 2)
+  const Real friedman = friedman_of(c);
+  all.push_back(
+      fmt::format("Friedman’s test of {} over the {} given to all of them: p = {:.2g}, so {}.",
+                  counted(k, "method"), counted(names, "problem"), friedman,
+                  friedman <= kSignificant ? "they do not all do alike"
+                                           : "that they all do alike cannot be ruled out"));
+  if (c.lead && !c.lead->rivals.empty()) {
+    const Real pairs = Real(c.lead->rivals.size()),
+               least = std::min(1.0, std::exp2(1 - Real(names)));
+    all.push_back(power_text(c, *c.lead));
     all.push_back(fmt::format(
-        "{} problems given to all, {} optimizers: mean-rank gaps below {:.3g} are not resolvable "
-        "(Nemenyi at 0.05).",
-        complete, k, least_gap(k, complete)));
-  const Real least = std::min(1.0, 2 * std::pow(0.5, Real(names)));
-  const std::size_t shown = shown_optimizers(c, kMostTablePairs), pairs = shown * (shown - 1) / 2;
-  const bool is_hopeless = least * Real(pairs) > 0.05;
-  all.push_back(fmt::format(
-      "With {} problem{} the least p that signed ranks can give is {:.2g}, after Holm over {} "
-      "pairs "
-      "{:.2g}: {}.",
-      names, names == 1 ? "" : "s", least, pairs, std::min(1.0, least * Real(pairs)),
-      is_hopeless ? "no pair of methods can be told apart at 0.05, whatever their results"
-                  : "only nearly unanimous pairs can be told apart"));
-  constexpr std::size_t kFewSeeds = 6;  // 2/2⁶ is the first below 0.05
-  if (c.seeds.size() < kFewSeeds)
+        "Over {} the least p that sign flips can give is {:.2g}, after Holm over the leader’s {} "
+        "pairs {:.2g}{}.",
+        counted(names, "problem"), least, pairs, std::min(1.0, least * pairs),
+        least * pairs > kSignificant ? ": no pair can be told apart after it, whatever the results"
+                                     : ""));
+  }
+  all.push_back(
+      fmt::format("Mean ranks of {} over {}: Nemenyi’s test of all pairs resolves no gap below "
+                  "{:.3g} at 0.05.",
+                  counted(k, "method"), counted(names, "problem"), least_gap(k, names)));
+  if (c.seeds.size() < kFewestForInterval)
     all.push_back(fmt::format(
-        "With {} seed{} no interval over seeds reaches 95 %: the ranges shown are all there is.",
-        c.seeds.size(), c.seeds.size() == 1 ? "" : "s"));
+        "With {} no interval over seeds reaches 95 %: the ranges shown are all there is.",
+        counted(c.seeds.size(), "seed")));
   all.push_back("Nothing here speaks for problems unlike these: they were chosen, not drawn.");
   return all;
 }

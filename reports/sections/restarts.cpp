@@ -6,6 +6,7 @@
 
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/runtimes.h"
 
@@ -15,21 +16,18 @@ namespace {
 constexpr Real kDigits = 10;               // of the targets: τ = 10^(−j/5), j = 0 … 50
 constexpr std::size_t kMostProblems = 25;  // columns of a matrix
 
-// What is left of the descent at each point of a run's curve.
-std::vector<Real> gaps_of(const Run& run) {
-  std::vector<Real> gaps;
-  const Real descent = run.record->summary.start_loss - run.minimum;
-  for (const Real loss : run.record->curve.loss)
-    gaps.push_back(descent > 0 ? std::max(loss - run.minimum, 0.0) / descent : kNever);
-  return gaps;
+constexpr std::int64_t kAreaWork = 10'000;  // of areas, where a request sets no limit
+
+// What an area is taken over: what was allowed, so that it does not depend on who else ran.
+Real area_budget(const Request& request) {
+  const std::int64_t work = request.budget.work;
+  return Real(work < Budget{}.work ? work : kAreaWork);
 }
 
-// The most that any run of a problem spent: the common budget of its areas.
-Real budget_of(const Comparison& c, std::size_t problem) {
-  Real most = 0;
-  for (const Cell& cell : c.cells[problem])
-    for (const std::size_t run : cell.runs) most = std::max(most, c.runs[run].spent);
-  return most;
+Real area_of(const Run& run) {
+  const auto& work = run.record->curve.work;
+  return area_over_curve({work.begin(), work.end()}, left_of_aim(run),
+                         area_budget(run.record->request), kDigits);
 }
 
 // Over all runs of an optimizer; inapplicable and missing cells hit nothing and stay in n.
@@ -40,21 +38,21 @@ struct Anytime {
 };
 constexpr std::array<Real, 4> kWithin = {10, 100, 1000, 10'000};
 
-Anytime anytime_of(const Comparison& c, std::size_t s, const std::vector<Real>& budgets) {
+Anytime anytime_of(const Comparison& c, std::size_t s) {
+  const Measure by = cost_measure(c);
   Anytime all;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+  for (const std::size_t p : c.order.settings) {
     const Cell& cell = c.cell(p, s);
     all.runs += cell.planned;
     all.pairs += cell.planned * kTargets;
     for (const std::size_t index : cell.runs) {
       const Run& run = c.runs[index];
-      const Prices& prices = c.problems[p].prices;
-      for (const Real cost : target_costs(run, prices, kTargets)) {
-        all.hits += cost < kNever;
+      for (const Reached& reached : ladder_of(run, c.problems[p].prices, run.aim)) {
+        const Real cost = in_units(by, reached.by(by));
+        ++all.hits;
         for (std::size_t i = 0; i < kWithin.size(); ++i) all.within[i] += cost <= kWithin[i];
       }
-      all.area +=
-          area_over_curve(prices.curve_costs(*run.record), gaps_of(run), budgets[p], kDigits);
+      all.area += area_of(run);
     }
   }
   if (all.runs > 0) all.area /= Real(all.runs);
@@ -62,11 +60,13 @@ Anytime anytime_of(const Comparison& c, std::size_t s, const std::vector<Real>& 
 }
 
 std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
+  const Measure by = cost_measure(c);
   std::vector<Attempt> attempts;
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
-    const bool is_success = run.cost[kTightest] < kNever;
-    attempts.push_back({is_success ? run.cost[kTightest] : run.spent, is_success});
+    const Real taken = run.taken[by][kTightest];
+    const bool is_success = taken < kNever;
+    attempts.push_back({in_units(by, is_success ? taken : spent_by(run, by)), is_success});
   }
   return attempts;
 }
@@ -75,8 +75,8 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
 TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   std::vector<std::pair<Real, std::size_t>> reached;
   for (const std::size_t index : cell.runs)
-    if (c.runs[index].work[kTightest] < kNever)
-      reached.emplace_back(c.runs[index].work[kTightest], index);
+    if (c.runs[index].taken[Measure::work][kTightest] < kNever)
+      reached.emplace_back(c.runs[index].taken[Measure::work][kTightest], index);
   if (reached.empty()) return shown;
   std::ranges::sort(reached);
   const auto [work, middle] = reached[(reached.size() - 1) / 2];
@@ -95,7 +95,7 @@ void fill_matrix(const Comparison& c, Table& table, Text text) {
   for (std::size_t p = 0; p < problems; ++p)
     table.columns.push_back(shown_spec(c.problems[p].spec));
   table.columns.push_back("failed");
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
     for (std::size_t p = 0; p < problems; ++p) {
       const Cell& cell = c.cell(p, s);
@@ -123,20 +123,18 @@ Table anytime_table(const Comparison& c) {
       .title = "Any-time performance",
       .reading = "",
       .caption =
-          "Runtime distribution over 51 targets, 1 to 1e-10 of the descent, evenly spaced in "
-          "the logarithm, of every run: share met within so many " +
+          "Runtime distribution over 51 targets, 1 to 1e-10 of the way to what a problem aims at, "
+          "evenly spaced in the logarithm, of every run: share met within so many " +
           cost_unit(c) +
-          ". Area: over the convergence curve, 1 the best, up to the most that any run of the "
-          "problem spent. n: runs planned; those inapplicable, missing or failed meet no more.",
+          ". Area: over the convergence curve, 1 the best, up to the declared work that the run was "
+          "allowed, 10,000 where it was not limited, so that it does not depend on who else ran. "
+          "n: runs planned; those inapplicable, missing or failed meet no more.",
       .columns = {"optimizer", "≤ 10", "≤ 100", "≤ 1000", "≤ 10000", "at all", "area", "n runs",
                   "failed"},
       .rows = {}};
-  std::vector<Real> budgets;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) budgets.push_back(budget_of(c, p));
-  Real best = -1;
-  std::string leader;
+  Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
-    const Anytime all = anytime_of(c, s, budgets);
+    const Anytime all = anytime_of(c, s);
     const std::size_t pairs = std::max<std::size_t>(all.pairs, 1);
     std::vector<TableCell> row = {optimizer_text(c, s)};
     for (const std::size_t met : all.within) row.push_back(share_cell(met, pairs));
@@ -144,51 +142,51 @@ Table anytime_table(const Comparison& c) {
     row.push_back({fmt::format("{:.3f}", all.area), {{"area", all.area}}});
     row.push_back(count_cell(all.runs));
     row.push_back(failed_cell(c, s));
-    if (all.area > best) {
-      best = all.area;
-      leader = optimizer_text(c, s);
-    }
+    first.offer(all.area, optimizer_text(c, s));
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  table.reading =
-      fmt::format("Over all targets and budgets {} has the largest area, {:.3f}.", leader, best);
+  table.reading = first.count == 0
+                      ? "No run meets any target below its start: all areas are 0."
+                      : fmt::format("The largest area over all targets and budgets, {:.3f}: {}.",
+                                    first.value, first.names());
   return table;
 }
 
 Table interval_table(const Comparison& c) {
   Table table{
       .id = "cost-interval",
-      .title = "Cost to 1e-6, with intervals",
+      .title = fmt::format("Cost to {}, with intervals", tau_name(c)),
       .reading = "",
-      .caption =
-          "Median over seeds in " + cost_unit(c) +
-          ", its 95 % bootstrap interval over seeds (1,000 draws), and runs that got there of all. "
-          "What never got there counts as infinite, ✗. Point at a cost for its raw counts; they "
-          "are summed up under Oracle calls, and of every run in report.csv.",
+      .caption = fmt::format(
+          "Median over seeds in {}; in square brackets {}; and runs that got there of all. What "
+          "never got there counts as infinite, ✗. Point at a cost for its raw counts; they are "
+          "summed up under Oracle calls, and of every run in report.csv.",
+          cost_unit(c), interval_words(c)),
       .columns = {"optimizer"},
       .rows = {}};
   std::size_t certain = 0, cells = 0;
   fill_matrix(c, table, [&](std::size_t p, std::size_t s, const Cell& cell) -> TableCell {
-    std::vector<Real> costs;
-    for (const std::size_t run : cell.runs) costs.push_back(c.runs[run].cost[kTightest]);
-    const Spread& spread = cell.cost[kTightest];
+    const std::vector<Real> costs = costs_over_seeds(c, cell);
+    const Spread spread = spread_of(costs);
     const std::string count = fmt::format("{}/{}", spread.n - spread.unsolved, spread.n);
     TableCell::Numbers numbers = {{"median", spread.median},
                                   {"reached", Real(spread.n - spread.unsolved)},
                                   {"n", Real(spread.n)}};
     ++cells;
     certain += spread.unsolved == 0;
+    const std::string median = reached_figure(spread.median) + std::string(time_mark(c, cell));
     if (costs.size() < 2 || spread.low == spread.high)
-      return {fmt::format("{} ({})", reached_figure(spread.median), count), numbers};
-    const Interval interval = bootstrap_median(costs, key_of(c, p, s));
+      return {fmt::format("{} ({})", median, count), numbers};
+    const Interval interval = interval_over_seeds(costs, key_of(c, p, s));
     numbers.push_back({"low", interval.low});
     numbers.push_back({"high", interval.high});
-    return {fmt::format("{} [{}–{}] ({})", reached_figure(spread.median),
-                        reached_figure(interval.low), reached_figure(interval.high), count),
+    return {fmt::format("{} [{}–{}] ({})", median, reached_figure(interval.low),
+                        reached_figure(interval.high), count),
             numbers};
   });
-  table.reading = fmt::format("In {} of {} cells every run reaches 1e-6.", certain, cells);
+  table.reading =
+      fmt::format("In {} of {} cells every run reaches {}.", certain, cells, tau_name(c));
   return table;
 }
 
@@ -197,10 +195,13 @@ Table restart_table(const Comparison& c) {
       .id = "restarts",
       .title = "Expected running time",
       .reading = "",
-      .caption = "Cost to 1e-6 when a method restarts until it gets there, in " + cost_unit(c) +
-                 ": all that was spent over the successes, and the middle 80 % of 1,000 simulated "
-                 "restarts "
-                 "drawn from the runs; ✗ where no run got there. Runs that got there of all.",
+      .caption = fmt::format(
+          "Cost to {} when a method restarts until it gets there, in {}: all that was spent over "
+          "the successes, and the middle 80 % of 1,000 simulated restarts drawn from the runs; ✗ "
+          "where no run got there. Runs that got there of all. The runs are of other seeds, so a "
+          "restart here draws another instance, with another start and where the problem has one "
+          "another target, too: it is the time to solve one of these, not to solve this one.",
+          tau_name(c), cost_unit(c)),
       .columns = {"optimizer"},
       .rows = {}};
   std::size_t rescued = 0;
@@ -211,7 +212,7 @@ Table restart_table(const Comparison& c) {
     const std::string count = fmt::format("({}/{})", successes, attempts.size());
     TableCell::Numbers numbers = {
         {"expected", expected}, {"reached", Real(successes)}, {"n", Real(attempts.size())}};
-    rescued += expected < kNever && !cell.cost[kTightest].is_solved();
+    rescued += expected < kNever && !cell.headline[kTightest].is_solved();
     if (expected == kNever || attempts.size() < 2)
       return {fmt::format("{} {}", reached_figure(expected), count), numbers};
     const std::vector<Real> costs = simulated_restarts(attempts, key_of(c, p, s));

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/read/fields.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/leading.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/rank_tests.h"
@@ -15,7 +18,6 @@ namespace isoline::reports {
 namespace {
 
 constexpr std::size_t kMostRanks = 20;
-constexpr Real kMostDoublings = 10;  // of the bars: beyond, or infinite
 
 // The profiles of two alone, on the problems given to both.
 Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
@@ -38,9 +40,10 @@ Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
           .reading = fmt::format("{} needs less on {} of {} problems, {} on {}; {} tie{}.",
                                  names[0], wins, n, names[1], losses, n - wins - losses,
                                  n - wins - losses == 1 ? "" : "s"),
-          .caption = fmt::format("Profiles of two alone, declared work to 1e-6, with 95 % bands; "
-                                 "failed: {} and {}.",
-                                 failed_cell(c, 0).text, failed_cell(c, rival).text),
+          .caption = fmt::format("Profiles of two alone, {} to {}, with 95 % bands; failed: {} and "
+                                 "{}.",
+                                 counted_name(c), tau_name(c), failed_cell(c, 0).text,
+                                 failed_cell(c, rival).text),
           .x_label = "factor of the less of the two",
           .y_label = "share of problems",
           .is_log_x = true,
@@ -51,26 +54,23 @@ Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
 
 Plots pairwise_plots(const Comparison& c) {
   Plots plots;
-  if (c.problems.size() < kFewProblems) return plots;
-  const Costs costs = median_costs(c, kTightest);
+  if (!has_order(c)) return plots;
+  const Costs costs = common_costs(c, kTightest);
   for (std::size_t rival = 1; rival < shown_optimizers(c, kMostRivals + 1); ++rival)
     plots.push_back(pair_plot(c, costs, rival));
   return plots;
 }
 
+// One bar a problem: the doublings by which the leader is told from the next.
 Plots log_ratio_plot(const Comparison& c) {
-  if (c.optimizers.size() < 2) return {};
-  const Costs costs = median_costs(c, kTightest, &Cell::cost);
-  std::vector<std::pair<Real, std::size_t>> bars;
+  if (c.order.methods.size() < 2) return {};
+  const Costs costs = common_costs(c, kTightest);
+  std::vector<std::pair<Real, std::string>> bars;
   std::size_t given = 0;
-  for (std::size_t p = 0; p < costs.size(); ++p) {
-    if (!costs[p][0] || !costs[p][1]) continue;
-    ++given;
-    const Real mine = *costs[p][0], other = *costs[p][1];
-    if (mine == kNever && other == kNever) continue;
-    bars.emplace_back(std::clamp(std::log2(std::max(mine, 1.0)) - std::log2(std::max(other, 1.0)),
-                                 -kMostDoublings, kMostDoublings),
-                      p);
+  for (const auto& [name, problems] : problems_by_name(c)) {
+    const Pairing pairing = pairing_of(costs, {problems}, 0, 1);
+    given += !pairing.doublings.empty() || pairing.neither > 0;
+    if (!pairing.doublings.empty()) bars.emplace_back(pairing.doublings[0], name);
   }
   if (bars.empty()) return {};
   std::ranges::sort(bars);
@@ -78,46 +78,42 @@ Plots log_ratio_plot(const Comparison& c) {
   Plot plot{.kind = Plot::Kind::bars,
             .id = "plot-log-ratio",
             .title = fmt::format("{} against {}, problem by problem", first, second),
-            .reading = "",
+            .reading = fmt::format("{} {}.", second,
+                                   pairing_text(c, pairing_of(costs, groups_of(c), 0, 1))),
             .caption = fmt::format(
-                "log2 of the ratio of median costs to 1e-6 in {}, sorted: below 0 {} needs less, "
-                "above 0 {}; at ±{:.0f} the other never gets there (Morales 2002). n = {} problems "
-                "given to both, of which neither solves {}; failed: {} and {}.",
-                cost_unit(c), first, second, kMostDoublings, given, given - bars.size(),
-                failed_cell(c, 0).text, failed_cell(c, 1).text),
+                "log2 of the ratio of median {} to {}, sorted, of several settings the median: "
+                "below 0 {} needs less, above 0 {}; at ±{:.0f} at least {:.0f} times, or the other "
+                "never gets there (Morales 2002). n = {} problems given to both, of which neither "
+                "solves {}; failed: {} and {}.",
+                counted_name(c), tau_name(c), first, second, std::log2(kProfileEnd), kProfileEnd,
+                given, given - bars.size(), failed_cell(c, 0).text, failed_cell(c, 1).text),
             .x_label = "problems",
-            .y_label = "log2 of the ratio of costs"};
+            .y_label = fmt::format("log2 of the ratio of {}", counted_name(c))};
   PlotSeries series{0, first + " / " + second, {}, {}, {}, {}};
-  std::size_t less = 0, more = 0;
-  for (const auto& [ratio, p] : bars) {
+  for (const auto& [ratio, name] : bars) {
     series.x.push_back(Real(plot.rows.size()));
     series.y.push_back(ratio);
-    plot.rows.push_back({shown_spec(c.problems[p].spec), {.problem = p}});
-    less += ratio < 0;
-    more += ratio > 0;
+    plot.rows.push_back({name, {.problem = problems_by_name(c).at(name)[0]}});
   }
-  plot.reading =
-      fmt::format("{} costs less on {} problems, {} on {}; the middle one is at {:+.2g} doublings.",
-                  first, less, second, more, bars[bars.size() / 2].first);
   plot.series.push_back(std::move(series));
   return {std::move(plot)};
 }
 
 Plots rank_plot(const Comparison& c) {
-  const auto ranks = ranks_by_name(c, median_costs(c, kTightest));
+  const auto ranks = ranks_by_name(c, c.yardstick.by);
   if (ranks.size() < 2) return {};
   Plot plot{.kind = Plot::Kind::dots,
             .id = "plot-rank",
             .title = "Mean rank",
             .reading = "",
             .caption = fmt::format(
-                "By declared work to 1e-6, with the 95 % bootstrap interval over n = {} problems "
-                "given to every optimizer; gaps below {:.3g} are not resolvable (Nemenyi); {}.",
-                ranks.size(), least_gap(c.optimizers.size(), ranks.size()),
+                "By {} to {}, with its {} over n = {} problems given to all ranked methods; gaps "
+                "below {:.3g} are not resolvable (Nemenyi); {}.",
+                counted_name(c), tau_name(c), interval_name(ranks.size()), ranks.size(),
+                least_gap(c.order.methods.size(), ranks.size()),
                 denominators(c, shown_optimizers(c, kMostRanks))),
             .x_label = "mean rank, 1 the best",
             .y_label = ""};
-  Real reach = 0;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostRanks); ++s) {
     std::vector<Real> own;
     Real sum = 0;
@@ -136,11 +132,13 @@ Plots rank_plot(const Comparison& c) {
   }
   const auto best =
       std::ranges::min_element(plot.series, {}, [](const PlotSeries& one) { return one.x[0]; });
-  reach = best->high[0];
+  const Real gap = least_gap(c.order.methods.size(), ranks.size());
   const auto within = std::ranges::count_if(
-      plot.series, [&](const PlotSeries& one) { return one.low[0] <= reach; });
-  plot.reading = fmt::format("{} has the least, {:.3g}; the intervals of {} others reach its own.",
-                             best->name, best->x[0], within - 1);
+      plot.series, [&](const PlotSeries& one) { return one.x[0] - best->x[0] < gap; });
+  plot.reading = fmt::format(
+      "{} has the least, {:.3g}; of the others shown {} are within the gap that Nemenyi’s test "
+      "resolves.",
+      best->name, best->x[0], within - 1);
   return {std::move(plot)};
 }
 
@@ -150,14 +148,14 @@ Plots signed_rank_plot(const Comparison& c) {
   const SignedRanks ranked = signed_ranks(c, k);
   Plot plot{.kind = Plot::Kind::matrix,
             .id = "plot-signed-rank",
-            .title = "Which pairs can be told apart",
+            .title = "Which pairs of the best can be told apart",
             .reading = fmt::format(
                 "{} of {} pairs can be told apart at 0.05; the least adjusted p is {:.2g}.",
                 ranked.told, ranked.pairs.size(), ranked.least),
             .caption = fmt::format(
-                "Wilcoxon's signed ranks on log-ratios of declared work to 1e-6, p after Holm over "
-                "all pairs; the darker the surer, framed at 0.05 or less; {}.",
-                denominators(c, k)),
+                "Wilcoxon’s signed ranks on doublings of {} to {}, p after Holm over all pairs; "
+                "the darker the surer, framed at 0.05 or less; {}.",
+                counted_name(c), tau_name(c), denominators(c, k)),
             .x_label = "",
             .y_label = ""};
   const Real none = std::nan("");

@@ -8,6 +8,7 @@
 #include "core/draws.h"
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/runtimes.h"
 
@@ -59,38 +60,42 @@ class RestartedHits {
 };
 
 PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<Real>& grid) {
+  const Measure by = cost_measure(c);
   RestartedHits hits(grid);
   Real pairs = 0;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+  for (const std::size_t p : c.order.settings) {
     const Cell& cell = c.cell(p, s);
-    if (cell.planned == 0) continue;
     pairs += static_cast<Real>(kTargets * kDraws);
     if (!cell.is_measured()) continue;
     std::vector<std::vector<Real>> targets;
     std::vector<Real> spent;
     for (const std::size_t index : cell.runs) {
-      targets.push_back(target_costs(c.runs[index], c.problems[p].prices, kTargets));
-      spent.push_back(std::max(c.runs[index].spent, 1e-9));  // of nothing there is no end
+      const Run& run = c.runs[index];
+      targets.emplace_back(kTargets, kNever);
+      const std::vector<Reached> ladder = ladder_of(run, c.problems[p].prices, run.aim);
+      for (std::size_t j = 0; j < std::min(ladder.size(), kTargets); ++j)
+        targets.back()[j] = in_units(by, ladder[j].by(by));
+      spent.push_back(std::max(in_units(by, spent_by(run, by)), 1e-9));  // of nothing is no end
     }
     hits.add(targets, spent, c.problems[p].spec + " " + c.optimizers[s].label);
   }
-  return {s, optimizer_text(c, s), grid, pairs > 0 ? hits.shares(pairs) : grid, {}, {}};
+  return {s, optimizer_text(c, s), grid, hits.shares(std::max(pairs, 1.0)), {}, {}};
 }
 
 constexpr std::size_t kMostTargetLines = 5;
 
-// Cost to the tightest tolerance by problem, with the bootstrap interval over seeds.
+// Cost to the tightest tolerance by problem, with its interval or range over seeds.
 PlotSeries target_series(const Comparison& c, std::size_t s, std::size_t problems) {
   PlotSeries series{s, optimizer_text(c, s), {}, {}, {}, {}};
   for (std::size_t p = 0; p < problems; ++p) {
     const Cell& cell = c.cell(p, s);
-    if (!cell.is_measured() || !cell.cost[kTightest].is_solved()) continue;
-    std::vector<Real> costs;
-    for (const std::size_t run : cell.runs) costs.push_back(c.runs[run].cost[kTightest]);
-    const Interval interval = costs.size() < 2
-                                  ? Interval{costs[0], costs[0]}
-                                  : bootstrap_median(costs, c.problems[p].spec + " " + series.name);
-    series.x.push_back(cell.cost[kTightest].median);
+    if (!cell.is_measured()) continue;
+    const std::vector<Real> costs = costs_over_seeds(c, cell);
+    const Real median = median_of(costs);
+    if (median == kNever) continue;
+    const Interval interval =
+        interval_over_seeds(costs, c.problems[p].spec + " " + c.optimizers[s].label);
+    series.x.push_back(median);
     series.y.push_back(Real(p));
     series.low.push_back(interval.low);
     series.high.push_back(interval.high);
@@ -101,37 +106,39 @@ PlotSeries target_series(const Comparison& c, std::size_t s, std::size_t problem
 }  // namespace
 
 Plots runtime_plot(const Comparison& c) {
+  const Measure by = cost_measure(c);
   Real most = 1;
-  for (const Run& run : c.runs) most = std::max(most, run.spent);
-  const std::vector<Real> grid = cost_grid(10 * most);  // a decade of restarts
+  for (const Run& run : c.runs) most = std::max(most, in_units(by, spent_by(run, by)));
+  const std::vector<Real> grid = cost_grid(by, 10 * most);  // a decade of restarts
   Plot plot{.id = "plot-runtime",
             .title = "Runtime distribution with restarts",
             .reading = "",
-            .caption =
-                "Share of all pairs of a problem and one of 51 targets, 1 to 1e-10 of the "
-                "descent, met within so many " +
-                cost_unit(c) +
-                ", in 1,000 simulated sequences of runs drawn with replacement (COCO); " +
-                denominators(c, shown_optimizers(c, kMostLines)) + ".",
-            .x_label = "equivalent forward solves",
-            .y_label = "share of problems and targets",
+            .caption = fmt::format(
+                "Share of all pairs of a {} and one of 51 targets, 1 to 1e-10 of the "
+                "way to what it aims at, met within so many {}, in 1,000 simulated "
+                "sequences of runs drawn with replacement (COCO), each of another seed "
+                "and so another instance; {}.",
+                setting_noun(c), cost_unit(c), denominators(c, shown_optimizers(c, kMostLines))),
+            .x_label = std::string(unit_name(by)),
+            .y_label = fmt::format("share of {}s and targets", setting_noun(c)),
             .is_log_x = true};
   for (std::size_t s = 0; s < shown_optimizers(c, kMostLines); ++s)
     plot.series.push_back(runtime_series(c, s, grid));
-  plot.reading = fmt::format("Most targets within 100 forward solves: {}; in the end: {}.",
+  plot.reading = fmt::format("Most targets within 100 {}: {}; in the end: {}.", unit_name(by),
                              highest_at(plot, 100), highest_at(plot, grid.back()));
   return {std::move(plot)};
 }
 
 Plots target_plot(const Comparison& c) {
-  Plot plot{.kind = Plot::Kind::dots,
-            .id = "plot-target",
-            .title = "Cost to 1e-6, problem by problem",
-            .reading = "",
-            .caption = "",
-            .x_label = "equivalent forward solves",
-            .y_label = "",
-            .is_log_x = true};
+  Plot plot{
+      .kind = Plot::Kind::dots,
+      .id = "plot-target",
+      .title = fmt::format("Cost to {}, {} by {}", tau_name(c), setting_noun(c), setting_noun(c)),
+      .reading = "",
+      .caption = "",
+      .x_label = std::string(unit_name(cost_measure(c))),
+      .y_label = "",
+      .is_log_x = true};
   const std::size_t shown = shown_optimizers(c, kMostTargetLines);
   const std::size_t problems = std::min(c.problems.size(), kMostPlotRows);
   for (std::size_t p = 0; p < problems; ++p)
@@ -152,13 +159,12 @@ Plots target_plot(const Comparison& c) {
   }
   if (dots == 0) return {};
   plot.caption = fmt::format(
-      "Median over seeds in {} with its 95 % bootstrap interval (1,000 draws); no mark: the "
-      "median run does not get there; {}.",
-      cost_unit(c), denominators(c, shown));
+      "Median over seeds in {} with {}; no mark: the median run does not get there; {}.",
+      cost_unit(c), interval_words(c), denominators(c, shown));
   plot.reading = fmt::format(
       "{} of {} pairs get there in the median; {}.", dots, shown * problems,
-      where.empty() ? "no interval has any width: seeds agree"
-                    : fmt::format("the widest interval is that of {}, {}", where,
+      where.empty() ? "no range has any width: seeds agree"
+                    : fmt::format("the widest is that of {}, {}", where,
                                   widest == kNever ? "without an upper end"
                                                    : fmt::format("a factor of {:.3g}", widest)));
   return {std::move(plot)};

@@ -16,6 +16,8 @@ Section problems_section(const Comparison& comparison);  // a sentence each, and
 Section learned_section(const Comparison& comparison);
 Section claims_section(const std::vector<Judgement>& judgements);
 Section properties_section(const std::vector<AuditedOptimizer>& audits);
+Section tuning_section(
+    const Comparison& comparison);  // where rates came from, and what they bought
 Section statistics_section(const Comparison& comparison);
 Section failures_section(const Comparison& comparison);
 Section builds_section(const Comparison& comparison);
@@ -29,8 +31,5 @@ std::string measured_text(const Judgement& judgement);                 // "23.4 
 std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
-
-// Below that many problems nothing is said of an order, and no profile is drawn.
-inline constexpr std::size_t kFewProblems = 4;
 
 }  // namespace isoline::reports

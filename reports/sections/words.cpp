@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include "core/shell.h"
+#include "reports/sections/measure_words.h"
+#include "reports/statistics/resampling.h"
 
 namespace isoline::reports {
 namespace {
@@ -107,6 +110,16 @@ std::string counted(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+std::string interval_name(std::size_t count) {
+  return count < kFewestForInterval ? fmt::format("range of {}", count) : "95 % bootstrap interval";
+}
+
+std::string ordinal(std::size_t place) {
+  constexpr std::array<const char*, 4> kEnds = {"th", "st", "nd", "rd"};
+  const std::size_t last = place % 10, tens = place / 10 % 10;
+  return fmt::format("{}{}", place, tens == 1 || last >= kEnds.size() ? "th" : kEnds[last]);
+}
+
 std::string optimizer_text(const Comparison& c, std::size_t s) {
   return shown_spec(c.optimizers[s].label) + (c.optimizers[s].privileges.empty() ? "" : " †");
 }
@@ -149,7 +162,7 @@ std::string status_text(const std::map<Status, std::size_t>& statuses) {
 }
 
 std::string count_text(const Cell& cell, std::size_t tolerance) {
-  const Spread& work = cell.work[tolerance];
+  const Spread& work = cell.headline[tolerance];
   std::string text = fmt::format("{}/{}", work.n - work.unsolved, work.n);
   if (cell.failed > 0) text += fmt::format(", {} failed", cell.failed);
   const std::size_t missing = cell.planned - cell.runs.size();
@@ -157,15 +170,17 @@ std::string count_text(const Cell& cell, std::size_t tolerance) {
   return text;
 }
 
-std::string matrix_text(const Cell& cell, std::size_t tolerance) {
+std::string matrix_text(const Comparison& c, const Cell& cell, std::size_t tolerance) {
   if (cell.planned == 0) return "";
   if (cell.runs.empty()) return "missing";
   if (!cell.is_measured()) return "n/a";
-  return reached_figure(cell.work[tolerance].median);
+  const Real median = cell.headline[tolerance].median;
+  return amount(c, median) + std::string(median < kNever ? time_mark(c, cell) : "");
 }
 
 bool is_complete(const Cell& cell, std::size_t tolerance) {
-  return cell.work[tolerance].unsolved == 0 && cell.failed == 0 && cell.planned == cell.runs.size();
+  return cell.headline[tolerance].unsolved == 0 && cell.failed == 0 &&
+         cell.planned == cell.runs.size();
 }
 
 std::string budget_options(const Request& request) {

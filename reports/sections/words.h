@@ -24,6 +24,9 @@ std::string multiple(Real ratio);  // "1.3×"
 
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 std::string counted(std::size_t count, std::string_view noun);  // "1 seed", "3 seeds"
+// What a range of the bootstrap over so few is: "range of 3", or "95 % bootstrap interval".
+std::string interval_name(std::size_t count);
+std::string ordinal(std::size_t place);  // "1st", "13th"
 
 // A spec as people read it: "newton[rate=0.3333]", its long numbers cut to four digits.
 std::string shown_spec(std::string_view spec);
@@ -37,8 +40,9 @@ std::string status_text(const std::map<Status, std::size_t>& statuses);  // "tar
 std::string count_text(const Cell& cell, std::size_t tolerance);
 bool is_complete(const Cell& cell, std::size_t tolerance);
 
-// The median work, ✗, "n/a", "missing", or nothing where nothing was planned.
-std::string matrix_text(const Cell& cell, std::size_t tolerance);
+// The median of what the yardstick counts, ✗, "n/a", "missing", or nothing where nothing was
+// planned.
+std::string matrix_text(const Comparison& comparison, const Cell& cell, std::size_t tolerance);
 
 // The command that asks for the same cell again: all its options explicit, no table of rates.
 std::string rerun_command(const Request& request);

@@ -64,6 +64,8 @@ Interval bootstrap_median(const std::vector<Real>& values, const std::string& ke
 }
 
 Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key) {
+  if (!values.empty() && values.size() < kFewestForInterval)
+    return {std::ranges::min(values), std::ranges::max(values)};
   return bootstrap(values, key, [](const std::vector<Real>& some) {
     return std::accumulate(some.begin(), some.end(), 0.0) / Real(some.size());
   });

@@ -32,7 +32,10 @@ struct Interval {
 };
 Interval interval_of(std::vector<Real> draws);
 
-// Of a statistic of values. The key names the stream.
+// So many values are the fewest that can give 95 %: 2/2⁶ is the first below 0.05.
+inline constexpr std::size_t kFewestForInterval = 6;
+
+// Of a statistic of values. The key names the stream. Of a mean of fewer values, their range.
 Interval bootstrap_median(const std::vector<Real>& values, const std::string& key);
 Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key);
 

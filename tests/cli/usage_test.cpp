@@ -83,6 +83,7 @@ const std::vector<Mistake> kMistakes = {
     {"compare nowhere .", "nowhere"},
     {"compare . . --tolerance -1", "--tolerance"},
     {"compare . . --json --markdown", "--json"},
+    {"compare . . --allow nowhere.json", "nowhere.json"},
     {"merge nowhere --out results", "nowhere"},
     {"merge .", "--out"},
     {"claims notebok", "did you mean 'notebook'"},

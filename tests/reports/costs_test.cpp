@@ -51,6 +51,25 @@ TEST(Costs, OfAnOracleThatWasNotMeasuredAreAtItsDeclaredPrice) {
   EXPECT_EQ(Prices(&sheet).cost(record), 51 * 3.5 + 2 * 7);
 }
 
+// A pullback of half a forward solve of one microsecond is half a microsecond, and one of 0 is
+// nothing that was ever called.
+TEST(Costs, OfCallsBelowAMicrosecondAreAtTheirDeclaredPrices) {
+  for (const Real pullback : {0.0, 0.5}) {
+    const Sheet sheet = priced("square", pullback);
+    EXPECT_EQ(Prices(&sheet).cost(counted()), 51 * 2) << pullback;
+    EXPECT_TRUE(Prices(&sheet).is_measured("forward"));
+    EXPECT_FALSE(Prices(&sheet).is_measured("pullback"));
+  }
+}
+
+// All prices are told in forward solves: where these are too short to be told, none is.
+TEST(Costs, InForwardSolvesBelowAMicrosecondAreDeclaredThroughout) {
+  Sheet sheet = priced("square", 40);
+  sheet.prices->forward_seconds = 0.5e-6;
+  EXPECT_FALSE(Prices(&sheet).are_measured());
+  EXPECT_EQ(Prices(&sheet).cost(counted()), Real(counted().summary.work));
+}
+
 // At work 2 j − 1 the curve stands half way between its points.
 TEST(Costs, OfOlderRecordsAreReadBetweenThePointsOfTheCurve) {
   Record older = counted();
@@ -69,7 +88,7 @@ TEST(Costs, WithoutMeasuredPricesAreTheDeclaredWork) {
   Study study;
   study.runs = {counted()};
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(c.cell(0, 0).cost[kTightest].median, 60);
+  EXPECT_EQ(c.cell(0, 0).taken[Measure::cost][kTightest].median, 60);
   EXPECT_NE(cost_unit(c).find("declared"), std::string::npos);
   EXPECT_TRUE(prices_table(c).rows.empty());
 }
@@ -78,9 +97,9 @@ TEST(Costs, AreNotAtThePricesOfOtherSettings) {
   Study study;
   study.runs = {counted()};
   study.sheets = {priced("square[n=9]", 2.5)};
-  EXPECT_EQ(compare_optimizers(study).cell(0, 0).cost[kTightest].median, 60);
+  EXPECT_EQ(compare_optimizers(study).cell(0, 0).taken[Measure::cost][kTightest].median, 60);
   study.sheets = {priced("square", 2.5)};
-  EXPECT_EQ(compare_optimizers(study).cell(0, 0).cost[kTightest].median, 30 * 3.5);
+  EXPECT_EQ(compare_optimizers(study).cell(0, 0).taken[Measure::cost][kTightest].median, 30 * 3.5);
 }
 
 // Two machines measure different prices: what is compared between results is none of it.
@@ -90,7 +109,8 @@ TEST(Costs, ChangeNoFigureThatResultsAreComparedBy) {
   cheap.sheets = {priced("square", 0.5)};
   dear.sheets = {priced("square", 40)};
   const Comparison one = compare_optimizers(cheap), other = compare_optimizers(dear);
-  EXPECT_NE(one.cell(0, 0).cost[kTightest].median, other.cell(0, 0).cost[kTightest].median);
+  EXPECT_NE(one.cell(0, 0).taken[Measure::cost][kTightest].median,
+            other.cell(0, 0).taken[Measure::cost][kTightest].median);
   EXPECT_EQ(one.cell(0, 0).work[kTightest].median, other.cell(0, 0).work[kTightest].median);
   const auto subjects = [](const Comparison& c) {
     return subjects_of_report(parse_json(json_report(document_of(c)), "report.json"));

@@ -36,9 +36,9 @@ TEST(Targets, AgreeWithTheTablesAtEachTolerance) {
     const Comparison c = compare_optimizers(study);
     const TargetMedians medians = target_medians(c, c.cell(0, 0));
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-      const Spread& work = c.cell(0, 0).work[t];
+      const Spread& work = c.cell(0, 0).headline[t];
       const std::size_t hit = kTolerances[t].hit;
-      EXPECT_EQ(medians.work.at(hit), work.median);
+      EXPECT_EQ(medians.counted.at(hit), work.median);
       const auto reached =
           std::ranges::count_if(medians.reached, [hit](std::size_t count) { return count > hit; });
       EXPECT_EQ(static_cast<std::size_t>(reached), work.n - work.unsolved);
@@ -51,7 +51,7 @@ TEST(Targets, EndWhereTheMedianIsNeverReached) {
   study.runs[1].hits->iteration.at(10) = -1;  // two of three runs miss target 21
   study.runs[1].hits->work.at(10) = -1;
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(target_medians(c, c.cell(0, 0)).work.size(), 21U);
+  EXPECT_EQ(target_medians(c, c.cell(0, 0)).counted.size(), 21U);
   EXPECT_EQ(target_medians(c, c.cell(0, 0)).reached, (std::vector<std::size_t>{51, 10, 21}));
 }
 

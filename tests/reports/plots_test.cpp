@@ -75,7 +75,7 @@ TEST(Plots, RatiosAreSortedDoublings) {
   const Plots plots = log_ratio_plot(compare_optimizers(four_problems()));
   ASSERT_EQ(plots.size(), 1U);
   const Plot* plot = &plots[0];
-  const std::vector<Real> doublings = {-4, -2, -1, 10};
+  const std::vector<Real> doublings = {-4, -2, -1, 6};
   ASSERT_EQ(plot->series[0].y.size(), doublings.size());
   for (std::size_t i = 0; i < doublings.size(); ++i)
     EXPECT_NEAR(plot->series[0].y[i], doublings[i], 1e-12);  // rounding of log2

@@ -35,7 +35,7 @@ const std::map<std::string, Set> kAllowed = {
     {"reports/compare",
      {"core", "core/records", "reports/read", "reports/statistics", "reports/sections",
       "reports/formats"}},
-    {"reports", {"core", "reports/read", "reports/sections", "reports/formats"}}};
+    {"reports", {"core", "reports/read", "reports/sections", "reports/formats", "reports/page"}}};
 
 // These see every room.
 bool is_free(const std::string& folder) {

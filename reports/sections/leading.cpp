@@ -1,0 +1,142 @@
+// Words for leads.
+#include "reports/sections/leading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/read/fields.h"
+#include "reports/sections/measure_words.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+// The first in rank that cannot be told from the leader by itself; the next where all can be.
+const Rival& nearest(const Lead& lead) {
+  const auto open = std::ranges::find_if(lead.rivals, [](const Rival& rival) {
+    return rival.p > kSignificant || rival.pairing.doublings.size() < kLeastNames;
+  });
+  return open == lead.rivals.end() ? lead.rivals.front() : *open;
+}
+
+std::string given_text(const OptimizerAxis& axis) {
+  return axis.label == axis.whole ? "where nothing more is given to it"
+                                  : "where it is " + axis.label.substr(axis.whole.size() + 2);
+}
+
+// "17 settings of 15 problems", or "15 problems" where each has one.
+std::string ground_text(const Comparison& c, const Order& order) {
+  const std::size_t names = names_of(c, order);
+  if (names == order.settings.size()) return counted(names, "problem");
+  return fmt::format("{} of {}", counted(order.settings.size(), "setting"),
+                     counted(names, "problem"));
+}
+
+}  // namespace
+
+std::string field_text(const Comparison& c, const Lead& lead) {
+  return fmt::format("{} on the {} that all of them were given",
+                     counted(lead.ranked.size(), "method"), ground_text(c, c.order));
+}
+
+std::string deeds_text(const Comparison& c, const Scored& scored) {
+  return fmt::format("solves {} of {} to {}, {} of them with the least {}", scored.solved,
+                     counted(scored.problems, setting_noun(c)), tau_name(c), scored.wins,
+                     counted_name(c));
+}
+
+std::string first_text(const Comparison& c, const Lead& lead) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < lead.tied; ++i)
+    names.push_back(optimizer_text(c, lead.ranked[i].optimizer));
+  if (names.size() > kNamed) return fmt::format("{} and {} others", names[0], names.size() - 1);
+  return joined(names, " and ");
+}
+
+std::string pairing_text(const Comparison& c, const Pairing& pairing) {
+  std::string text = fmt::format(
+      "typically takes {} its {}: {} win{} to {} loss{} over {}", multiple(pairing.typical()),
+      counted_name(c), pairing.wins, pairing.wins == 1 ? "" : "s", pairing.losses,
+      pairing.losses == 1 ? "" : "es", counted(pairing.doublings.size(), "problem"));
+  if (pairing.ties > 0) text += fmt::format(", {} tied", pairing.ties);
+  return text;
+}
+
+std::string settled_text(const Comparison& c, const Lead& lead) {
+  if (lead.tied > 1)
+    return fmt::format("{} are tied: the scores are equal, and nobody leads.", first_text(c, lead));
+  if (lead.rivals.empty()) return "There is no other method to compare it with.";
+  const Rival& rival = nearest(lead);
+  if (lead.is_settled)
+    return fmt::format(
+        "Its lead is settled for problems like these: each of the {} others is behind at 0.05 by a "
+        "paired sign-flip test over problems; the next, {}, {}.",
+        lead.rivals.size(), optimizer_text(c, rival.optimizer), pairing_text(c, rival.pairing));
+  const std::string name = optimizer_text(c, rival.optimizer);
+  if (rival.pairing.doublings.size() < kLeastNames)
+    return fmt::format(
+        "Its lead is not settled: against {} there are {} to compare, and the test asks for {}; {} "
+        "{}.",
+        name, counted(rival.pairing.doublings.size(), "problem"), kLeastNames, name,
+        pairing_text(c, rival.pairing));
+  if (rival.p <= kSignificant)
+    return "Its lead is not settled: the ranks of all methods together could be chance.";
+  return fmt::format(
+      "Its lead is not settled: {} cannot be told from it (p = {:.2g} by a paired sign-flip test); "
+      "it {}.",
+      name, rival.p, pairing_text(c, rival.pairing));
+}
+
+std::string power_text(const Comparison& c, const Lead& lead) {
+  if (lead.rivals.empty()) return "";
+  const Rival& rival = nearest(lead);
+  const Real factor = detectable_factor(rival.pairing);
+  std::string text =
+      fmt::format("After Holm over all of them, {} of the {} others {} told from {}.", lead.told(),
+                  lead.rivals.size(), lead.told() == 1 ? "is" : "are",
+                  optimizer_text(c, lead.ranked[0].optimizer));
+  if (factor < kNever && factor > 1)
+    text += fmt::format(
+        " With the spread there is against {} over {}, a true factor of {} would be found in 80 % "
+        "of such comparisons.",
+        optimizer_text(c, rival.optimizer), counted(rival.pairing.doublings.size(), "problem"),
+        multiple(factor));
+  return text;
+}
+
+std::string placed_text(const Comparison& c, const Placed& placed) {
+  const OptimizerAxis& axis = c.optimizers[placed.optimizer];
+  const std::string settings = counted(placed.among.settings.size(), setting_noun(c));
+  if (placed.among.methods.size() < 2)
+    return fmt::format("alone on {}", counted(placed.among.settings.size(), setting_noun(c)));
+  return fmt::format("{} of {} on the {}{}", ordinal(placed.place), placed.among.methods.size(),
+                     settings, axis.is_meaning ? " " + given_text(axis) : " it was given");
+}
+
+std::string apart_text(const Comparison& c, const Placed& placed) {
+  const OptimizerAxis& axis = c.optimizers[placed.optimizer];
+  if (axis.is_meaning) return "is given more on some problems than on others";
+  return fmt::format("asked {} of {}", placed.asked, counted(placed.shared, setting_noun(c)));
+}
+
+std::string apart_sentence(const Comparison& c) {
+  std::vector<std::string> meanings, others;
+  for (const Placed& placed : c.apart) {
+    const std::string name = shown_spec(c.optimizers[placed.optimizer].label);
+    if (c.optimizers[placed.optimizer].is_meaning)
+      meanings.push_back(fmt::format("{} is {}", name, placed_text(c, placed)));
+    else
+      others.push_back(fmt::format("{} ({})", name, apart_text(c, placed)));
+  }
+  std::string text;
+  if (!meanings.empty())
+    text += fmt::format("Listed apart, since it is given more on some problems than on others: {}.",
+                        joined(meanings, "; "));
+  if (!others.empty())
+    text += fmt::format("{}Not ranked: {}.", text.empty() ? "" : " ", joined(others));
+  return text;
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,34 @@
+// The lead of an order in words, the same on every screen: the deeds of the first, how it stands to
+// the next, whether that is settled, and what these data could have shown.
+#pragma once
+
+#include <string>
+
+#include "reports/read/comparison.h"
+
+namespace isoline::reports {
+
+// "36 methods on the 17 settings of 15 problems that all of them were given"
+std::string field_text(const Comparison& comparison, const Lead& lead);
+// "solves 14 of 17 settings to 1e-6, 5 of them with the least declared work"
+std::string deeds_text(const Comparison& comparison, const Scored& scored);
+// "adam and gd", who share the first place.
+std::string first_text(const Comparison& comparison, const Lead& lead);
+// "typically takes 1.1× its declared work: 7 wins to 6 losses over 15 problems, 2 ties"
+std::string pairing_text(const Comparison& comparison, const Pairing& pairing);
+// A sentence: whether the lead is settled, and if not against whom first.
+std::string settled_text(const Comparison& comparison, const Lead& lead);
+// A sentence: how many others can be told from the first, and which factor would have been found.
+std::string power_text(const Comparison& comparison, const Lead& lead);
+// "1st of 38 on the 9 settings where it is given P⁻¹"
+std::string placed_text(const Comparison& comparison, const Placed& placed);
+// "not ranked: asked 4 of 24 settings", or how its two meanings differ.
+std::string apart_text(const Comparison& comparison, const Placed& placed);
+// Sentences: where those stand that are not in the common order; empty where all are.
+std::string apart_sentence(const Comparison& comparison);
+
+// A sentence: whether the first three are the same at declared and at measured prices; empty where
+// calls are not what is counted.
+std::string prices_text(const Comparison& comparison);
+
+}  // namespace isoline::reports

@@ -1,0 +1,227 @@
+// Tables of the two kinds of success held against each other: a small loss, and the x that was
+// sought. How far apart they are is a matter of conditioning: J maps errors in x, by its singular
+// values, to errors in y.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/read/reached.h"
+#include "reports/sections/evidence.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+// What the median run of a pair came to.
+struct Outcome {
+  bool is_loss_reached = false, is_x_found = false;
+  bool is_x_near = false;     // to √τ: what a loss at τ leaves of x where J is well conditioned
+  Real error = std::nan("");  // of x, as a share of the solution's norm
+  bool is_told() const { return is_loss_reached && !is_x_found; }
+};
+
+bool are_both_known(const Run& run) {
+  return run.record->x_scale && std::isfinite(run.minimum) && run.scale > 0;
+}
+
+// Runs that are missing count as infinite, as elsewhere.
+template <class Reached>
+bool is_in_the_median(const Comparison& c, const Cell& cell, Reached reached) {
+  std::vector<Real> unmet(cell.planned - cell.runs.size(), kNever);
+  for (const std::size_t run : cell.runs) unmet.push_back(reached(c.runs[run]) ? 0 : kNever);
+  return median_of(std::move(unmet)) < kNever;
+}
+
+std::optional<Outcome> outcome_of(const Comparison& c, std::size_t p, std::size_t s) {
+  const Cell& cell = c.cell(p, s);
+  const auto is_known = [&](std::size_t run) { return are_both_known(c.runs[run]); };
+  if (!cell.is_measured() || !std::ranges::all_of(cell.runs, is_known)) return std::nullopt;
+  const std::size_t near = rung_of(std::sqrt(c.yardstick.tightest().tau));
+  std::vector<Real> errors;
+  for (const std::size_t run : cell.runs) {
+    const Record& record = *c.runs[run].record;
+    errors.push_back(record.summary.x_error / *record.x_scale);
+  }
+  return Outcome{
+      is_in_the_median(
+          c, cell,
+          [](const Run& run) { return run.reached_loss[Measure::work][kTightest] < kNever; }),
+      is_in_the_median(
+          c, cell, [](const Run& run) { return run.found_x[Measure::work][kTightest] < kNever; }),
+      is_in_the_median(c, cell,
+                       [&](const Run& run) {
+                         const Prices& prices = c.problems[p].prices;
+                         return !is_failure(run.record->status) &&
+                                ladder_of(run, prices, Aim::x).size() > near;
+                       }),
+      median_of(std::move(errors))};
+}
+
+// Of all methods on a setting, or of all settings given to a method.
+struct Tally {
+  std::size_t n = 0, reached = 0, found = 0, without = 0, far = 0;
+
+  void add(const Outcome& outcome) {
+    ++n;
+    reached += outcome.is_loss_reached;
+    found += outcome.is_x_found;
+    without += outcome.is_told();
+    far += outcome.is_told() && !outcome.is_x_near;
+  }
+};
+
+std::optional<Real> condition_of(const ProblemAxis& problem) {
+  const bool is_own = problem.sheet != nullptr && problem.sheet->spec == problem.spec;
+  return is_own ? problem.sheet->condition : std::nullopt;
+}
+
+std::string condition_text(const ProblemAxis& problem) {
+  constexpr Real kSingular = 4.5e15;  // above, the least singular value is rounding
+  const std::optional<Real> condition = condition_of(problem);
+  if (!condition) return "";
+  return *condition > kSingular ? "singular" : figure(std::stod(fmt::format("{:.2g}", *condition)));
+}
+
+TableCell condition_cell(const ProblemAxis& problem) {
+  const std::optional<Real> condition = condition_of(problem);
+  if (!condition) return "";
+  return {condition_text(problem), {{"condition", *condition}}};
+}
+
+// "heat[N=8] (1.2e9)".
+std::string with_condition(const ProblemAxis& problem) {
+  const std::string name = shown_spec(problem.spec), condition = condition_text(problem);
+  return condition.empty() ? name : fmt::format("{} ({})", name, condition);
+}
+
+std::string names_of(const Comparison& c, std::vector<std::size_t> problems) {
+  constexpr std::size_t kNamed = 3;
+  std::ranges::stable_sort(problems, std::ranges::greater{},
+                           [&](std::size_t p) { return condition_of(c.problems[p]).value_or(0); });
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(problems.size(), kNamed); ++i)
+    names.push_back(with_condition(c.problems[problems[i]]));
+  if (problems.size() > kNamed) names.push_back(fmt::format("{} more", problems.size() - kNamed));
+  return joined(names);
+}
+
+void add_tally(std::vector<TableCell>& row, const Tally& tally) {
+  for (const std::size_t count : {tally.n, tally.reached, tally.found, tally.without, tally.far})
+    row.push_back(count_cell(count));
+}
+
+std::string near_name(const Comparison& c) {
+  return std::string(tolerance_at(std::sqrt(c.yardstick.tightest().tau)).name);
+}
+
+std::string caption_of(const Comparison& c) {
+  const std::string_view tau = c.yardstick.tightest().name;
+  return fmt::format(
+      "Medians over seeds, where both the least loss and the solution are known. Loss: no more "
+      "than {} of its scale is left. x: the error is at most {} of the solution's norm, or the "
+      "floor that the data set. Near: at most {}, the square root, which is what a loss at {} "
+      "leaves of x where J is well conditioned. In brackets the condition number of J, the ratio "
+      "of its extreme singular values, at the solution or else at the start.",
+      tau, tau, near_name(c), tau);
+}
+
+}  // namespace
+
+Table loss_without_x_table(const Comparison& c) {
+  Table table{.id = "loss-without-x",
+              .title = "Solved in loss, not in x",
+              .caption = caption_of(c),
+              .columns = {"optimizer", "n settings", "loss", "x", "loss, not x", "nor near",
+                          "loss, not x, on", "failed"},
+              .meanings = {"", "settings given to the method of which both are known",
+                           "settings whose loss is reached", "settings whose x is found",
+                           "settings whose loss is reached and whose x is not found",
+                           "those of them on which x is not even near",
+                           "those of them with the worst condition numbers", ""},
+              .align = "lrrrrrlr"};
+  Tally all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    Tally own;
+    std::vector<std::size_t> without;
+    for (std::size_t p = 0; p < c.problems.size(); ++p) {
+      const std::optional<Outcome> outcome = outcome_of(c, p, s);
+      if (!outcome) continue;
+      own.add(*outcome);
+      all.add(*outcome);
+      if (outcome->is_told()) without.push_back(p);
+    }
+    if (own.n == 0 || table.rows.size() == kMostTableRows) continue;
+    std::vector<TableCell> row = {optimizer_text(c, s)};
+    add_tally(row, own);
+    row.emplace_back(names_of(c, without));
+    row.push_back(failed_cell(c, s));
+    table.rows.push_back(std::move(row));
+    table.row_topics.push_back({.optimizer = s});
+  }
+  table.reading =
+      all.n == 0
+          ? "No result tells both kinds of success: the loss that can be reached, and the x sought."
+          : fmt::format(
+                "Of {} pairs of a method and a setting, {} reach the loss to {} and {} find x to "
+                "it; {} reach the loss and not x, {} of these not even to {}.",
+                all.n, all.reached, c.yardstick.tightest().name, all.found, all.without, all.far,
+                near_name(c));
+  return table;
+}
+
+Table condition_table(const Comparison& c) {
+  Table table{.id = "condition",
+              .title = "Solved in loss, not in x, setting by setting",
+              .caption = caption_of(c) +
+                         " Error: of x, of the methods that reach the loss, as a "
+                         "share of the solution's norm, their median.",
+              .columns = {"problem", "unknowns", "condition", "n methods", "loss", "x",
+                          "loss, not x", "nor near", "error in x", "failed"}};
+  std::size_t most = 0, worst = 0;
+  std::vector<std::size_t> order;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) order.push_back(p);
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [&](std::size_t p) { return condition_of(c.problems[p]).value_or(0); });
+  Tally of_worst;
+  for (const std::size_t p : order) {
+    Tally own;
+    std::vector<Real> errors;
+    std::size_t failed = 0, runs = 0;
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+      const std::optional<Outcome> outcome = outcome_of(c, p, s);
+      if (!outcome) continue;
+      own.add(*outcome);
+      if (outcome->is_loss_reached) errors.push_back(outcome->error);
+      failed += c.cell(p, s).failed;
+      runs += c.cell(p, s).runs.size();
+    }
+    if (own.n == 0) continue;
+    const ProblemAxis& problem = c.problems[p];
+    std::vector<TableCell> row = {
+        shown_spec(problem.spec),
+        problem.sheet == nullptr ? TableCell("")
+                                 : count_cell(static_cast<std::size_t>(problem.sheet->unknowns)),
+        condition_cell(problem)};
+    add_tally(row, own);
+    const Real error = median_of(errors);
+    row.push_back(errors.empty() ? TableCell("") : TableCell(figure(error), {{"error", error}}));
+    row.push_back(
+        {fmt::format("{}/{}", failed, runs), {{"failed", Real(failed)}, {"runs", Real(runs)}}});
+    table.rows.push_back(std::move(row));
+    table.row_topics.push_back({.problem = p});
+    if (own.without <= most) continue;
+    most = own.without;
+    worst = p;
+    of_worst = own;
+  }
+  table.reading = most == 0
+                      ? "On no setting does a method reach the loss without x."
+                      : fmt::format(
+                            "Most often on {}: {} of the {} methods that reach its loss do not "
+                            "find its x.",
+                            with_condition(c.problems[worst]), most, of_worst.reached);
+  return table;
+}
+
+}  // namespace isoline::reports

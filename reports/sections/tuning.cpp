@@ -1,0 +1,219 @@
+// Where the rates of methods came from, and what tuning bought: values tried, edges, the best of b
+// of them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "reports/sections/evidence.h"
+#include "reports/sections/measure_words.h"
+#include "reports/sections/origins.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+#include "reports/statistics/best_of.h"
+
+namespace isoline::reports {
+namespace {
+
+// The rates of one method over its settings.
+struct Rates {
+  std::size_t optimizer = 0;
+  std::size_t settings = 0, published = 0, at_edge = 0, never = 0;
+  std::vector<const TunedRate*> tuned;
+  Real least = kNever, most = 0;  // values chosen
+
+  bool is_empty() const { return tuned.empty() && published == 0; }
+};
+
+void add_value(const Comparison& c, const Cell& cell, const std::string& option, Rates& rates) {
+  const OptionValues& options = c.runs[cell.runs.front()].record->request.optimizer.options;
+  const Real value = options.number(option, std::nan(""));
+  if (std::isnan(value)) return;
+  rates.least = std::min(rates.least, value);
+  rates.most = std::max(rates.most, value);
+}
+
+Rates rates_of(const Comparison& c, std::size_t s) {
+  Rates rates{.optimizer = s, .tuned = {}};
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const Cell& cell = c.cell(p, s);
+    rates.settings += cell.planned > 0;
+    const TunedRate* rate = rate_of(c, p, s);
+    if (rate == nullptr) continue;
+    if (!rate->is_tuned()) {
+      ++rates.published;
+      continue;
+    }
+    rates.tuned.push_back(rate);
+    rates.at_edge += rate->is_at_edge;
+    rates.never += !rate->is_ever_solved();
+    add_value(c, cell, rate->option, rates);
+  }
+  return rates;
+}
+
+// Of a row: 1 the value of least work, 0 one that takes 64 times as much, or never gets there.
+std::vector<Real> scores_of(const TunedRate& rate) {
+  const Real least = rate.work.empty() ? kNever : *std::ranges::min_element(rate.work);
+  std::vector<Real> scores;
+  for (const Real work : rate.work)
+    scores.push_back(
+        work < kNever ? score_of(std::max(work, 1.0) / std::max(least, 1.0), kProfileEnd) : 0);
+  return scores;
+}
+
+// The mean over settings of the expected score of the best of b values, b = 1, 2, …; grids of fewer
+// values keep their last.
+std::vector<Real> best_of_curve(const Rates& rates) {
+  std::vector<std::vector<Real>> all;
+  std::size_t longest = 0;
+  for (const TunedRate* rate : rates.tuned) {
+    if (rate->work.empty()) continue;
+    all.push_back(expected_best(scores_of(*rate)));
+    longest = std::max(longest, all.back().size());
+  }
+  std::vector<Real> mean(longest, 0);
+  for (std::size_t b = 0; b < longest; ++b)
+    for (const auto& curve : all)
+      mean[b] += curve[std::min(b, curve.size() - 1)] / static_cast<Real>(all.size());
+  return mean;
+}
+
+TableCell score_cell(const std::vector<Real>& curve, std::size_t b) {
+  if (curve.size() <= b) return "";
+  return {fmt::format("{:.2f}", curve[b]), {{"score", curve[b]}}};
+}
+
+Table rates_table(const Comparison& c, const std::vector<Rates>& all) {
+  Table table{
+      .id = "rates",
+      .title = "Rates from tables",
+      .reading = "",
+      .caption = fmt::format(
+          "Tuned: the best of a grid, tried on this very {} on seeds that are never judged. "
+          "Published: a paper’s. All others run as asked, or at their defaults. Edge: the "
+          "best value is the first or last of its grid, so that a better one may lie "
+          "beyond. Never: no value got there while it was tuned. One value, best of 3, of "
+          "all: the expected score of the best of so many values of the grid, 1 the least "
+          "work of all its values, 0 from 64 times it on; mean over {}s.",
+          setting_noun(c), setting_noun(c)),
+      .columns = {"optimizer", n_column(c), "tuned", "published", "values chosen", "at an edge",
+                  "never", "one value", "best of 3", "of all"}};
+  for (const Rates& rates : all) {
+    if (rates.is_empty()) continue;
+    const std::vector<Real> curve = best_of_curve(rates);
+    constexpr std::size_t kThird = 2;
+    std::string values;
+    if (rates.most > 0)
+      values = rates.least == rates.most
+                   ? figure(rates.most)
+                   : fmt::format("{}–{}", figure(rates.least), figure(rates.most));
+    table.rows.push_back({optimizer_text(c, rates.optimizer), count_cell(rates.settings),
+                          count_cell(rates.tuned.size()), count_cell(rates.published), values,
+                          count_cell(rates.at_edge), count_cell(rates.never), score_cell(curve, 0),
+                          score_cell(curve, kThird),
+                          score_cell(curve, curve.empty() ? 0 : curve.size() - 1)});
+    table.row_topics.push_back({.optimizer = rates.optimizer});
+  }
+  return table;
+}
+
+Plot best_of_plot(const Comparison& c, const std::vector<Rates>& all) {
+  Plot plot{.id = "plot-best-of",
+            .title = "What tuning buys: the best of b values",
+            .reading = "",
+            .caption = fmt::format(
+                "Expected score of the best of b values drawn from the grid of a method, 1 the "
+                "least work of all its values and 0 from 64 times it on or unsolved; mean over the "
+                "{}s it was tuned on, on tuning seeds. A flat line asks for no tuning; its end is "
+                "the share of {}s that any value solves. The first {} methods with grids.",
+                setting_noun(c), setting_noun(c), kMostLines),
+            .x_label = "values tried, b",
+            .y_label = "expected score of the best"};
+  Real steepest = -1;
+  std::string most;
+  for (const Rates& rates : all) {
+    const std::vector<Real> curve = best_of_curve(rates);
+    if (curve.size() < 2 || plot.series.size() == kMostLines) continue;
+    PlotSeries line{rates.optimizer, optimizer_text(c, rates.optimizer), {}, curve, {}, {}};
+    for (std::size_t b = 1; b <= curve.size(); ++b) line.x.push_back(static_cast<Real>(b));
+    if (curve.back() - curve.front() > steepest) {
+      steepest = curve.back() - curve.front();
+      most = fmt::format("{}, from {:.2f} with one value to {:.2f} with {}", line.name,
+                         curve.front(), curve.back(), curve.size());
+    }
+    plot.series.push_back(std::move(line));
+  }
+  if (!most.empty()) plot.reading = fmt::format("Tuning buys most for {}.", most);
+  return plot;
+}
+
+// What is open about rates that were tuned.
+std::string edges_text(const std::vector<Rates>& all) {
+  std::size_t rows = 0, edges = 0, never = 0;
+  for (const Rates& rates : all) {
+    rows += rates.tuned.size();
+    edges += rates.at_edge;
+    never += rates.never;
+  }
+  if (rows == 0) return "";
+  return fmt::format(
+      "Of {} tuned rates {} stand at an edge of their grid, and {} are the best of values none of "
+      "which got there while it was tuned.",
+      rows, edges, never);
+}
+
+std::vector<Rates> all_rates(const Comparison& c) {
+  std::vector<Rates> all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.push_back(rates_of(c, s));
+  return all;
+}
+
+}  // namespace
+
+std::string rates_text(const Comparison& c) {
+  std::set<std::string> methods, tuned, published;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const std::string& method = c.optimizers[s].method;
+    methods.insert(method);
+    for (std::size_t p = 0; p < c.problems.size(); ++p) {
+      const Origin origin = origin_of(c, p, s);
+      if (origin == Origin::tuned) tuned.insert(method);
+      if (origin == Origin::published) published.insert(method);
+    }
+  }
+  if (tuned.empty() && published.empty()) return "";
+  for (const std::string& method : tuned) published.erase(method);
+  return fmt::format(
+      "Of {} methods {} have rates tuned on the very {}s they are judged on, on other seeds{}; the "
+      "others run as asked or at their defaults.",
+      methods.size(), tuned.size(), setting_noun(c),
+      published.empty() ? "" : fmt::format(", and {} published ones", published.size()));
+}
+
+Section tuning_section(const Comparison& c) {
+  Section section{.id = "tuning",
+                  .title = "Where rates came from",
+                  .otherwise =
+                      "No run of this report used a table of rates: all methods run as "
+                      "asked, or at their defaults."};
+  const std::vector<Rates> all = all_rates(c);
+  if (const std::string text = rates_text(c); !text.empty()) {
+    section.readings.push_back({"", text});
+    if (const std::string edges = edges_text(all); !edges.empty())
+      section.readings.push_back({"", edges});
+    section.tables.push_back(rates_table(c, all));
+    if (Plot plot = best_of_plot(c, all); !plot.series.empty())
+      section.plots.push_back(std::move(plot));
+  } else if (std::ranges::any_of(
+                 c.runs, [](const Run& run) { return !run.record->request.rates.empty(); })) {
+    section.readings.push_back(
+        {"", "These runs used tables of rates, but the results do not hold what was tried."});
+  }
+  if (Table both = tuned_and_defaults_table(c); !both.rows.empty())
+    section.tables.push_back(std::move(both));
+  return section;
+}
+
+}  // namespace isoline::reports

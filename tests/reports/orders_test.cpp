@@ -1,0 +1,243 @@
+// Who is compared with whom: common settings, two meanings of one method, missing seeds, words.
+#include "reports/read/orders.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "reports/read/fields.h"
+#include "reports/sections/evidence.h"
+#include "reports/sections/leading.h"
+#include "reports/sections/sections.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline::reports {
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string all_of(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += sentence + "\n";
+  return text;
+}
+
+// Three methods on four problems: a is ahead of b, b of c.
+Study three_methods() {
+  Study study;
+  for (const char* problem : {"p", "q", "r", "s"})
+    for (const auto& [name, work] : {std::pair{"a", 1}, std::pair{"b", 3}, std::pair{"c", 9}})
+      study.runs.push_back(
+          record_of({.problem = problem, .optimizer = name, .work_per_hit = work}));
+  return study;
+}
+
+std::map<std::string, Real> scores_of(const Study& study) {
+  const Comparison c = compare_optimizers(study);
+  std::map<std::string, Real> scores;
+  for (const OptimizerAxis& axis : c.optimizers) scores[axis.label] = axis.tightest().score;
+  return scores;
+}
+
+TEST(Orders, MoreSettingsOfOneMethodMoveNoOther) {
+  Study study = three_methods();
+  const auto before = scores_of(study);
+  for (const char* problem : {"t", "u", "v", "w", "x", "y"})
+    study.runs.push_back(record_of({.problem = problem, .optimizer = "c", .work_per_hit = 1}));
+  EXPECT_EQ(scores_of(study), before);
+}
+
+TEST(Orders, WhoWasAskedLittleIsListedApart) {
+  Study study = three_methods();
+  study.runs.push_back(record_of({.problem = "p", .optimizer = "lucky", .work_per_hit = 1}));
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(c.order.methods.size(), 3U);
+  ASSERT_EQ(c.apart.size(), 1U);
+  EXPECT_EQ(c.optimizers.back().label, "lucky");
+  EXPECT_EQ(apart_text(c, c.apart[0]), "asked 1 of 4 problems");
+  EXPECT_TRUE(has(all_of(verdict(c)), "Not ranked: lucky (asked 1 of 4 problems)."))
+      << all_of(verdict(c));
+  EXPECT_EQ(c.optimizers[c.lead->ranked[0].optimizer].label, "a");
+}
+
+// It wins where it is given the inverse, and is last where it is not.
+Study two_meanings() {
+  Study study = three_methods();
+  for (const auto& [problem, work] :
+       {std::pair{"p", 0}, std::pair{"q", 0}, std::pair{"r", 20}, std::pair{"s", 20}}) {
+    Record record = record_of({.problem = problem, .optimizer = "sip", .work_per_hit = work});
+    if (work == 0) record.privileges = {"exact inverse of the physics"};
+    study.runs.push_back(std::move(record));
+  }
+  return study;
+}
+
+TEST(Orders, AMethodWithTwoMeaningsIsTwo) {
+  const Study study = two_meanings();
+  const Comparison c = compare_optimizers(study);
+  ASSERT_EQ(c.apart.size(), 2U);
+  const Placed &given = c.apart[0], &plain = c.apart[1];
+  EXPECT_EQ(c.optimizers[given.optimizer].label, "sip, given P⁻¹");
+  EXPECT_EQ(c.optimizers[plain.optimizer].label, "sip");
+  EXPECT_FALSE(c.optimizers[given.optimizer].privileges.empty());
+  EXPECT_TRUE(c.optimizers[plain.optimizer].privileges.empty());
+  EXPECT_EQ(placed_text(c, given), "1st of 4 on the 2 problems where it is given P⁻¹");
+  EXPECT_EQ(placed_text(c, plain), "4th of 4 on the 2 problems where nothing more is given to it");
+  const std::string text = all_of(verdict(c));
+  EXPECT_TRUE(has(text, placed_text(c, given)) && has(text, placed_text(c, plain))) << text;
+}
+
+TEST(Orders, AMethodThatSeesTheSameEverywhereStaysOne) {
+  Study study = three_methods();
+  for (Record& record : study.runs)
+    if (record.request.optimizer.name == "a") record.privileges = {"exact Hessian"};
+  study.runs[0].status = Status::inapplicable;  // and has seen nothing there
+  study.runs[0].privileges.clear();
+  const Comparison c = compare_optimizers(study);
+  EXPECT_TRUE(c.apart.empty());
+  EXPECT_EQ(c.order.methods.size(), 3U);
+}
+
+TEST(Orders, LargerSizesFormAnOrderOfTheirOwn) {
+  Study study = three_methods();
+  for (const char* optimizer : {"b", "c"})
+    study.runs.push_back(record_of({.problem = "p[N=64]",
+                                    .optimizer = optimizer,
+                                    .work_per_hit = optimizer[0] == 'c' ? 1 : 5}));
+  Study more = three_methods();
+  for (const char* optimizer : {"d", "e"})  // so that two of five are no majority
+    for (const char* problem : {"p", "q", "r", "s"})
+      more.runs.push_back(
+          record_of({.problem = problem, .optimizer = optimizer, .work_per_hit = 11}));
+  more.runs.insert(more.runs.end(), study.runs.end() - 2, study.runs.end());
+  const Comparison c = compare_optimizers(more);
+  EXPECT_EQ(c.order.settings.size(), 4U);
+  ASSERT_EQ(c.other_orders.size(), 1U);
+  const Order& order = c.other_orders[0];
+  ASSERT_EQ(order.methods.size(), 2U);
+  EXPECT_EQ(c.optimizers[order.methods[0]].label, "c") << "best first, of that order";
+  const Section section = standings_section(c);
+  EXPECT_EQ(section.tables.back().id, "orders-table");
+  EXPECT_EQ(section.tables.back().rows[0][0].text, "p[N=64]");
+}
+
+// Of three seeds one is fast. Leaving the slow ones out must not make the method look better.
+TEST(Orders, DroppingSeedsRaisesNoScore) {
+  Study whole;
+  for (const char* problem : {"p", "q", "r", "s"})
+    for (const char* optimizer : {"a", "b", "c"})
+      for (std::uint64_t seed = 0; seed < 3; ++seed)
+        whole.runs.push_back(record_of({.problem = problem,
+                                        .optimizer = optimizer,
+                                        .seed = seed,
+                                        .work_per_hit = seed == 0 ? 2 : 20}));
+  const auto before = scores_of(whole);
+  for (const bool is_planned : {true, false}) {
+    Study part = whole;
+    if (is_planned) part.plan = plan_of(whole.runs);
+    std::erase_if(part.runs, [](const Record& record) {
+      return record.request.optimizer.name == "a" && record.request.seed > 0;
+    });
+    EXPECT_LT(scores_of(part).at("a"), before.at("a")) << is_planned;
+  }
+}
+
+TEST(Orders, AMissingSeedIsCounted) {
+  Study study;
+  study.runs = {record_of({.optimizer = "a"}), record_of({.optimizer = "a", .seed = 1}),
+                record_of({.optimizer = "b"}), record_of({.optimizer = "b", .seed = 1})};
+  study.plan = plan_of(study.runs);
+  study.runs.pop_back();
+  const Comparison c = compare_optimizers(study);
+  const auto b = std::ranges::find(c.optimizers, "b", &OptimizerAxis::label) - c.optimizers.begin();
+  const Cell& cell = c.cell(0, static_cast<std::size_t>(b));
+  EXPECT_EQ(cell.headline[kTightest].n, 2U);
+  EXPECT_EQ(cell.headline[kTightest].unsolved, 1U);
+  EXPECT_FALSE(cell.headline[kTightest].is_solved());
+}
+
+// Twelve problems: `first` is four times as cheap as `second`, `kin` is like `first` by chance,
+// `none` applies to none of them.
+Study family() {
+  Study study;
+  for (int i = 0; i < 12; ++i) {
+    const std::string problem(1, static_cast<char>('a' + i));
+    const std::int64_t work = 10 + 3 * i;
+    study.runs.push_back(
+        record_of({.problem = problem, .optimizer = "first", .work_per_hit = work}));
+    study.runs.push_back(
+        record_of({.problem = problem, .optimizer = "second", .work_per_hit = 4 * work}));
+    study.runs.push_back(record_of({.problem = problem,
+                                    .optimizer = "kin",
+                                    .work_per_hit = i % 2 == 0 ? 2 * work : work / 2 + 2}));
+    study.runs.push_back(record_of({.problem = problem,
+                                    .optimizer = "none",
+                                    .hits = 0,
+                                    .status = Status::inapplicable,
+                                    .message = "no"}));
+  }
+  return study;
+}
+
+TEST(Orders, TheLeaderIsTestedAgainstEachOfTheOthersThatApply) {
+  const Study study = family();
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(c.order.methods.size(), 4U);
+  ASSERT_EQ(c.lead->rivals.size(), 2U) << "what applies nowhere leaves the family";
+  const Table table = leader_table(c);
+  EXPECT_EQ(table.rows.size(), 2U);
+  EXPECT_TRUE(has(table.reading, "1 of the 2 others")) << table.reading;
+  EXPECT_TRUE(has(limits_of_evidence(c).front(), "Friedman")) << limits_of_evidence(c).front();
+}
+
+TEST(Orders, WhatIsNotSettledSaysAgainstWhom) {
+  const Study study = family();
+  const Comparison c = compare_optimizers(study);
+  const std::string text = all_of(verdict(c));
+  EXPECT_TRUE(has(text, "Its lead is not settled: kin cannot be told from it")) << text;
+  EXPECT_TRUE(has(text, "80 %")) << text;
+}
+
+TEST(Orders, OneAlgorithmTwiceIsTiedOnTheFirstScreen) {
+  Study study;
+  for (int i = 0; i < 10; ++i)
+    for (const char* optimizer : {"gd", "gd-again", "slow"})
+      study.runs.push_back(record_of({.problem = std::string(1, static_cast<char>('a' + i)),
+                                      .optimizer = optimizer,
+                                      .work_per_hit = optimizer[0] == 's' ? 9 : 2}));
+  const Comparison c = compare_optimizers(study);
+  const std::string text = all_of(verdict(c));
+  EXPECT_TRUE(has(text, "gd and gd-again are tied")) << text;
+  EXPECT_FALSE(has(text, "Its lead is settled")) << text;
+  const Table& table = standings_section(c).tables[0];
+  EXPECT_EQ(table.rows[0][0].text, "1");
+  EXPECT_EQ(table.rows[1][0].text, "1");
+  EXPECT_EQ(table.rows[2][0].text, "3");
+}
+
+// Three seeds: 2, 4 and 6 a target against 3, 5 and 5, their ranges overlapping.
+TEST(Orders, SeedsAreComparedInPairs) {
+  Study study;
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const auto k = static_cast<std::int64_t>(seed);
+    study.runs.push_back(record_of({.optimizer = "a", .seed = seed, .work_per_hit = 2 + 2 * k}));
+    study.runs.push_back(
+        record_of({.optimizer = "b", .seed = seed, .work_per_hit = k == 0 ? 3 : 5}));
+  }
+  const std::string text = curve_reading(compare_optimizers(study), 0);
+  EXPECT_TRUE(has(text, "more on 2 of 3 seeds")) << text;
+  EXPECT_FALSE(has(text, "overlapping")) << text;
+}
+
+TEST(Orders, OfFewProblemsTheRangeIsShown) {
+  Study study = three_methods();
+  const Table table = rank_table(compare_optimizers(study));
+  EXPECT_TRUE(has(table.caption, "range of 4")) << table.caption;
+  EXPECT_FALSE(has(table.caption, "95 %")) << table.caption;
+}
+
+}  // namespace
+}  // namespace isoline::reports
