@@ -59,7 +59,7 @@ TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
   EXPECT_EQ(spec("sip", "sine"), "sip[step=0.25]");
   EXPECT_EQ(spec("sip", "hig-toy"), "sip[network-optimizer=adam[rate=0.25]]");
   EXPECT_EQ(spec("rescaled", "sine"), "rescaled[network-optimizer=gd[rate=0.25]]");
-  EXPECT_EQ(spec("nlopt-lbfgs", "sine"), "nlopt-lbfgs[memory=0]");  // a whole number
+  EXPECT_EQ(spec("nlopt-lbfgs", "sine"), "nlopt-lbfgs[memory=0]");  // in whole numbers
 }
 
 // --- which values
@@ -155,23 +155,25 @@ class Steep final : public problems::DensePhysics {
 };
 
 struct SteepOptions {
-  Real slope = 1;
+  Real slope = 1, start = 1;
 };
-void fields(SteepOptions& o, auto& field) { field("slope", o.slope, above(0), "s"); }
+void fields(SteepOptions& o, auto& field) {
+  field("slope", o.slope, above(0), "s");
+  field("start", o.start, above(0), "x at the start");
+}
 
 problems::ProblemParts make_steep(const SteepOptions& o, const Draw& draw) {
   problems::ProblemParts parts;
   parts.physics = std::make_unique<Steep>(o.slope);
-  parts.start = draw.start(Vector::Ones(1));
+  parts.start = draw.start(Vector::Constant(1, o.start));
   parts.target = Vector::Zero(1);
   parts.minimum = 0;
   return parts;
 }
 
-// A catalog in which adam's default, the lowest of its seven values, is not its best.
 Catalog with_steep() {
   Catalog all = builtin_catalog();
-  all.problems.add(problem_entry({.name = "steep"}, make_steep));
+  all.problems.add(problem_entry({.name = "steep", .title = "Steep"}, make_steep));
   return all;
 }
 
@@ -185,21 +187,23 @@ Json rows_of(const Catalog& all, const std::string& problem, const std::string& 
   return *tune(all, plan, folder.path(), {.jobs = 2}).rows;
 }
 
+// A step of adam is as long as its rate: of a million, the longest goes the farthest.
 TEST(Tuning, GoesOnBeyondAnEdgeThatIsBestAndMarksWhereItStops) {
-  const Catalog all = with_steep();
-  // One step of adam is as long as its rate: from about 1 the longest of all still is too short.
-  const Json far = rows_of(all, "steep[slope=1e-3]", "adam", 0 + 1);
-  ASSERT_EQ(far.size(), 1U);
-  const Json& values = far[0]["source"]["grid"]["rate"];
-  EXPECT_GE(values.size(), 7U);
-  EXPECT_LE(values.size(), 10U);
-  EXPECT_EQ(far[0]["source"]["score"].size(), values.size());
-  EXPECT_EQ(far[0]["source"]["best_of"].size(), values.size());
-  // Here 1/s² = 1e8 Cauchy's unit finds it at once: neither edge.
-  const Json near = rows_of(all, "steep[slope=1e-4]", "gd", 100);
-  EXPECT_FALSE(near[0]["source"].contains("edge"));
-  EXPECT_EQ(near[0]["source"]["grid"]["rate"].size(), 7U);
-  EXPECT_EQ(near[0]["options"]["rate"], 1e8);
+  const Json row = rows_of(with_steep(), "steep[start=1e6]", "adam", 1).at(0);
+  const Json& source = row["source"];
+  EXPECT_EQ(source["grid"]["rate"].size(), 10U);  // seven, and three beyond
+  EXPECT_EQ(row["options"]["rate"], source["grid"]["rate"][9]);
+  EXPECT_EQ(source["edge"], true);
+  EXPECT_EQ(source["score"].size(), 10U);
+  EXPECT_EQ(source["best_of"].size(), 10U);
+}
+
+// Cauchy's step, 1/s², solves it at once.
+TEST(Tuning, StopsAtSevenValuesWhereTheBestIsAmongThem) {
+  const Json row = rows_of(with_steep(), "steep[slope=1e-4]", "gd", 100).at(0);
+  EXPECT_EQ(row["source"]["grid"]["rate"].size(), 7U);
+  EXPECT_EQ(row["options"]["rate"], 1e8);
+  EXPECT_FALSE(row["source"].contains("edge"));
 }
 
 TEST(Tuning, LeavesOutWhatIsInapplicable) {
