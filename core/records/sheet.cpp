@@ -69,6 +69,7 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field("oracles", sheet.oracles);
   field("privileges", sheet.privileges);
   field("family", sheet.family);
+  field.optional("tunable", sheet.tunable);
   field("inverse", sheet.inverse);
   field("unknowns", sheet.unknowns);
   field("residuals", sheet.residuals);

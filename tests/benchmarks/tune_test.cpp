@@ -9,6 +9,7 @@
 
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/plan/suite.h"
+#include "benchmarks/run/sheets.h"
 #include "benchmarks/run/tuning_score.h"
 #include "benchmarks/run/used_rates.h"
 #include "core/json.h"
@@ -49,6 +50,15 @@ TEST(Tuning, OfEveryMethodIsOneNumberOfItsOwnAndOnlyLibrariesHaveNone) {
     EXPECT_NO_THROW(complete_optimizer(catalog(), name, with_value(*knob, {}, knob->standard)));
   }
   EXPECT_EQ(without, 15U);
+}
+
+TEST(Tuning, IsToldByTheSheetOfAMethod) {
+  const auto told = [](const std::string& name) {
+    const Sheet sheet = optimizer_sheet(catalog(), complete_optimizer(catalog(), name, {}));
+    return sheet_from_json(to_json(sheet)).tunable;
+  };
+  EXPECT_EQ(told("levenberg-marquardt"), "initial-damping");
+  EXPECT_EQ(told("ceres-lm"), "");
 }
 
 TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
