@@ -41,6 +41,8 @@ list(JOIN _lines "." _onednn)
 find_file(ISOLINE_OPENBLAS_CONFIG openblas_config.h REQUIRED)
 file(STRINGS ${ISOLINE_OPENBLAS_CONFIG} _lines REGEX "OPENBLAS_VERSION")
 string(REGEX MATCH "[0-9]+[0-9.]*" _openblas "${_lines}")
+file(SHA256 ${Isoline__random123_INCLUDE}/Random123/philox.h _philox)  # it names no version
+string(SUBSTRING ${_philox} 0 8 _philox)
 set(ISOLINE_LIBRARIES "Eigen ${Eigen3_VERSION}" "Ceres ${Ceres_VERSION}" "NLopt ${NLopt_VERSION}"
     "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}"
-    "oneDNN ${_onednn}" "OpenBLAS ${_openblas}")
+    "oneDNN ${_onednn}" "OpenBLAS ${_openblas}" "Random123 ${_philox}")

@@ -40,6 +40,12 @@ void write(VectorOut grid, Vector& own, auto execute) {
 
 }  // namespace
 
+std::string fourier_version() {
+  const std::string version = fftw_version;  // "fftw-3.3.10-sse2-avx"
+  const std::size_t begin = version.find('-') + 1;
+  return version.substr(begin, version.find('-', begin) - begin);
+}
+
 void DestroyPlan::operator()(fftw_plan_s* plan) const { fftw_destroy_plan(plan); }
 
 // FFTW counts dimensions from the slowest: columns first, rows last.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <source_location>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,15 @@
 
 namespace isoline {
 
-// Entry has a member `name`.
+// Entry has a member `name`, and may have `file`: the one that registers it.
 template <class Entry>
 class Registry {
  public:
   explicit Registry(std::string kind) : kind_(std::move(kind)) {}
 
-  void add(Entry entry) {
+  void add(Entry entry, const std::source_location& here = std::source_location::current()) {
     const std::string name = entry.name;
+    if constexpr (requires { entry.file = here.file_name(); }) entry.file = here.file_name();
     const bool is_new = entries_.emplace(name, std::move(entry)).second;
     require(is_new, [&] { return "the " + kind_ + " '" + name + "' is registered twice"; });
   }

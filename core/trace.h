@@ -9,6 +9,7 @@
 #include <limits>
 #include <string_view>
 
+#include "core/aim.h"
 #include "core/ladder.h"
 #include "core/oracle.h"
 #include "core/status.h"
@@ -33,7 +34,7 @@ struct TracePoint {
   static constexpr std::int64_t kWindows[2] = {64, 256};
 };
 
-// When the j-th target was first reached: f ≤ f_L + τ_j (f₀ − f_L).
+// When the j-th target was first reached: f ≤ f_L + τ_j s.
 struct TraceHit {
   std::int64_t iteration = -1, work = 0;  // iteration −1: never
   OracleCounts counts{};
@@ -68,7 +69,11 @@ struct Trace {
   // The last state known, kept up to date at every iteration; the final verdict when finished.
   TracePoint last;
   OracleCounts prices{};
+  Aim aim = Aim::loss;
   double minimum = std::numeric_limits<double>::quiet_NaN();  // f_L; nan where undeclared
+  double scale = std::numeric_limits<double>::quiet_NaN();  // s; nan where f_L is, or none is known
+  double x_scale = std::numeric_limits<double>::quiet_NaN();  // nan where no solution is known
+  double x_floor = 0;
   double start_loss = std::numeric_limits<double>::quiet_NaN();
   double best_loss = std::numeric_limits<double>::infinity();
   double start_x_error = std::numeric_limits<double>::quiet_NaN();

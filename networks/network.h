@@ -85,7 +85,7 @@ struct NetworkEntry {
   std::string source;  // author, year, equation
   std::string note = {};
   OptionTable options = {};
-  int revision = 1;  // raised when results change
+  std::string file = {};  // that registers it, as the registry saw it
   std::function<std::unique_ptr<Network>(const OptionValues& complete_options, const NetworkShape&)>
       make = {};
 };

@@ -33,15 +33,29 @@ Status Meter::begin(VectorRef theta) {
   measure(theta);
   trace_.start_loss = judged_.loss;
   trace_.start_x_error = trace_.last.x_error;
-  if (problem_.minimum() && std::isfinite(judged_.loss)) {
-    target_loss_ = *problem_.minimum() + budget_.target * (judged_.loss - *problem_.minimum());
-    next_target_ = kInfinity;
-  }
+  set_scales();
   observe(judged_.loss);
   keep_point();
   status_ = judge(theta);
   watch_.resume();
   return status_;
+}
+
+// s = min(f₀ − f_L, the problem's scale). Where x is sought, a target τ is one of its error: the
+// loss is quadratic in that, and is stopped at τ².
+void Meter::set_scales() {
+  trace_.x_scale = problem_.x_scale(judging());
+  trace_.x_floor = problem_.x_floor(judging());
+  if (!problem_.minimum()) return;
+  const Real descent = trace_.start_loss - trace_.minimum;
+  const Real own = problem_.loss_scale(judging());
+  const Real scale = std::isfinite(own) && own > 0 ? std::min(own, descent) : descent;
+  if (std::isnan(descent) || !std::isfinite(scale)) return;
+  trace_.scale = std::max(scale, 0.0);
+  const bool is_x_sought = trace_.aim == Aim::x;
+  target_loss_ =
+      target_at(is_x_sought ? budget_.target * std::abs(budget_.target) : budget_.target);
+  next_target_ = kInfinity;
 }
 
 void Meter::prepare() {
@@ -122,9 +136,7 @@ void Meter::finish(VectorRef theta, Status verdict) {
 // The loss and what surrounds it at θ, by the harness itself, charged to nobody.
 void Meter::measure(VectorRef theta) {
   judged_theta_ = theta;
-  const bool is_learned = problem_.is_learned();
-  const Batch& judging = is_learned ? validation_ : problem_.batch();
-  problem_.forward(theta, judging, judged_);
+  problem_.forward(theta, judging(), judged_);
   TracePoint& last = trace_.last;
   last.iteration = iteration_;
   last.counts = counts_;
@@ -132,8 +144,8 @@ void Meter::measure(VectorRef theta) {
   last.wall_seconds = watch_.seconds();
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
-  last.x_error = problem_.x_error(judged_.x(), judging);
-  last.gradient_norm = is_learned ? TracePoint::kAbsent : judged_gradient_norm();
+  last.x_error = problem_.x_error(judged_.x(), judging());
+  last.gradient_norm = problem_.is_learned() ? TracePoint::kAbsent : judged_gradient_norm();
   last.step_norm = (theta - previous_).norm();
   for (int i = 0; i < 2; ++i) {
     last.batch_loss[i] = batch_loss_.mean(TracePoint::kWindows[i]);

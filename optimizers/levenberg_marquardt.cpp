@@ -127,8 +127,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
                                          .note = "A rejected candidate is an iteration too.",
                                          .needs = {Oracle::forward, Oracle::jacobian},
                                          .is_input_scale_invariant = true,
-                                         .most_rank = 2048,
-                                         .revision = 2}));
+                                         .most_rank = 2048}));
 }
 
 }  // namespace isoline::optimizers

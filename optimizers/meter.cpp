@@ -29,6 +29,7 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
   trace_.prices = prices_;
   trace_.is_learned = problem.is_learned();
   set_text(trace_.series_names, fmt::format("{}", fmt::join(problem.series().names, "\n")));
+  trace_.aim = problem.aim();
   trace_.minimum = problem.minimum().value_or(std::nan(""));
   const bool is_small = problem.inputs() <= Trace::kInputs &&
                         problem.residuals() <= Trace::kOutputs && problem.samples() == 1;
@@ -73,10 +74,9 @@ void Meter::refuse(Oracle oracle) const {
 void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
 
 void Meter::reach(Real loss) {
-  const Real minimum = problem_.minimum().value_or(kNone);
+  if (!std::isfinite(loss)) return;
   while (targets_met_ < kRungs) {
-    const auto j = static_cast<std::size_t>(targets_met_);
-    next_target_ = minimum + rung(j) * (trace_.start_loss - minimum);
+    next_target_ = target_at(rung(static_cast<std::size_t>(targets_met_)));
     if (!(loss <= next_target_)) return;
     TraceHit& hit = trace_.hit[targets_met_++];
     hit.work = work_;

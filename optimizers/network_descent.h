@@ -18,6 +18,10 @@ class NetworkDescent {
       "gradient rule on the proxy loss; auto: gd[rate=1] for the identity network, else "
       "adam[rate=1e-3]";
 
+  // The rule that the option network-optimizer stands for, of an identity network or another.
+  static std::string rule_of(const std::string& option, bool has_identity_network);
+  static std::vector<std::string> inside(const OptionValues& options, bool is_learning);
+
   // `spec` names the rule, or is "auto". The registry outlives this.
   NetworkDescent(const OptimizerRegistry& registry, const std::string& spec);
   void start(const Meter& f);

@@ -178,7 +178,6 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .needs_same_samples = true,
           .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
           .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
-          .revision = m.is_luksans() ? 2 : 1,
           .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
             return std::make_unique<Nlopt>(algorithm,
                                            static_cast<Index>(options.number("memory", kMemory)));

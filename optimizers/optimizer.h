@@ -83,9 +83,12 @@ struct OptimizerEntry {
   Index most_unknowns = std::numeric_limits<Index>::max();
   Index most_rank = std::numeric_limits<Index>::max();
   OptionTable options = {};
-  int revision = 1;  // raised when results change
+  std::string file = {};  // that registers it, as the registry saw it
   // All it needs, where that depends on the options or the problem; `needs` is then the least.
   std::function<OracleSet(const OptionValues& options, const Problem&)> needs_for = {};
+  // Specs of the optimizers that step inside it, on a direct problem or where it learns.
+  std::function<std::vector<std::string>(const OptionValues& options, bool is_learning)> inside =
+      {};
   // Any further reason why this pair makes no sense; empty if it does.
   std::function<std::string(const OptionValues& options, const Problem&)> objection = {};
   std::function<std::unique_ptr<Optimizer>(const OptionValues& options, const OptimizerRegistry&)>

@@ -68,8 +68,8 @@ void register_rescaled(OptimizerRegistry& registry) {
                 .note = "by=truth has d = x − x*, as the published script does.",
                 .needs = {Oracle::forward, Oracle::network},
                 .options = option_table<Options>(),
-                .revision = 2,
                 .needs_for = needs_for,
+                .inside = NetworkDescent::inside,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Rescaled>(read_options<Options>(options), known);

@@ -52,8 +52,7 @@ void register_saddle_free_newton(OptimizerRegistry& registry) {
        .source = "Holl, Koltun, Thuerey (2022), published script; Dauphin et al. (2014)",
        .note = "S̄ is the geometric mean of |S|; directions without curvature stay.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
-       .most_unknowns = 2048,
-       .revision = 2}));
+       .most_unknowns = 2048}));
 }
 
 }  // namespace isoline::optimizers

@@ -122,8 +122,8 @@ void register_sip(OptimizerRegistry& registry) {
                 .needs = {Oracle::forward, Oracle::network},
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
-                .revision = 2,
                 .needs_for = needs_for,
+                .inside = NetworkDescent::inside,
                 .objection = objection,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {

@@ -97,6 +97,7 @@ void register_exponential(ProblemRegistry& registry) {
        .formula = "Pᵢ(x) = exp(xᵢ),  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
        .note = "Published as a learning problem; seed 0 takes the quantiles of its distribution.",
+       .aim = Aim::x,  // P is one to one
        .panels = {{.title = "Fig. 2: x inferred against x*", .kind = "scatter"},
                   {.title = "Error by decade of y*", .kind = "decades"}}},
       make_exponential));

@@ -90,6 +90,7 @@ void register_hig_toy(ProblemRegistry& registry) {
        .source = "Schnell, Holl, Thuerey (2022), section 3",
        .note = "The published batch, start and rates are unknown: 256 fixed samples of t and "
                "Glorot's start are ours.",
+       .aim = Aim::loss,  // a curve is fitted: nobody asks for an x
        .panels = {{.title = "Mean of the hidden neurons",
                    .kind = "series",
                    .quantity = "mean of the hidden neurons"},

@@ -14,7 +14,6 @@ ProblemParts learn(const Learning& options, const NetworkShape& shape, const Dra
   if (!parts.network) parts.network = make_network(options.network, shape);
   RandomStream stream = draw.stream("network");
   parts.start = parts.network->start(stream);
-  parts.minimum = 0;
   parts.samples.batch = options.batch;
   parts.samples.data = options.data;
   parts.samples.stream = [draw](std::string_view purpose) { return draw.stream(purpose); };

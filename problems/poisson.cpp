@@ -113,6 +113,7 @@ void register_poisson(ProblemRegistry& registry) {
            "so does mode=learn; the error of one instance is ‖x − x*‖. P is linear and inverted "
            "exactly, so what SIP aims at is x* itself: here SIP is, numerically, supervised "
            "training on exact labels.",
+       .aim = Aim::x,  // P is one to one
        .panels = {{.title = "Fig. 6b: learning curves", .kind = "curve"},
                   {.title = "Fig. 6a: one sample of the validation", .kind = "pictures"}}},
       make_poisson));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/product.h"
 #include "networks/identity.h"
@@ -12,7 +13,7 @@ namespace isoline::problems {
 using networks::Identity;
 
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
-  if (!parts_.network) parts_.network = std::make_unique<Identity>(parts_.start);
+  if (!parts_.network) parts_.network = std::make_unique<Identity>(parts_.start.drawn);
   if (!parts_.loss) parts_.loss = std::make_unique<HalfSquared>();
   if (is_learned())
     draw_batch(0, batch_);
@@ -26,6 +27,33 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
 
 Real Problem::x_error(BatchRef x, const Batch& batch) const {
   return parts_.x_error ? parts_.x_error(x, batch) : std::nan("");
+}
+
+// L at y = 0 where there is a signal y*, and at the standard start where there is none; f_L itself
+// where it is more than rounding beside that.
+Real Problem::loss_scale(const Batch& batch) const {
+  constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
+  if (parts_.scale) return *parts_.scale;
+  const Real least = parts_.minimum.value_or(0);
+  const bool has_signal = !batch.target.isZero(0);
+  if (has_signal) {
+    const Real silent = parts_.loss->value(Matrix::Zero(outputs(), batch.samples()), batch.target);
+    return least > kRounding * silent ? least : silent;
+  }
+  Point at;
+  forward(standard_start(), batch, at);
+  return least > kRounding * at.loss ? least : at.loss - least;
+}
+
+// ‖x*‖, as the distance of x = 0 from the nearest solution; where 0 is one, that of the standard
+// start.
+Real Problem::x_scale(const Batch& batch) const {
+  if (parts_.x_scale) return *parts_.x_scale;
+  const Real of_nothing = x_error(Matrix::Zero(inputs(), batch.samples()), batch);
+  if (of_nothing != 0) return of_nothing;
+  Point at;
+  forward(standard_start(), batch, at);
+  return x_error(at.x(), batch);
 }
 
 void Problem::draw_batch(std::int64_t step, Batch& out) const {
@@ -211,10 +239,10 @@ Vector near(const Vector& standard, StartScale scale, RandomStream& noise) {
          0.1 * standard.array().abs().max(least) * noise.normal_vector(standard.size()).array();
 }
 
-Vector Draw::start(const Vector& standard, StartScale scale) const {
+Start Draw::start(const Vector& standard, StartScale scale) const {
   if (is_published()) return standard;
   RandomStream noise = stream("start");
-  return near(standard, scale, noise);
+  return {near(standard, scale, noise), standard};
 }
 
 }  // namespace isoline::problems

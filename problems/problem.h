@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/aim.h"
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/random.h"
@@ -50,22 +51,37 @@ enum class StartScale { at_least_one, own };
 // standard + 0.1 s N(0, 1), s the scale of each component.
 Vector near(const Vector& standard, StartScale scale, RandomStream& noise);
 
+// θ₀ of a run, and the standard start that it was drawn around: it itself where nothing is drawn.
+struct Start {
+  Start() = default;
+  template <class Derived>
+  Start(const Eigen::MatrixBase<Derived>& theta) : drawn(theta), standard(drawn) {}
+  Start(Vector theta, Vector around) : drawn(std::move(theta)), standard(std::move(around)) {}
+
+  Vector drawn, standard;  // (n)
+};
+
 // What a problem is made of. A direct problem leaves network, input and samples empty; a learning
 // problem leaves target, input, context and truth empty, which `samples` draws.
 struct ProblemParts {
   std::unique_ptr<Physics> physics;
-  Vector start;  // θ₀, (n)
+  Start start;  // θ₀, (n)
   StartScale start_scale = StartScale::at_least_one;
   Matrix target;                     // y*, (m, B)
   std::unique_ptr<Network> network;  // identity where empty
   Matrix input;                      // what the network sees, (i, B)
   Matrix context;                    // c, (p, B)
   std::unique_ptr<Loss> loss;        // ½‖y − y*‖² where empty
+  Aim aim = Aim::loss;               // as its entry has it
   std::optional<Real> minimum;       // f_L, least loss attainable, where known
   Real minimum_error = 0;            // most that f_L may be off: of a published one, its last digit
+  std::optional<Real> scale;         // of L, for targets; found by Problem::loss_scale where empty
   std::optional<Matrix> truth;       // the x* that made y*, (k, B), where there is one
   // Distance from x to the nearest solution, the mean over samples, where solutions are known.
   std::function<Real(BatchRef x, const Batch& batch)> x_error;
+  std::optional<Real> x_scale;  // ‖x*‖, for targets in x; found by Problem::x_scale where empty
+  // The error in x that the data of these samples cannot better; 0 where empty.
+  std::function<Real(const Batch& batch)> x_floor;
   Samples samples = {};
   Index grid = 0;      // N where x and y are N×N grids, for pictures
   Series series = {};  // further quantities to be traced, at most four
@@ -79,16 +95,19 @@ class Problem {
  public:
   explicit Problem(ProblemParts parts);
 
-  Index unknowns() const { return parts_.start.size(); }       // n
-  Index inputs() const { return parts_.physics->inputs(); }    // k
-  Index outputs() const { return parts_.physics->outputs(); }  // m
-  Index samples() const { return batch_.samples(); }           // B
-  Index residuals() const { return batch_.target.size(); }     // m·B, rows of J
-  const Vector& start() const { return parts_.start; }
+  Index unknowns() const { return parts_.start.drawn.size(); }  // n
+  Index inputs() const { return parts_.physics->inputs(); }     // k
+  Index outputs() const { return parts_.physics->outputs(); }   // m
+  Index samples() const { return batch_.samples(); }            // B
+  Index residuals() const { return batch_.target.size(); }      // m·B, rows of J
+  const Vector& start() const { return parts_.start.drawn; }
+  const Vector& standard_start() const { return parts_.start.standard; }
   StartScale start_scale() const { return parts_.start_scale; }
   const Batch& batch() const { return batch_; }  // the only one, or the first of a learning problem
   const Matrix& target() const { return batch_.target; }
+  Aim aim() const { return parts_.aim; }
   std::optional<Real> minimum() const { return parts_.minimum; }
+  void set_minimum(Real loss) { parts_.minimum = loss; }  // the best known, where none is declared
   Real minimum_error() const { return parts_.minimum_error; }
   const std::optional<Matrix>& truth() const { return parts_.truth; }  // of a direct problem
   const auto& window() const { return parts_.window; }
@@ -104,6 +123,12 @@ class Problem {
   Inverse inverse_kind() const { return parts_.physics->inverse_kind(); }
   Real x_error(BatchRef x, const Batch& batch) const;  // nan where no solution is known
   Real x_error(BatchRef x) const { return x_error(x, batch_); }
+
+  // By what distances from f_L and from x* are called small, on the samples that judge. None hangs
+  // on the drawn start.
+  Real loss_scale(const Batch& batch) const;  // of L; not finite where L is not at any reference
+  Real x_scale(const Batch& batch) const;     // nan where no solution is known
+  Real x_floor(const Batch& batch) const { return parts_.x_floor ? parts_.x_floor(batch) : 0; }
 
   // Of a learning problem: the batch of a step, counted from 0, and the samples that judge it.
   void draw_batch(std::int64_t step, Batch& out) const;
@@ -151,7 +176,7 @@ class Draw {
   }
   // A start near the standard one; for seed 0 that itself. The scale goes with
   // ProblemParts::start_scale.
-  Vector start(const Vector& standard, StartScale scale = StartScale::at_least_one) const;
+  Start start(const Vector& standard, StartScale scale = StartScale::at_least_one) const;
 
  private:
   std::uint64_t seed_;
@@ -163,8 +188,9 @@ struct ProblemEntry {
   std::string formula;    // plain text with the mathematical letters of Unicode
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know
+  Aim aim = Aim::loss;    // what its user wants: a small loss, or the x that was sought
   OptionTable options = {};
-  int revision = 1;                // raised when results change
+  std::string file = {};           // that registers it, as the registry saw it
   std::vector<Panel> panels = {};  // figures to draw of its runs
   std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};
 };
@@ -174,8 +200,10 @@ using ProblemRegistry = Registry<ProblemEntry>;
 template <class Options>
 ProblemEntry problem_entry(ProblemEntry entry, ProblemParts (*make)(const Options&, const Draw&)) {
   entry.options = option_table<Options>();
-  entry.make = [make](const OptionValues& options, const Draw& draw) {
-    return Problem(make(read_options<Options>(options), draw));
+  entry.make = [make, aim = entry.aim](const OptionValues& options, const Draw& draw) {
+    ProblemParts parts = make(read_options<Options>(options), draw);
+    parts.aim = aim;
+    return Problem(std::move(parts));
   };
   return entry;
 }

@@ -54,7 +54,8 @@ void register_scaling(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "scaling",
                               .title = "One scaled coordinate",
                               .formula = "P(x) = (x₁, αx₂),  L = ½‖P(x)‖²",
-                              .source = "After Holl, Koltun, Thuerey (2022), Fig. 1"},
+                              .source = "After Holl, Koltun, Thuerey (2022), Fig. 1",
+                              .aim = Aim::x},  // P is one to one
                              make_scaling));
 }
 

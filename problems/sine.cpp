@@ -145,6 +145,7 @@ void register_sine(ProblemRegistry& registry) {
        .note = "form=code is what the published scripts compute; form=paper, (sin(γz₁)/ξ, γξz₂), "
                "is what the paper prints, its y₁* divided by ξ. Published as a learning problem; "
                "the start (6, 3)/γ, half-way to the corner of its landscape, is ours.",
+       .aim = Aim::loss,  // infinitely many x give y*, and any of them will do
        .panels = {{.title = "Fig. 5b: ξ = 1, φ = 45°",
                    .kind = "curve",
                    .where = {{"xi", 1}, {"phi", 45}}},

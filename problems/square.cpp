@@ -46,7 +46,8 @@ void register_square(ProblemRegistry& registry) {
                               .title = "One squared coordinate",
                               .formula = "P(x) = (x₁, x₂²),  L = ‖P(x)‖²",
                               .source = "Holl, Koltun, Thuerey (2022), Fig. 1",
-                              .note = "The loss has no factor ½, as in the published notebook."},
+                              .note = "The loss has no factor ½, as in the published notebook.",
+                              .aim = Aim::x},  // y* = 0 comes of x = 0 alone
                              make_square));
 }
 

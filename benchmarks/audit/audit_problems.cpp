@@ -33,7 +33,10 @@ class Affine final : public Link {
   static Matrix inverse_of(const Matrix& A) {
     if (A.size() == 1) return A.cwiseInverse();
     const Real determinant = A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0);
-    return Eigen::Matrix2d{{A(1, 1), -A(0, 1)}, {-A(1, 0), A(0, 0)}} / determinant;
+    Matrix inverse(2, 2);
+    inverse << A(1, 1), -A(0, 1), -A(1, 0), A(0, 0);
+    inverse /= determinant;
+    return inverse;
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "benchmarks/cli/notes.h"
 #include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
@@ -14,22 +15,6 @@
 
 namespace isoline::benchmarks {
 namespace {
-
-constexpr const char* kAbout =
-    "Isoline compares optimizers on physical inverse problems: every problem of a registry "
-    "against\n"
-    "every optimizer of a registry, one JSON record a run, and a report.";
-constexpr const char* kExamples =
-    "Examples:\n"
-    "  isoline run                        the default suite, then its report\n"
-    "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
-    "  isoline run quick --optimizer adam     the cells of a suite that have this optimizer\n"
-    "  isoline describe sip               formula, options, needs and source\n"
-    "  isoline check rosenbrock           are its derivatives right?\n"
-    "  isoline audit gd adam sip          scaling, invariance, order: measured\n"
-    "  isoline compare results/old results/new    what got worse?\n"
-    "  isoline claims notebook            is what the notebook prints reproduced?\n\n"
-    "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable.";
 
 const CLI::Range kJobs(1, 1024), kThreads(1, 256);
 
@@ -41,6 +26,19 @@ std::string to_bytes(std::string& text) {
   } catch (const CLI::ValidationError&) {
     return fmt::format("expected an amount such as 2GB, got '{}'", given);
   }
+}
+
+// An option or a flag of a verb. A function a type keeps CLI11's templates out of the verbs, where
+// they would be laid out anew at each call.
+template <class Value>
+[[gnu::noinline]] CLI::Option* option(CLI::App& verb, const char* name, Value& value,
+                                      const char* about) {
+  return verb.add_option(name, value, about);
+}
+
+[[gnu::noinline]] CLI::Option* flag(CLI::App& verb, const char* name, bool& value,
+                                    const char* about) {
+  return verb.add_flag(name, value, about);
 }
 
 template <class Arguments>
@@ -70,6 +68,7 @@ class CommandLine {
   void add_compare();
   void add_baseline();
   void add_merge();
+  void add_best();
   void add_claims();
   void add_list();
   void add_describe();
@@ -97,6 +96,7 @@ CommandLine::CommandLine(const std::string& program, Session& session)
   add_compare();
   add_baseline();
   add_merge();
+  add_best();
   add_claims();
   add_list();
   add_describe();
@@ -133,249 +133,228 @@ int CommandLine::run(int count, char** arguments) {
 void CommandLine::add_run() {
   const auto [verb, given] = add(
       "run", "Run a suite or a matrix of your own; what is done already is not repeated", run_verb);
-  verb.add_option("SUITE", given.suite,
-                  "Name of a suite, or path of one (default: quick); --problem and --optimizer "
-                  "keep its cells of these");
-  verb.add_option("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'");
-  verb.add_option("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'");
-  verb.add_option("--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
-  verb.add_option("--iterations", given.iterations, "Most iterations of a cell")
+  option(verb, "SUITE", given.suite,
+         "Name of a suite, or path of one (default: quick); --problem and --optimizer "
+         "keep its cells of these");
+  option(verb, "--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'");
+  option(verb, "--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'");
+  option(verb, "--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
+  option(verb, "--iterations", given.iterations, "Most iterations of a cell")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--work", given.work, "Most work of a cell, in forward solves")
+  option(verb, "--work", given.work, "Most work of a cell, in forward solves")
       ->check(CLI::PositiveNumber);
-  verb.add_option("--time", given.time, "Most time of a cell: 10s, 2m; twice that kills it");
-  verb.add_option("--target", given.target, "Stop at f_L + TARGET (f0 - f_L) (default: 1e-10)")
+  option(verb, "--time", given.time, "Most time of a cell: 10s, 2m; twice that kills it");
+  option(verb, "--target", given.target,
+         "Stop at f_L + TARGET s, s the scale of the loss; where x is sought, at "
+         "TARGET of its error (default: 1e-10)")
       ->check(CLI::Range(0.0, 1.0));
-  verb.add_option("--threads", given.threads, "Threads of the libraries within a cell")
+  option(verb, "--threads", given.threads, "Threads of the libraries within a cell")
       ->check(kThreads);
-  verb.add_option("--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
-  verb.add_flag("--exclusive", given.exclusive, "One at a time, for tables of wall time");
-  verb.add_option("--repeat", given.repeat, "Timings wanted of each cell")
+  option(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
+  flag(verb, "--exclusive", given.exclusive, "One at a time, for tables of wall time");
+  option(verb, "--repeat", given.repeat, "Timings wanted of each cell")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  verb.add_option("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)")
+  option(verb, "--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)")
       ->transform(CLI::Validator(to_bytes, ""));
-  verb.add_option("--rates", given.rates, "Table of tuned rates: builtin, none or a file")
+  option(verb, "--rates", given.rates, "Table of tuned rates: builtin, none or a file")
       ->capture_default_str();
-  verb.add_option("--out", given.out,
-                  "Result folder (default: results/SUITE; of a matrix of your own or a part of a "
-                  "suite, a name made of its cells, the same for the same plan)");
-  verb.add_flag("--force", given.force, "Repeat cells that are done");
+  option(verb, "--out", given.out,
+         "Result folder (default: results/SUITE; of a matrix of your own or a part of a "
+         "suite, a name made of its cells, the same for the same plan)");
+  flag(verb, "--force", given.force, "Repeat cells that are done");
+  flag(verb, "--reuse", given.reuse, "Keep cells that another build has done");
   CLI::Option* dry =
-      verb.add_flag("--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
-  verb.add_flag("--all", given.lists_all, "With --dry-run: every cell, not the first 20")
-      ->needs(dry);
-  verb.add_flag("--no-report", given.no_report, "Leave the report out");
-  verb.add_flag("--quiet", given.quiet, "Print failures only");
+      flag(verb, "--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
+  flag(verb, "--all", given.lists_all, "With --dry-run: every cell, not the first 20")->needs(dry);
+  flag(verb, "--no-report", given.no_report, "Leave the report out");
+  flag(verb, "--quiet", given.quiet, "Print failures only");
 }
 
 void CommandLine::add_report() {
   const std::string about = "Write " + format_names();
   const auto [verb, given] = add("report", about.c_str(), report_verb);
-  verb.add_option("DIR", given.folders, "Result folders of `isoline run`")->required();
-  verb.add_option("--out", given.out, "Where to write (default: report/ in the first DIR)");
+  option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
+  option(verb, "--out", given.out, "Where to write (default: report/ in the first DIR)");
   const std::vector<std::string> measures(reports::kMeasureNames.begin(),
                                           reports::kMeasureNames.end());
-  verb.add_option("--by", given.by, "What is counted, in orders, tables and plots")
+  option(verb, "--by", given.by, "What is counted, in orders, tables and plots")
       ->check(CLI::IsMember(measures))
       ->capture_default_str();
-  verb.add_option("--tolerance", given.tolerance,
-                  "What may be left of a loss, or of an error in x, to count as solved")
+  option(verb, "--tolerance", given.tolerance,
+         "What may be left of a loss, or of an error in x, to count as solved")
       ->check(CLI::Range(1e-10, 1.0))
       ->default_str("1e-6");
-  verb.footer(
-      "Results know 51 tolerances, five a decade from 1 to 1e-10: one between two of them counts as "
-      "the\n"
-      "next stricter one. Work is oracle calls at declared prices, which any machine repeats; cost "
-      "is\n"
-      "the same calls at measured prices. Times mean something of runs with --exclusive: others "
-      "are\n"
-      "marked ≈.");
+  verb.footer(kReportNotes);
 }
 
 void CommandLine::add_compare() {
   const auto [verb, given] =
       add("compare", "Tell what got worse between two results", compare_verb);
-  verb.add_option("BASE", given.before, "Result folder, baseline, or a report.json")->required();
-  verb.add_option("NEW", given.after, "Result folder, or a report.json")->required();
-  verb.add_option("--tolerance", given.tolerance,
-                  "Relative tolerance of figures (default: equal bit for bit)")
+  option(verb, "BASE", given.before, "Result folder, baseline, or a report.json")->required();
+  option(verb, "NEW", given.after, "Result folder, or a report.json")->required();
+  option(verb, "--tolerance", given.tolerance,
+         "Relative tolerance of figures (default: equal bit for bit)")
       ->check(CLI::Range(0.0, 1.0));
-  verb.add_option("--time-cells", given.timed,
-                  "Cells (digests, or their beginnings) whose time is judged, 20 at most")
+  option(verb, "--time-cells", given.timed,
+         "Cells (digests, or their beginnings) whose time is judged, 20 at most")
       ->delimiter(',');
-  verb.add_option("--noise", given.noise, "Least band of noise of times, relative (default: 0.1)")
+  option(verb, "--noise", given.noise, "Least band of noise of times, relative (default: 0.1)")
       ->check(CLI::Range(0.0, 10.0));
-  verb.add_flag("--common", given.is_common_only, "Let cells that only BASE has pass");
-  CLI::Option* json = verb.add_flag("--json", given.as_json, "As JSON");
-  verb.add_flag("--markdown", given.as_markdown, "As Markdown")->excludes(json);
-  verb.footer(
-      "Exit codes: 0 no worse and no better, 2 worse, 3 better only, 4 not comparable: another "
-      "build\n"
-      "or instruction set without --tolerance, or cells of BASE that NEW lacks without --common.\n"
-      "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
-      "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise "
-      "that\n"
-      "the repetitions show. Without --time-cells the 20 slowest such cells of BASE are judged.");
+  option(verb, "--allow", given.allowed,
+         "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
+  flag(verb, "--common", given.is_common_only, "Let NEW lack any cell of BASE");
+  option(verb, "--trend", given.trend,
+         "Folder of earlier baselines, whose headline figures are shown, by file name");
+  CLI::Option* json = flag(verb, "--json", given.as_json, "As JSON");
+  flag(verb, "--markdown", given.as_markdown, "As Markdown")->excludes(json);
+  verb.footer(kCompareNotes);
 }
 
 void CommandLine::add_baseline() {
   const auto [verb, given] = add(
       "baseline", "Keep what later results are compared with, as one small file", baseline_verb);
-  verb.add_option("RESULTS", given.folders, "Result folders of `isoline run`")->required();
-  verb.add_option("--out", given.out, "The file (default: standard output)");
-  verb.add_option("--perturbations", given.perturbations,
-                  "Runs of each cell from a start that differs in the last bit")
+  option(verb, "RESULTS", given.folders, "Result folders of `isoline run`")->required();
+  option(verb, "--out", given.out, "The file (default: standard output)");
+  option(verb, "--perturbations", given.perturbations,
+         "Runs of each cell from a start that differs in the last bit")
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
-  verb.add_option("--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
-  verb.footer(
-      "A line a cell: status, digest of the trace, final figures, work to 1e-1, 1e-3 and 1e-6.\n"
-      "Each cell is run again from starts that differ in the last bit. A cell whose figures then\n"
-      "move by more than the tolerance of a comparison is chaotic: it is judged by its status and\n"
-      "by which of 1e-1, 1e-3 and 1e-6 it reaches, so that rounding alone makes nothing worse.\n"
-      "Made by the portable preset it means the same on every x86-64-v3 machine:\n"
-      "  ISOLINE_PRESET=portable isoline run quick --out results/quick\n"
-      "  ISOLINE_PRESET=portable isoline baseline results/quick --out baseline.json\n"
-      "  isoline compare baseline.json results/quick");
+  option(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
+  verb.footer(kBaselineNotes);
 }
 
 void CommandLine::add_merge() {
   const auto [verb, given] = add("merge", "Unite result folders into a new one", merge_verb);
-  verb.add_option("DIR", given.folders, "Result folders of `isoline run`")->required();
-  verb.add_option("--out", given.out, "The new result folder")->required();
-  verb.footer(
-      "Records of the same cell and build become one with the timings of all. Where they differ "
-      "in\n"
-      "anything but timings and provenance the record is left out, the cell is named on standard\n"
-      "error, OUT/conflicts.json remembers it, and the exit code is 2; all else is written. To\n"
-      "resolve a conflict remove the wrong record, or --force its run, and merge again.");
+  option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
+  option(verb, "--out", given.out, "The new result folder")->required();
+  verb.footer(kMergeNotes);
+}
+
+void CommandLine::add_best() {
+  const auto [verb, given] =
+      add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
+  option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
+  option(verb, "--out", given.out, "Table of best losses; of two the lesser stays")
+      ->capture_default_str();
+  verb.footer(kBestNotes);
 }
 
 void CommandLine::add_claims() {
   const auto [verb, given] =
       add("claims", "Judge what papers claim, by runs; what is missing is run first", claims_verb);
-  verb.add_option("ID", given.names, "Claims, or groups of them (default: all)");
-  verb.add_option("--out", given.out, "Result folder that holds the runs")->capture_default_str();
-  verb.add_option("--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
-  verb.add_flag("--list", given.is_list, "List the claims, and do nothing");
-  verb.add_flag("--json", given.as_json, "As JSON");
-  verb.add_flag("--no-run", given.no_run, "Judge by the runs that are there");
-  verb.add_flag("--long", given.with_long, "Run also what takes hours");
-  verb.footer(
-      "A claim is reproduced where what is measured lies within the source's own error of "
-      "reading,\n"
-      "partly where only the direction holds. --out results/quick judges the runs of a suite.\n"
-      "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 none can be compared.");
+  option(verb, "ID", given.names, "Claims, or groups of them (default: all)");
+  option(verb, "--out", given.out, "Result folder that holds the runs")->capture_default_str();
+  option(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
+  flag(verb, "--list", given.is_list, "List the claims, and do nothing");
+  flag(verb, "--json", given.as_json, "As JSON");
+  flag(verb, "--no-run", given.no_run, "Judge by the runs that are there");
+  flag(verb, "--long", given.with_long, "Run also what takes hours");
+  verb.footer(kClaimsNotes);
 }
 
 void CommandLine::add_list() {
   const auto [verb, given] =
       add("list", "List the problems, networks, optimizers and suites", list_verb);
-  verb.add_option("KIND", given.kind, "problems, networks, optimizers, suites or all")
+  option(verb, "KIND", given.kind, "problems, networks, optimizers, suites or all")
       ->check(CLI::IsMember({"problems", "networks", "optimizers", "suites", "all"}))
       ->capture_default_str();
-  verb.add_flag("--json", given.as_json, "As JSON");
-  verb.add_flag("--names", given.names_only, "Names only, one a line");
+  flag(verb, "--json", given.as_json, "As JSON");
+  flag(verb, "--names", given.names_only, "Names only, one a line");
 }
 
 void CommandLine::add_describe() {
   const auto [verb, given] = add(
       "describe", "Tell the formula, options, needs and source of a problem, network or optimizer",
       describe_verb);
-  verb.add_option("NAME", given.name, "A name of `isoline list`, or a spec")->required();
-  verb.add_flag("--json", given.as_json, "As JSON");
+  option(verb, "NAME", given.name, "A name of `isoline list`, or a spec")->required();
+  flag(verb, "--json", given.as_json, "As JSON");
 }
 
 void CommandLine::add_check() {
   const auto [verb, given] =
       add("check", "Hold a problem's derivatives, adjoint and inverse to each other, with figures",
           check_verb);
-  verb.add_option("SPEC", given.spec, "Problems, as in `isoline run` (default: all)");
-  verb.add_option("--seed", given.seed, "Seed of the instance and of the directions")
+  option(verb, "SPEC", given.spec, "Problems, as in `isoline run` (default: all)");
+  option(verb, "--seed", given.seed, "Seed of the instance and of the directions")
       ->capture_default_str();
-  verb.add_flag("--json", given.as_json, "As JSON");
+  flag(verb, "--json", given.as_json, "As JSON");
 }
 
 void CommandLine::add_audit() {
   const auto [verb, given] =
       add("audit", "Measure optimizers' scaling, invariance, order, consistency and oracles",
           audit_verb);
-  verb.add_option("OPTIMIZER", given.names, "Names of optimizers (default: all)");
-  verb.add_option("--out", given.out, "Folder to write audit.json to, as reports read it");
-  verb.add_flag("--json", given.as_json, "As JSON");
+  option(verb, "OPTIMIZER", given.names, "Names of optimizers (default: all)");
+  option(verb, "--out", given.out, "Folder to write audit.json to, as reports read it");
+  flag(verb, "--json", given.as_json, "As JSON");
 }
 
 void CommandLine::add_validate() {
   const auto [verb, given] =
       add("validate", "Hold records, suites and every other JSON file of ours to its schema",
           validate_verb);
-  verb.add_option("PATH", given.paths, "Files, or folders to search for *.json")->required();
+  option(verb, "PATH", given.paths, "Files, or folders to search for *.json")->required();
 }
 
 void CommandLine::add_tune() {
   const auto [verb, given] =
       add("tune", "Choose a rate for each pair over a grid, on tuning seeds, with an equal budget",
           tune_verb);
-  verb.add_option("SPEC,--problem", given.problem,
-                  "Problems, as in `isoline run`: one of the two ways to name them is needed");
-  verb.add_option("--optimizer", given.optimizer,
-                  "Names of optimizers (default: sip and all of first order)");
-  verb.add_option("--grid", given.grid, "Option and its values: low..high x count")
+  option(verb, "SPEC,--problem", given.problem,
+         "Problems, as in `isoline run`: one of the two ways to name them is needed");
+  option(verb, "--optimizer", given.optimizer,
+         "Names of optimizers (default: sip and all of first order)");
+  option(verb, "--grid", given.grid, "Option and its values: low..high x count")
       ->capture_default_str();
-  verb.add_option("--unit", given.unit,
-                  "Unit of the grid: one, the problem's Cauchy step, or the published rate")
+  option(verb, "--unit", given.unit,
+         "Unit of the grid: one, the problem's Cauchy step, or the published rate")
       ->check(CLI::IsMember({"one", "cauchy", "published"}))
       ->capture_default_str();
-  verb.add_option("--tuning-seeds", given.seeds, "Seeds, apart from those that judge")
+  option(verb, "--tuning-seeds", given.seeds, "Seeds, apart from those that judge")
       ->capture_default_str();
-  verb.add_option("--work", given.work, "Most work of a run")
+  option(verb, "--work", given.work, "Most work of a run")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb.add_option("--iterations", given.iterations, "Most iterations of a run")
+  option(verb, "--iterations", given.iterations, "Most iterations of a run")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb.add_option("--jobs", given.jobs, "Runs at a time (default: one a core)")->check(kJobs);
-  verb.add_option("--out", given.folder, "Folder of the records")->capture_default_str();
-  verb.add_option("--table", given.table, "Table of rates to write or to add to");
+  option(verb, "--jobs", given.jobs, "Runs at a time (default: one a core)")->check(kJobs);
+  option(verb, "--out", given.folder, "Folder of the records")->capture_default_str();
+  option(verb, "--table", given.table, "Table of rates to write or to add to");
 }
 
 void CommandLine::add_train() {
   const auto [verb, given] =
       add("train", "Train a network on a learning problem and write it to a file", train_verb);
-  verb.add_option("PROBLEM", given.problem,
-                  "Problem: 'sine[xi=32]'; mode=learn goes without saying")
+  option(verb, "PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn goes without saying")
       ->required();
-  verb.add_option("--out", given.out, "Where to write it: .json, or any other name for raw numbers")
+  option(verb, "--out", given.out, "Where to write it: .json, or any other name for raw numbers")
       ->required();
-  verb.add_option("--optimizer", given.optimizer, "Training method")->capture_default_str();
-  verb.add_option("--iterations", given.iterations, "Steps of training")
+  option(verb, "--optimizer", given.optimizer, "Training method")->capture_default_str();
+  option(verb, "--iterations", given.iterations, "Steps of training")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb.add_option("--seed", given.seed, "Seed of the start and of the samples")
-      ->capture_default_str();
-  verb.add_option("--threads", given.threads, "Threads of the libraries")->check(kThreads);
-  verb.add_flag("--quiet", given.quiet, "No progress");
+  option(verb, "--seed", given.seed, "Seed of the start and of the samples")->capture_default_str();
+  option(verb, "--threads", given.threads, "Threads of the libraries")->check(kThreads);
+  flag(verb, "--quiet", given.quiet, "No progress");
 }
 
 void CommandLine::add_infer() {
   const auto [verb, given] =
       add("infer", "Apply a network that `isoline train` wrote to observations", infer_verb);
-  verb.add_option("NETWORK", given.network, "File of the trained network")->required();
-  verb.add_option("--input", given.input,
-                  "Observations, one a row: .npy of shape (samples, numbers) or (samples, N, N), "
-                  "or .csv")
+  option(verb, "NETWORK", given.network, "File of the trained network")->required();
+  option(verb, "--input", given.input,
+         "Observations, one a row: .npy of shape (samples, numbers) or (samples, N, N), "
+         "or .csv")
       ->required();
-  verb.add_option("--output", given.output, "Where to write the inferred x: .npy or .csv")
-      ->required();
+  option(verb, "--output", given.output, "Where to write the inferred x: .npy or .csv")->required();
 }
 
 void CommandLine::add_completion() {
   const auto [verb, given] =
       add("completion", "Print the completion script of a shell", completion_verb);
-  verb.add_option("SHELL", given.shell, "bash")
-      ->check(CLI::IsMember({"bash"}))
-      ->capture_default_str();
+  option(verb, "SHELL", given.shell, "bash")->check(CLI::IsMember({"bash"}))->capture_default_str();
   given.verbs = verbs();
 }
 

@@ -4,10 +4,12 @@
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
+#include "core/json.h"
 #include "reports/compare/gate.h"
 
 namespace isoline::benchmarks {
 
+using reports::allowed_from_json;
 using reports::compare_results;
 using reports::gate_json;
 using reports::gate_markdown;
@@ -24,10 +26,15 @@ int compare_verb(const CompareArguments& given, Session&) {
   GateOptions options{.timed = given.timed, .is_common_only = given.is_common_only};
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   if (given.noise >= 0) options.least_noise = given.noise;
+  if (!given.allowed.empty()) options.allowed = allowed_from_json(read_json(given.allowed));
+  if (!given.trend.empty()) options.earlier = given.trend;
   options.listener = on_terminal("reading records");
   const GateResult result = compare_results(given.before, given.after, options);
   const auto text = given.as_json ? gate_json : given.as_markdown ? gate_markdown : gate_terminal;
   fmt::print("{}", text(result));
+  const bool is_fault = result.exit_code == kWorse || result.exit_code == kNotComparable;
+  if (is_fault && (given.as_json || given.as_markdown))
+    fmt::print(stderr, "{}\n", result.verdict);  // the terminal's text ends with it
   return result.exit_code;
 }
 

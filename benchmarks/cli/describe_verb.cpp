@@ -70,14 +70,20 @@ void print(const NetworkEntry& network, const OptionValues& options, bool as_jso
   print_options(network.options, options);
 }
 
+const char* words_of(Aim aim) {
+  return aim == Aim::x ? "x: a run is solved where it finds the x that was sought"
+                       : "loss: a run is solved where its loss is small, whatever its x";
+}
+
 void print(const Sheet& sheet) {
   const bool is_problem = sheet.kind == "problem";
   fmt::print("{}: {} ({})\n\n  {}\n\nSource      {}\n", sheet.name, sheet.title, sheet.kind,
              sheet.formula, sheet.source);
   if (!sheet.note.empty()) fmt::print("Note        {}\n", sheet.note);
   if (is_problem)
-    fmt::print("Size        {} unknowns, {} residuals\nInverse     {}\n", sheet.unknowns,
-               sheet.residuals, sheet.inverse);
+    fmt::print("Size        {} unknowns, {} residuals\nInverse     {}\nAim         {}\n",
+               sheet.unknowns, sheet.residuals, sheet.inverse,
+               words_of(sheet.aim.value_or(Aim::loss)));
   else
     fmt::print("Family      {}\n", sheet.family);
   fmt::print("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", "));

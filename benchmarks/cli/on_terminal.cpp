@@ -28,11 +28,9 @@ void print_outcome(const Outcome& outcome, bool quiet) {
     fmt::print(stderr, "… and {} more\n", outcome.failures.size() - kMost);
   for (const std::string& name : outcome.conflicts)
     fmt::print(stderr, "{}: its repetition gave another result\n", name);
-  if (outcome.reused_from_other_commits > 0)
-    fmt::print(stderr,
-               "{} of the reused cells were run by another commit or a changed tree; --force "
-               "repeats them\n",
-               outcome.reused_from_other_commits);
+  if (outcome.reused_from_other_builds > 0)
+    fmt::print(stderr, "{} of the reused cells were run by another build\n",
+               outcome.reused_from_other_builds);
   if (quiet) return;
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)

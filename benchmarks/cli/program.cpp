@@ -7,7 +7,9 @@
 #include "benchmarks/cli/command_line.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
+#include "core/exit.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
 #include "core/threads.h"
@@ -28,16 +30,17 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
          const SourceTree& tree) {
   prepare_libraries(arguments);
   if (!tree.commit.empty()) set_program_tree(tree.commit, tree.is_dirty);
+  benchmarks::set_program_sources(tree.sources);
   const std::string program = std::filesystem::path(arguments[0]).filename().string();
   benchmarks::Session session(command_of(program, count, arguments), catalog);
   try {
     return benchmarks::parse_and_run(program, count, arguments, session);
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return benchmarks::kUsage;
+    return kUsage;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return benchmarks::kWorse;
+    return kWorse;
   }
 }
 

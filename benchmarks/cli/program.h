@@ -7,11 +7,11 @@
 //     return catalog;
 //   }
 //   int main(int count, char** arguments) {
-//     return isoline::main(count, arguments, with_mine, {kCommit, kDirty});
+//     return isoline::main(count, arguments, with_mine, {kCommit, kDirty, kSources});
 //   }
 //
-// kCommit and kDirty stand in "isoline_build_info.h", which CMake's isoline_names_commit(target)
-// writes at every build. Link Isoline::cli.
+// These three stand in "isoline_build_info.h", which CMake's isoline_names_commit(target) writes at
+// every build. Link Isoline::cli.
 #pragma once
 
 #include <functional>
@@ -22,10 +22,12 @@
 namespace isoline {
 
 // The repository that a program was built from, as its records name it; without a commit,
-// Isoline's own.
+// Isoline's own. `sources` are digests of its files, one a line: without them each build of the
+// program repeats the cells of the components that it brings.
 struct SourceTree {
   std::string commit;
   bool is_dirty = false;
+  std::string sources = {};
 };
 
 // The first call of a main(): it may replace the process once, to give the libraries their

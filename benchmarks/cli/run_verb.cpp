@@ -71,9 +71,10 @@ std::string fate_of(const PreviewedCell& cell) {
   return cell.why_inapplicable.empty() ? "run" : "inapplicable: " + cell.why_inapplicable;
 }
 
-void print_plan(const Undertaking& all, int jobs, bool lists_all, Session& session) {
+void print_plan(const Undertaking& all, int jobs, const RunArguments& given, Session& session) {
   constexpr std::size_t kMost = 20;
-  const std::vector<PreviewedCell> cells = preview(session.catalog(), all.requests, all.folder);
+  const std::vector<PreviewedCell> cells =
+      preview(session.catalog(), all.requests, all.folder, given.reuse);
   double seconds = 0;
   std::size_t cached = 0, inapplicable = 0;
   for (const PreviewedCell& cell : cells) {
@@ -85,7 +86,7 @@ void print_plan(const Undertaking& all, int jobs, bool lists_all, Session& sessi
              cells.size(), cached, inapplicable, cells.size() - cached - inapplicable,
              duration_text(seconds / jobs), jobs);
   fmt::print("result folder: {}\n", all.folder.string());
-  const std::size_t listed = lists_all ? cells.size() : std::min(kMost, cells.size());
+  const std::size_t listed = given.lists_all ? cells.size() : std::min(kMost, cells.size());
   for (std::size_t i = 0; i < listed; ++i) {
     const Request& request = *cells[i].request;
     fmt::print("{:28} {:44} seed {:<4} {}\n", request.problem.spec, request.optimizer.spec,
@@ -119,6 +120,7 @@ int run_verb(const RunArguments& given, Session& session) {
   const Undertaking all = undertaking_of(given, catalog);
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .force = given.force,
+                     .reuse = given.reuse,
                      .exclusive = given.exclusive,
                      .repeat = given.repeat,
                      .command = session.command()};
@@ -127,7 +129,7 @@ int run_verb(const RunArguments& given, Session& session) {
   if (!given.quiet) options.progress = Progress::style_of(STDERR_FILENO);
   if (given.is_dry) {
     require_sound(catalog, all.requests);
-    print_plan(all, options.jobs, given.lists_all, session);
+    print_plan(all, options.jobs, given, session);
     return kGood;
   }
   const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options);

@@ -5,12 +5,15 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/merge/contradictions.h"
 #include "benchmarks/plan/resources.h"
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/records/record.h"
 #include "core/records/schema.h"
 #include "core/threads.h"
 
@@ -28,20 +31,37 @@ const Schema* schema_of(const std::string& name) {
   return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
 }
 
-std::vector<std::string> violations_in(const fs::path& path) {
+// What is wrong with a file; and what it is known by, where it is a record.
+struct Examined {
+  std::vector<std::string> violations;
+  std::optional<RecordIdentity> identity;
+};
+
+Examined examined_record(const Json& record, const fs::path& path) {
+  Examined examined;
+  if (std::string violation = cell_violation(record); !violation.empty())
+    examined.violations.push_back(std::move(violation));
+  examined.identity = RecordIdentity{path, record.at("cell"), record.at("build")};
+  return examined;
+}
+
+Examined examined(const fs::path& path) {
   try {
     const Json document = read_json(path);
     if (document.is_object() && document.contains("$schema")) return {};  // a schema itself
     if (!document.is_object() || !document.contains("schema") || !document["schema"].is_string())
-      return {"it names no schema"};
+      return {{"it names no schema"}, {}};
     const auto claimed = document["schema"].get<std::string>();  // "isoline.run/1"
     const auto dot = claimed.find('.'), slash = claimed.find('/');
     const std::string name = claimed.substr(dot + 1, slash - dot - 1);
     const Schema* schema = schema_of(name);
-    if (schema == nullptr) return {fmt::format("unknown schema '{}'", claimed)};
-    return schema->violations(document);
+    if (schema == nullptr) return {{fmt::format("unknown schema '{}'", claimed)}, {}};
+    std::vector<std::string> violations = schema->violations(document);
+    const bool is_sound_record = violations.empty() && claimed == kRunSchema;
+    if (is_sound_record) return examined_record(document, path);
+    return {std::move(violations), {}};
   } catch (const UsageError& error) {
-    return {error.what()};
+    return {{error.what()}, {}};
   }
 }
 
@@ -64,19 +84,23 @@ std::vector<fs::path> files_under(const std::vector<std::string>& paths) {
 }  // namespace
 
 int validate_verb(const ValidateArguments& given, Session&) {
-  std::size_t wrong = 0;
   const std::vector<fs::path> files = files_under(given.paths);
-  std::vector<std::vector<std::string>> violations(files.size());
+  std::vector<Examined> all(files.size());
   share(
-      files.size(), [&](std::size_t i) { violations[i] = violations_in(files[i]); },
-      on_terminal("files"));
+      files.size(), [&](std::size_t i) { all[i] = examined(files[i]); }, on_terminal("files"));
+  std::map<fs::path, std::vector<std::string>> wrong;
+  std::vector<RecordIdentity> records;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    wrong += !violations[i].empty();
-    for (const std::string& violation : violations[i])
-      fmt::print("{}: {}\n", files[i].string(), violation);
+    if (!all[i].violations.empty()) wrong[files[i]] = std::move(all[i].violations);
+    if (all[i].identity) records.push_back(std::move(*all[i].identity));
   }
-  fmt::print("{} files, {} wrong\n", files.size(), wrong);
-  return wrong > 0 ? kWorse : kGood;
+  for (DoubleRecord& record : double_records(std::move(records)))
+    wrong[record.file].push_back(std::move(record.violation));
+  for (const auto& [file, violations] : wrong)
+    for (const std::string& violation : violations)
+      fmt::print("{}: {}\n", file.string(), violation);
+  fmt::print("{} files, {} wrong\n", files.size(), wrong.size());
+  return wrong.empty() ? kGood : kWorse;
 }
 
 }  // namespace isoline::benchmarks

@@ -6,20 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "core/exit.h"
+
 namespace isoline::benchmarks {
 
 class Session;
-
-// Exit codes of every verb.
-enum Exit { kGood = 0, kUsage = 1, kWorse = 2, kBetterOnly = 3, kNotComparable = 4 };
-inline constexpr int kInterrupted = 130;  // what a shell expects after Ctrl-C
 
 struct RunArguments {
   std::string suite, problem, optimizer, seeds, time, out, rates = "builtin";
   std::int64_t iterations = 0, work = 0, memory_bytes = 0;  // 0: as the suite or the runner has it
   double target = -1;                                       // −1: as the suite has it
   int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
-  bool force = false, is_dry = false, lists_all = false, exclusive = false;
+  bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
   bool no_report = false, quiet = false;
 };
 int run_verb(const RunArguments& given, Session& session);
@@ -35,6 +33,7 @@ struct CompareArguments {
   std::string before, after;
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
   std::vector<std::string> timed;
+  std::string allowed, trend;  // a list of cells that NEW may lack; a folder of earlier baselines
   bool is_common_only = false, as_markdown = false, as_json = false;
 };
 int compare_verb(const CompareArguments& given, Session& session);
@@ -51,6 +50,12 @@ struct MergeArguments {
   std::string out;
 };
 int merge_verb(const MergeArguments& given, Session& session);
+
+struct BestArguments {
+  std::vector<std::string> folders;
+  std::string out = "benchmarks/best.json";
+};
+int best_verb(const BestArguments& given, Session& session);
 
 struct ClaimArguments {
   std::vector<std::string> names;

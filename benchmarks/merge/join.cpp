@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <compare>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -18,14 +19,6 @@ namespace isoline::benchmarks {
 namespace {
 
 bool is_nondeterministic(const Json& record) { return record.at("nondeterministic").get<bool>(); }
-
-// All that two runs of one build must agree on.
-Json result_of(const Json& record) {
-  Json result = without_timings(record);
-  result.erase("provenance");
-  result.at("request").erase("rates");  // which file chose the options: they are in the cell
-  return result;
-}
 
 Json build_provenance(const Json& record) {
   Json provenance = record.at("provenance");
@@ -47,9 +40,10 @@ auto rank_of(const Json& record) {
 // Sorted; a value as often as in the list that has it most often.
 Json joined_timings(const Json& a, const Json& b) {
   std::vector<Real> left = reals_of(a), right = reals_of(b), both;
-  std::ranges::sort(left);
-  std::ranges::sort(right);
-  std::ranges::set_union(left, right, std::back_inserter(both));
+  const auto is_less = [](Real x, Real y) { return std::strong_order(x, y) < 0; };  // nan last
+  std::ranges::sort(left, is_less);
+  std::ranges::sort(right, is_less);
+  std::ranges::set_union(left, right, std::back_inserter(both), is_less);
   return json_numbers(both);
 }
 

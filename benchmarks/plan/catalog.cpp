@@ -1,18 +1,50 @@
 // The built-in catalog, and components completed from their names and options.
 #include "benchmarks/plan/catalog.h"
 
+#include "benchmarks/plan/best.h"
+#include "benchmarks/plan/build_parts.h"
+#include "core/digest.h"
+
 namespace isoline::benchmarks {
 namespace {
+
+// All that is given, even where it is the default.
+std::string asked_spec(const OptionTable& table, const std::string& name, const OptionValues& given,
+                       const OptionValues& complete) {
+  OptionTable asked;
+  for (const OptionField& field : table) {
+    const bool is_given =
+        given.contains(field.name) || (field.name == "rate" && given.contains("lr"));
+    if (!is_given) continue;
+    asked.push_back(field);
+    // A default of another type equals no value, and what differs from its default is written.
+    const bool is_flag = std::holds_alternative<bool>(field.standard);
+    asked.back().standard = is_flag ? OptionValue(Index{0}) : OptionValue(false);
+  }
+  return short_spec(asked, name, complete);
+}
 
 template <class Entry>
 Component complete(const Entry& entry, const OptionValues& given) {
   OptionValues options = complete_options(entry.options, entry.name, given);
   Component component{.name = entry.name,
                       .spec = short_spec(entry.options, entry.name, options),
-                      .revision = entry.revision,
-                      .is_learned = asks_to_learn(options)};
+                      .asked = asked_spec(entry.options, entry.name, given, options),
+                      .is_learned = asks_to_learn(options),
+                      .sources = source_digest(entry.file)};
   component.options = std::move(options);
   return component;
+}
+
+// Of a method and what steps inside it.
+std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
+                      const OptionValues& options, bool is_learning) {
+  const std::string own = source_digest(entry.file);
+  if (!entry.inside) return own;
+  std::string all = own;
+  for (const std::string& spec : entry.inside(options, is_learning))
+    all += source_digest(catalog.optimizers.at(parse_spec(spec).name).file);
+  return digest(all);
 }
 
 }  // namespace
@@ -28,11 +60,11 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
                            const OptionValues& options) {
   Component problem = complete(catalog.problems.at(name), options);
   if (problem.is_learned) {
-    constexpr int kNetworkRevisions = 1000;  // more than any network will have
     const std::string network = parse_spec(problem.options.text("network")).name;
-    problem.revision =
-        problem.revision * kNetworkRevisions + networks::network_registry().at(network).revision;
+    problem.learning_sources = source_digest(networks::network_registry().at(network).file);
   }
+  const std::string best = BestLosses::builtin().text_of(problem);
+  if (!best.empty()) problem.sources = digest(problem.sources + best);
   return problem;
 }
 
@@ -41,6 +73,8 @@ Component complete_optimizer(const Catalog& catalog, const std::string& name,
   const OptimizerEntry& entry = catalog.optimizers.at(name);
   Component optimizer = complete(entry, options);
   entry.make(optimizer.options, catalog.optimizers);  // refuses a bad optimizer inside another
+  optimizer.sources = digest_of(catalog, entry, optimizer.options, false);
+  optimizer.learning_sources = digest_of(catalog, entry, optimizer.options, true);
   return optimizer;
 }
 
@@ -54,7 +88,15 @@ Component complete_optimizer(const Catalog& catalog, const Spec& spec) {
 
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
   const ProblemEntry& entry = catalog.problems.at(problem.name);
-  return entry.make(problem.options, Draw(seed, problem.name));
+  Problem made = entry.make(problem.options, Draw(seed, problem.name));
+  const std::optional<Real> best = BestLosses::builtin().find(problem, seed);
+  if (best && !made.minimum()) made.set_minimum(*best);
+  return made;
+}
+
+bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed) {
+  const ProblemEntry& entry = catalog.problems.at(problem.name);
+  return entry.make(problem.options, Draw(seed, problem.name)).minimum().has_value();
 }
 
 }  // namespace isoline::benchmarks

@@ -1,4 +1,4 @@
-// The suites, rates, claims and schemas of the tree, built into the program.
+// The suites, rates, claims, schemas and best losses of the tree, built into the program.
 #pragma once
 
 #include <map>
@@ -12,5 +12,7 @@ const std::map<std::string, std::string_view>& builtin_suites();
 const std::map<std::string, std::string_view>& builtin_rates();
 const std::map<std::string, std::string_view>& builtin_claims();
 const std::map<std::string, std::string_view>& builtin_schemas();
+
+std::string_view embedded_best();  // benchmarks/best.json
 
 }  // namespace isoline::benchmarks

@@ -101,7 +101,9 @@ void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates&
 Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
   OptionValues options = row ? row->options : OptionValues();
   for (const auto& [key, value] : options_of(spec)) options.set(key == "lr" ? "rate" : key, value);
-  return complete_optimizer(catalog, spec.name, options);
+  Component optimizer = complete_optimizer(catalog, spec.name, options);
+  optimizer.asked = complete_optimizer(catalog, spec).asked;
+  return optimizer;
 }
 
 Suite suite_from_json(const Json& json, const std::string& origin) {

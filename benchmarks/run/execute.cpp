@@ -9,6 +9,7 @@
 #include <new>
 #include <sstream>
 
+#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/perturbation.h"
 #include "core/ladder.h"
 #include "core/records/provenance.h"
@@ -154,11 +155,34 @@ Summary summary_of(const Trace& trace) {
           .peak_memory_bytes = trace.peak_memory_bytes};
 }
 
-// f ≤ f_L + τ (f₀ − f_L) at the returned point; a run that broke off returned none.
+bool has_returned(const Trace& trace) { return !is_failure(trace.status) && trace.points > 0; }
+
+// f ≤ f_L + τ s at the returned point; a run that broke off returned none.
 std::optional<bool> is_verified(const Trace& trace, Real tau) {
   if (std::isnan(trace.minimum)) return std::nullopt;
-  if (is_failure(trace.status) || trace.points == 0) return false;
-  return trace.last.loss <= trace.minimum + tau * (trace.start_loss - trace.minimum);
+  return has_returned(trace) && std::isfinite(trace.last.loss) &&
+         trace.last.loss <= trace.minimum + tau * trace.scale;
+}
+
+std::optional<bool> is_found(const Trace& trace, Real tau) {
+  if (std::isnan(trace.x_scale)) return std::nullopt;
+  return has_returned(trace) && trace.last.x_error <= x_goal(tau, trace.x_scale, trace.x_floor);
+}
+
+// What the run is judged by, and how it fared.
+void add_verdicts(const Trace& trace, Record& record) {
+  const auto known = [](Real value) {
+    return std::isnan(value) ? std::nullopt : std::optional(value);
+  };
+  record.aim = trace.aim;
+  record.minimum = known(trace.minimum);
+  record.scale = known(trace.scale);
+  record.x_scale = known(trace.x_scale);
+  record.x_floor = trace.x_floor;
+  for (const auto& [name, tau] : kVerified) {
+    record.verified[name] = is_verified(trace, tau);
+    record.found[name] = is_found(trace, tau);
+  }
 }
 
 }  // namespace
@@ -200,12 +224,12 @@ Record record_of(const Request& request, const Trace& trace) {
   record.request = request;
   require(!request.cell.empty(), "a request is run without the name of its cell");
   record.cell = request.cell;
-  record.build = build_digest(request.problem.revision, request.optimizer.revision);
+  record.build = build_digest(request);
+  record.build_parts = build_parts(request);
   record.status = trace.status;
   record.message = trace.message;
   record.claimed = trace.claimed;
-  if (!std::isnan(trace.minimum)) record.minimum = trace.minimum;
-  for (const auto& [name, tau] : kVerified) record.verified[name] = is_verified(trace, tau);
+  add_verdicts(trace, record);
   record.counts = trace.last.counts;
   record.prices = trace.prices;
   record.summary = summary_of(trace);

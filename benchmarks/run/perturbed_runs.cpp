@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
+#include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
-#include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -43,11 +43,11 @@ Request request_again(const Catalog& catalog, const Record& record) {
   request.problem = complete_problem(catalog, request.problem.name, request.problem.options);
   request.optimizer =
       complete_optimizer(catalog, request.optimizer.name, request.optimizer.options);
+  request.problem.asked = record.request.problem.asked;
+  request.optimizer.asked = record.request.optimizer.asked;
   constexpr double kLongest = 600;  // seconds: the record has ended without a clock before
   request.hard_seconds = kLongest;
-  const bool is_same =
-      cell_digest(request) == record.cell &&
-      build_digest(request.problem.revision, request.optimizer.revision) == record.build;
+  const bool is_same = cell_digest(request) == record.cell && build_digest(request) == record.build;
   require(is_same, [&] {
     return title() +
            ": its record is of another build; run it by this one (isoline run), or keep "

@@ -73,17 +73,18 @@ double estimate(const Catalog& catalog, const Request& request, const Probe& pro
 }  // namespace
 
 std::vector<PreviewedCell> preview(const Catalog& catalog, const std::vector<Request>& requests,
-                                   const std::filesystem::path& folder) {
+                                   const std::filesystem::path& folder, bool reuse) {
   std::map<std::string, std::vector<const Request*>> by_problem;
   for (const Request& request : requests) by_problem[request.problem.spec].push_back(&request);
   std::map<std::string, Probe> probes;
   for (const auto& [spec, some] : by_problem) probes[spec] = isolated_probe(catalog, some);
+  const RecordsOfAnyBuild earlier(folder);
   std::vector<PreviewedCell> cells;
   for (const Request& request : requests) {
     const Probe& probed = probes.at(request.problem.spec);
     const auto reason = probed.reasons.find(request.optimizer.spec);
     PreviewedCell cell{.request = &request};
-    cell.is_cached = Store::find_in(folder, request).has_value();
+    cell.is_cached = Store::find_in(folder, request) || (reuse && earlier.find(request));
     if (reason != probed.reasons.end()) cell.why_inapplicable = reason->second;
     if (!cell.is_cached && cell.why_inapplicable.empty())
       cell.seconds = estimate(catalog, request, probed);

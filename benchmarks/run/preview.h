@@ -17,8 +17,9 @@ struct PreviewedCell {
   double seconds = 0;            // estimate, where it would run
 };
 
-// Looks into result folders without touching them. Problems are made in processes of their own.
+// Looks into result folders without touching them; with `reuse` a cell that another build has done
+// is cached too. Problems are made in processes of their own.
 std::vector<PreviewedCell> preview(const Catalog& catalog, const std::vector<Request>& requests,
-                                   const std::filesystem::path& folder);
+                                   const std::filesystem::path& folder, bool reuse = false);
 
 }  // namespace isoline::benchmarks

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "benchmarks/plan/build_parts.h"
 #include "core/clock.h"
 #include "core/records/provenance.h"
 
@@ -157,7 +158,9 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   return measured;
 }
 
-std::string prices_build(int problem_revision) { return build_digest(problem_revision, 0); }
+std::string prices_build(const Component& problem) {
+  return build_digest({.problem = problem, .optimizer = {}});
+}
 
 bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build) {
   return prices && prices->build == build && prices->processor == this_build()->processor;

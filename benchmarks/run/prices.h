@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/records/request.h"
 #include "core/records/sheet.h"
 #include "problems/problem.h"
 
@@ -17,7 +18,7 @@ using problems::Problem;
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 
 // Whose prices these are: they hold for one build on one processor.
-std::string prices_build(int problem_revision);
+std::string prices_build(const Component& problem);
 bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build);
 
 }  // namespace isoline::benchmarks

@@ -86,7 +86,10 @@ class Runner {
   // One entry a run that is wanted: a cell that is to be timed anew stands in it as often.
   std::vector<const Request*> find_pending(const std::vector<Request>& requests) {
     std::vector<std::pair<std::size_t, const Request*>> rounds;
+    std::optional<RecordsOfAnyBuild> earlier;  // times of two builds make no list
+    if (options_.reuse && !options_.force && options_.repeat == 1) earlier.emplace(store_.folder());
     for (const Request& request : requests) {
+      if (earlier && is_reused(request, *earlier)) continue;
       std::optional<Record> done = store_.find(request);
       if (options_.force) done.reset();
       const std::size_t have = done ? done->repeat_wall_seconds.size() : 0;
@@ -95,9 +98,6 @@ class Runner {
       if (done && (have >= wanted || is_failure(done->status))) {
         ++outcome_.reused;
         count(*done);
-        const Build& origin = *done->provenance.build;
-        outcome_.reused_from_other_commits +=
-            origin.is_dirty.value_or(true) || origin.commit != this_build()->commit;
         continue;
       }
       for (std::size_t i = have; i < wanted; ++i) rounds.emplace_back(i - have, &request);
@@ -107,6 +107,16 @@ class Runner {
     std::vector<const Request*> pending;
     for (const auto& [round, request] : rounds) pending.push_back(request);
     return pending;
+  }
+
+  bool is_reused(const Request& request, const RecordsOfAnyBuild& earlier) {
+    if (store_.find(request)) return false;  // by this build
+    const std::optional<Record> done = earlier.find(request);
+    if (!done) return false;
+    ++outcome_.reused;
+    ++outcome_.reused_from_other_builds;
+    count(*done);
+    return true;
   }
 
   std::size_t start_some(const std::vector<const Request*>& pending, std::size_t next,

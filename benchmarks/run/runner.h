@@ -15,6 +15,7 @@ namespace isoline::benchmarks {
 struct RunOptions {
   int jobs = 1;
   bool force = false;      // repeat cells that are done
+  bool reuse = false;      // a cell that another build has done counts as done
   bool exclusive = false;  // one at a time, for tables of wall time
   int repeat = 1;          // timings wanted of each cell
   Limits limits;
@@ -29,7 +30,7 @@ struct Outcome {
   std::map<Status, std::int64_t> statuses;  // of all planned cells that have a record
   std::vector<std::string> failures;        // "problem × optimizer, seed 0: crashed: …"
   std::vector<std::string> conflicts;       // cells whose repetition gave another result
-  std::int64_t reused_from_other_commits = 0;
+  std::int64_t reused_from_other_builds = 0;
   bool is_interrupted = false;
 };
 

@@ -128,6 +128,7 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
               .inverse = kInverseNames[static_cast<int>(problem.inverse_kind())],
               .unknowns = problem.unknowns(),
               .residuals = problem.residuals(),
+              .aim = entry.aim,
               .target = small(problem.target())};
   sheet.panels = entry.panels;
   sheet.condition = condition_of(problem);
@@ -169,7 +170,7 @@ std::optional<MeasuredPrices> stored_prices(const std::filesystem::path& file) {
 // its own: what goes wrong in measuring does not cost the sheet.
 std::optional<MeasuredPrices> prices_of(const Catalog& catalog, const Component& component,
                                         const std::filesystem::path& file) {
-  const std::string build = prices_build(component.revision);
+  const std::string build = prices_build(component);
   auto stored = stored_prices(file);
   if (are_ours(stored, build)) return stored;
   const auto measured = [&] {

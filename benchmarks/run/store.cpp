@@ -12,10 +12,10 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
@@ -27,8 +27,7 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
 }
 
 std::string file_name_of(const Request& request) {
-  return record_file_name(request.cell,
-                          build_digest(request.problem.revision, request.optimizer.revision));
+  return record_file_name(request.cell, build_digest(request));
 }
 
 // A file half written by a process that was killed: its name ends in ".PID.tmp".
@@ -91,6 +90,32 @@ std::optional<Record> Store::find_in(const fs::path& folder, const Request& requ
   } catch (const UsageError&) {
     return std::nullopt;  // damaged: the cell is run again and the file replaced
   }
+}
+
+RecordsOfAnyBuild::RecordsOfAnyBuild(const fs::path& folder) {
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder / "runs", missing)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() == ".json")
+      paths_[name.substr(0, name.find('-'))].push_back(entry);
+  }
+}
+
+std::optional<Record> RecordsOfAnyBuild::find(const Request& request) const {
+  const auto paths = paths_.find(request.cell);
+  if (paths == paths_.end()) return std::nullopt;
+  std::optional<Record> newest;
+  for (const fs::path& path : paths->second) {
+    try {
+      Record record = read_record(path);
+      if (is_failure(record.status) || record.is_nondeterministic) continue;
+      if (!newest || newest->provenance.run.started < record.provenance.run.started)
+        newest = std::move(record);
+    } catch (const UsageError&) {
+      continue;  // damaged
+    }
+  }
+  return newest;
 }
 
 void Store::write(Record record, const std::optional<Record>& earlier) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -38,6 +39,18 @@ class Store {
 
  private:
   std::filesystem::path folder_;
+};
+
+// What a folder holds of a request, whichever build wrote it.
+class RecordsOfAnyBuild {
+ public:
+  explicit RecordsOfAnyBuild(const std::filesystem::path& folder);  // which need not be there
+
+  // The newest one: none that failed or that a clock or a kill ended.
+  std::optional<Record> find(const Request& request) const;
+
+ private:
+  std::map<std::string, std::vector<std::filesystem::path>> paths_;  // by cell
 };
 
 }  // namespace isoline::benchmarks

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "core/digest.h"
+#include "core/fourier.h"
 #include "core/processor.h"
 #include "core/records/provenance_fields.h"
 #include "core/threads.h"
@@ -19,8 +20,6 @@
 
 namespace isoline {
 namespace {
-
-constexpr int kHarnessRevision = 1;  // raised when the run loop or the meter changes results
 
 // Set by a program built elsewhere, before its build is read.
 struct Tree {
@@ -64,6 +63,7 @@ std::map<std::string, std::string> libraries() {
   for (std::string library; std::getline(list, library, ';');)
     versions[library.substr(0, library.find(' '))] = library.substr(library.find(' ') + 1);
   versions["OpenBLAS"] += " " + library_kernel().name;
+  versions["FFTW"] = fourier_version();
   return versions;
 }
 
@@ -146,13 +146,18 @@ void set_program_tree(std::string commit, bool is_dirty) {
   program_tree() = {std::move(commit), is_dirty};
 }
 
-std::string build_digest(int problem_revision, int optimizer_revision) {
-  const Build& build = *this_build();
-  const Json libraries(build.libraries);
-  const CacheSizes caches = cache_sizes();
-  return digest(fmt::format("{} {} {} {} {} {} {} {}", kHarnessRevision, problem_revision,
-                            optimizer_revision, libraries.dump(), build.instruction_set, caches.l1,
-                            caches.l2, caches.l3));
+const std::string& platform_digest() {
+  static const std::string found = [] {
+    const Build& build = *this_build();
+    const CacheSizes caches = cache_sizes();
+    std::string text =
+        fmt::format("{} {} {} {} {} {} {}", build.compiler, build.build_type, build.flags,
+                    build.instruction_set, caches.l1, caches.l2, caches.l3);
+    for (const char* name : {"Ceres", "NLopt", "Eigen", "OpenBLAS", "FFTW", "oneDNN", "Random123"})
+      text += fmt::format(" {} {}", name, build.libraries.at(name));
+    return digest(text);
+  }();
+  return found;
 }
 
 }  // namespace isoline

@@ -66,8 +66,8 @@ const std::shared_ptr<const Build>& this_build();
 // and Isoline's stands beside it.
 void set_program_tree(std::string commit, bool is_dirty);
 
-// Digest of all that may change a result besides the request: the revisions of the harness and of
-// the two components, the versions and kernels of the libraries, the instruction set, the caches.
-std::string build_digest(int problem_revision, int optimizer_revision);
+// Digest of the platform: compiler, flags, instruction set, kernels, caches, and the libraries that
+// compute.
+const std::string& platform_digest();
 
 }  // namespace isoline

@@ -41,6 +41,16 @@ Json run_schema() {
   return schema;
 }
 
+Json result_of(const Json& record) {
+  Json result = without_timings(record);
+  result.erase("provenance");
+  Json& request = result.at("request");
+  request.erase(
+      "rates");  // which file chose the options, and how they were typed: the cell has them
+  for (const char* component : {"problem", "optimizer"}) request.at(component).erase("asked");
+  return result;
+}
+
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive

@@ -55,6 +55,7 @@ inline std::string record_file_name(const std::string& cell, const std::string& 
 
 struct Record {
   std::string cell, build;  // digests
+  BuildParts build_parts;   // digests of what `build` is of; older records lack them
   Request request;
   Status status = Status::running;
   std::string message;
@@ -90,6 +91,9 @@ Record record_from_text(const std::string& text, const std::string& origin);
 Record read_record(const std::filesystem::path& path);
 
 Json run_schema();  // what benchmarks/schemas/run.json holds
+
+// All of a record that two runs of one build must agree on.
+Json result_of(const Json& record);
 
 // The record without what may differ between two runs of one build: times, memory, concurrency.
 Json without_timings(Json record);

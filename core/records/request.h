@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -17,9 +18,13 @@ using Json = nlohmann::json;
 struct Component {
   std::string name;
   OptionValues options;
-  std::string spec;  // "sine[xi=32]": the name and what differs from the defaults
-  int revision = 1;
+  std::string spec;         // "sine[xi=32]": the name and what differs from the defaults
+  std::string asked;        // the spec as typed, defaults and rates unfilled; old records: empty
+  int revision = 0;         // of older records, which were kept apart by it
   bool is_learned = false;  // a problem over a distribution of y*, solved by a network
+  // Digests of what computes it, not in the record's request; the second where it learns: of a
+  // problem its network's, of an optimizer its own and those of what steps inside it.
+  std::string sources = {}, learning_sources = {};
 };
 
 // Whether complete options ask for the learning problem. The one place that says how.
@@ -36,6 +41,10 @@ struct Request {
 };
 
 std::string cell_digest(const Request& request);
+
+// Digests of all that may change a result besides the request, by part: platform, harness, problem,
+// optimizer, network.
+using BuildParts = std::map<std::string, std::string>;
 Request named(Request request);  // with its cell
 
 Json to_json(const Request& request);

@@ -10,7 +10,8 @@ void fields(Like<Component> auto& component, auto& field) {
   field("name", component.name);
   field("options", component.options);
   field("spec", component.spec);
-  field("revision", component.revision);
+  field.optional("asked", component.asked, R"({"description": "The spec as typed"})");
+  field.optional("revision", component.revision, R"({"description": "Of older records"})");
   if constexpr (std::remove_cvref_t<decltype(field)>::kReads)
     component.is_learned = asks_to_learn(component.options);
 }

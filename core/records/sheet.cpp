@@ -71,6 +71,7 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field("inverse", sheet.inverse);
   field("unknowns", sheet.unknowns);
   field("residuals", sheet.residuals);
+  field.optional("aim", sheet.aim);
   field.optional("condition", sheet.condition);
   field("target", sheet.target);
   field("truth", sheet.truth);

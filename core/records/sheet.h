@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/aim.h"
 #include "core/grid.h"
 #include "core/records/panel.h"
 
@@ -52,6 +53,7 @@ struct Sheet {
   std::string family;                   // of an optimizer
   std::string inverse;                  // of a problem: none, exact, damped or estimate
   Index unknowns = 0, residuals = 0;    // of a problem
+  std::optional<Aim> aim;               // of a problem: what its user wants
   // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the solution,
   // or at the start where none is known; infinite where J lacks rank.
   std::optional<Real> condition;

@@ -1,43 +1,106 @@
-// Writes what a gate remembers of a study, and reads it back as subjects of a comparison.
+// Writes what a gate remembers of a study. What many cells share stands in tables at the top, and a
+// cell names its rows.
 #include "reports/compare/baseline.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/errors.h"
 #include "core/json.h"
+#include "core/option_json.h"
 #include "reports/compare/chaos.h"
 
 namespace isoline::reports {
 namespace {
 
-Json work_json(const Record& record, const BestKnown& best) {
-  Run run{.record = &record};
-  fill_reached(run, best);
-  return json_numbers(run.reached_loss[Measure::work]);
+// Rows once each, in the order of their first use.
+class Rows {
+ public:
+  std::size_t place(const Json& row) {
+    const auto [at, is_new] = places_.emplace(row.dump(), rows_.size());
+    if (is_new) rows_.push_back(row);
+    return at->second;
+  }
+  std::string text() const {
+    std::string text = "[";
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      text += (i == 0 ? "\n" : ",\n") + rows_[i].dump();
+    return text + "]";
+  }
+
+ private:
+  std::map<std::string, std::size_t> places_;
+  std::vector<Json> rows_;
+};
+
+struct Tables {
+  Rows given, terms, parts;
+};
+
+Json to_json(const Given& given) {
+  Json json = {
+      {"name", given.name}, {"spec", given.spec}, {"options", isoline::to_json(given.options)}};
+  if (given.asked != given.spec) json["asked"] = given.asked;
+  return json;
 }
 
-Json cell_json(const Record& record, const Subject& subject, const BestKnown& best) {
-  Json cell = {{"cell", subject.key},
-               {"title", subject.title},
-               {"status", subject.state},
-               {"build", record.build}};
-  if (subject.is_nondeterministic) cell["nondeterministic"] = true;
-  if (record.status == Status::inapplicable) return cell;
+// By the group of its quantity, infinite where it was never reached.
+Json works_json(const Subject& subject, Aim aim) {
+  std::vector<Real> works;
+  for (const Tolerance& tolerance : kTolerances)
+    works.push_back(work_to(subject, aim, tolerance.tau));
+  return json_numbers(works);
+}
+
+bool has_group(const Subject& subject, const std::string& group) {
+  return std::ranges::find(subject.quantities, group, &Quantity::group) != subject.quantities.end();
+}
+
+void add_figures(Json& cell, const Record& record, const Subject& subject) {
   const Summary& summary = record.summary;
   cell["trace"] = subject.trace;
+  cell["rest"] = subject.rest;
   cell["loss"] = json_number(summary.loss);
   cell["best_loss"] = json_number(summary.best_loss);
-  cell["start_loss"] = json_number(summary.start_loss);
-  if (!std::isnan(summary.start_x_error)) {
+  cell["scale"] = json_number(subject.quantities.at(0).scale);
+  if (has_group(subject, "error in x")) {
     cell["x_error"] = json_number(summary.x_error);
-    cell["start_x_error"] = json_number(summary.start_x_error);
+    cell["x_scale"] = json_number(record.x_scale.value_or(summary.start_x_error));
   }
-  cell["work"] = work_json(record, best);
+  cell["work"] = works_json(subject, Aim::loss);
+  if (has_group(subject, "work to x")) cell["found"] = works_json(subject, Aim::x);
+}
+
+Json cell_json(const Record& record, const Subject& subject, Tables& tables) {
+  const std::string seed = fmt::format("seed {}, ", record.request.seed);
+  Json cell = {{"cell", subject.key},
+               {"given",
+                {tables.given.place(to_json(subject.problem)),
+                 tables.given.place(to_json(subject.optimizer))}},
+               {"seed", record.request.seed},
+               {"terms", tables.terms.place(subject.terms.substr(seed.size()))},
+               {"status", subject.state},
+               {"build", record.build}};
+  for (const auto& [name, digest] : subject.parts)
+    cell["parts"].push_back(tables.parts.place(Json{name, digest}));
+  if (record.aim != Aim::loss) cell["aim"] = name_of(record.aim);
+  if (subject.is_cut) cell["nondeterministic"] = true;
+  if (record.status != Status::inapplicable) add_figures(cell, record, subject);
   return cell;
+}
+
+// With the targets that the file keeps, so that a cell moves by what a comparison will look at.
+Subject remembered(Subject subject) {
+  std::erase_if(subject.quantities, [](const Quantity& quantity) {
+    return quantity.group == "work" &&
+           std::ranges::none_of(kTolerances, [&](const Tolerance& tolerance) {
+             return quantity.name == work_quantity(tolerance.tau, kNever).name;
+           });
+  });
+  return subject;
 }
 
 Json to_json(const Perturbed& perturbed) {
@@ -47,38 +110,6 @@ Json to_json(const Perturbed& perturbed) {
   return {{"moved", json_number(moved)},
           {"statuses", perturbed.states},
           {"reached", perturbed.reached}};
-}
-
-Perturbed perturbed_from_json(const Json& json) {
-  Perturbed perturbed{.moved = real_of(json.at("moved"))};
-  json.at("statuses").get_to(perturbed.states);
-  json.at("reached").get_to(perturbed.reached);
-  for (const std::string& state : perturbed.states) status_named(state);  // refuses what is none
-  return perturbed;
-}
-
-void add_figures(Subject& subject, const Json& cell) {
-  const auto real = [&](const char* key) { return real_of(cell.at(key)); };
-  subject.trace = cell.at("trace").get<std::string>();
-  subject.quantities = {loss_quantity("loss", real("loss"), real("start_loss")),
-                        loss_quantity("best loss", real("best_loss"), real("start_loss"))};
-  if (cell.contains("x_error"))
-    subject.quantities.push_back(x_error_quantity(real("x_error"), real("start_x_error")));
-  const Json& work = cell.at("work");
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    subject.quantities.push_back(work_quantity(kTolerances[t].tau, real_of(work.at(t))));
-}
-
-Subject subject_from_json(const Json& cell) {
-  const Status status = status_named(cell.at("status").get<std::string>());
-  Subject subject = subject_that_ended(status);
-  subject.key = cell.at("cell").get<std::string>();
-  subject.title = cell.at("title").get<std::string>();
-  subject.builds = {cell.at("build").get<std::string>()};
-  subject.is_nondeterministic = cell.value("nondeterministic", false);
-  if (status != Status::inapplicable) add_figures(subject, cell);
-  if (cell.contains("perturbed")) subject.perturbed = perturbed_from_json(cell.at("perturbed"));
-  return subject;
 }
 
 Json minima_json(const Study& study, const BestKnown& best) {
@@ -92,15 +123,20 @@ Json minima_json(const Study& study, const BestKnown& best) {
   return minima;
 }
 
-BestKnown minima_from_json(const Json& minima) {
-  BestKnown::Minima least;
-  for (const Json& one : minima)
-    least[{one.at("problem").get<std::string>(), one.at("seed").get<std::uint64_t>()}] =
-        real_of(one.at("loss"));
-  return BestKnown(std::move(least));
-}
-
 }  // namespace
+
+Json headline_json(const Headline& headline) {
+  Json leaders = Json::array();
+  for (const HeadlineMethod& method : headline.leaders)
+    leaders.push_back({{"optimizer", method.name},
+                       {"solved", method.solved},
+                       {"runs", method.runs},
+                       {"median_work", json_number(method.median_work)}});
+  return {{"runs", headline.runs},
+          {"failed", headline.failed},
+          {"solved", headline.solved},
+          {"leaders", std::move(leaders)}};
+}
 
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed) {
   const BestKnown best(study);
@@ -109,30 +145,20 @@ std::string baseline_json(const Study& study, const std::vector<Study>& perturbe
   for (const Study& one : perturbed)
     for (Subject& subject : subjects_of(one, best))
       moved[subject.key].push_back(std::move(subject));
-  std::string text = fmt::format(
-      "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n\"minima\": {},\n"
-      "\"cells\": [",
-      kBaselineSchema, Json(study.plan.suites).dump(), perturbed.size(),
-      minima_json(study, best).dump());
+  Tables tables;
+  std::string cells;
   for (std::size_t i = 0; i < subjects.size(); ++i) {
-    Json cell = cell_json(study.runs[i], subjects[i], best);
-    const Perturbed others = perturbed_of(subject_from_json(cell), moved[subjects[i].key]);
+    Json cell = cell_json(study.runs[i], subjects[i], tables);
+    const Perturbed others = perturbed_of(remembered(subjects[i]), moved[subjects[i].key]);
     if (others.moved > 0) cell["perturbed"] = to_json(others);
-    text += (i == 0 ? "\n" : ",\n") + cell.dump(-1, ' ', false, Json::error_handler_t::replace);
+    cells += (i == 0 ? "\n" : ",\n") + cell.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
-  return text + "\n]}\n";
-}
-
-Baseline baseline_from_json(const Json& json) {
-  try {
-    require(json.at("schema") == kBaselineSchema,
-            [&] { return fmt::format("the schema is not {}", kBaselineSchema); });
-    Baseline baseline{.subjects = {}, .minima = minima_from_json(json.at("minima"))};
-    for (const Json& cell : json.at("cells")) baseline.subjects.push_back(subject_from_json(cell));
-    return baseline;
-  } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("no {}: {}", kBaselineSchema, error.what()));
-  }
+  return fmt::format(
+      "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n\"headline\": {},\n"
+      "\"minima\": {},\n\"given\": {},\n\"terms\": {},\n\"parts\": {},\n\"cells\": [{}\n]}}\n",
+      kBaselineSchema, Json(study.plan.suites).dump(), perturbed.size(),
+      headline_json(headline_of("", subjects)).dump(), minima_json(study, best).dump(),
+      tables.given.text(), tables.terms.text(), tables.parts.text(), cells);
 }
 
 }  // namespace isoline::reports

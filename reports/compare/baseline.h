@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "reports/compare/subject.h"
+#include "reports/compare/trend.h"
 
 namespace isoline::reports {
 
@@ -12,12 +13,14 @@ inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
 
 struct Baseline {
   std::vector<Subject> subjects;
-  BestKnown minima;  // where a problem declares none
+  BestKnown minima;   // where a problem declares none
+  Headline headline;  // as it was when the file was made
 };
 
 // Keeps what is compared bit for bit (status, build, digest of the trace, final figures, work to
-// the tolerances of the tables), and neither curves nor times. `perturbed` holds runs of the same
-// cells from starts perturbed in the last bit, a study a perturbation: how far they moved is kept.
+// the tolerances of the tables), with what was asked, given and built, and neither curves nor
+// times. `perturbed` holds runs of the same cells from starts perturbed in the last bit, a study a
+// perturbation: how far they moved is kept.
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed = {});
 
 Baseline baseline_from_json(const Json& json);  // UsageError where it is no such file

@@ -11,15 +11,17 @@
 namespace isoline::reports {
 namespace {
 
+// Another processor rounds in every operation, a perturbed start once: cells that moved by nearly
+// the tolerance when perturbed move beyond it elsewhere.
+constexpr Real kMargin = 0.1;
+
 using Tolerances = std::array<bool, kTolerances.size()>;
 
-Tolerances reached_by(const Subject& subject) {
+// In the sense of the aim that BASE knows of.
+Tolerances reached_by(const Subject& subject, Aim aim) {
   Tolerances reached{};
-  for (std::size_t t = 0; t < reached.size(); ++t) {
-    const std::string name = work_quantity(kTolerances[t].tau, kNever).name;
-    const auto at = std::ranges::find(subject.quantities, name, &Quantity::name);
-    reached[t] = at != subject.quantities.end() && at->value < kNever;
-  }
+  for (std::size_t t = 0; t < reached.size(); ++t)
+    reached[t] = work_to(subject, aim, kTolerances[t].tau) < kNever;
   return reached;
 }
 
@@ -27,6 +29,7 @@ Difference difference_in(const Subject& subject, Change change) {
   return {.change = change,
           .key = subject.key,
           .title = subject.title,
+          .optimizer = subject.optimizer.name,
           .what = "",
           .before = "",
           .after = "",
@@ -62,20 +65,20 @@ Perturbed perturbed_of(const Subject& unperturbed, const std::vector<Subject>& p
   for (const Subject& subject : perturbed) {
     found.moved = std::max(found.moved, movement(unperturbed, subject));
     found.states.push_back(subject.state);
-    const Tolerances reached = reached_by(subject);
+    const Tolerances reached = reached_by(subject, unperturbed.aim);
     for (std::size_t t = 0; t < reached.size(); ++t) found.reached[t] += reached[t];
   }
   return found;
 }
 
 bool is_chaotic(const Subject& subject, const std::optional<Real>& tolerance) {
-  return tolerance && subject.perturbed && subject.perturbed->moved > *tolerance;
+  return tolerance && subject.perturbed && subject.perturbed->moved > kMargin * *tolerance;
 }
 
 std::vector<Difference> coarse_differences(const Subject& before, const Subject& after) {
   std::vector<Difference> all;
   if (auto difference = status_difference(before, after)) all.push_back(std::move(*difference));
-  const Tolerances then = reached_by(before), now = reached_by(after);
+  const Tolerances then = reached_by(before, before.aim), now = reached_by(after, before.aim);
   const Perturbed& others = *before.perturbed;
   for (std::size_t t = 0; t < now.size(); ++t) {
     const bool by_all = then[t] && others.reached[t] == others.states.size();

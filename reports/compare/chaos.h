@@ -12,8 +12,8 @@ namespace isoline::reports {
 // What the runs from perturbed starts did that are held to one from the given start.
 Perturbed perturbed_of(const Subject& unperturbed, const std::vector<Subject>& perturbed);
 
-// Its figures moved by more than the tolerance when the start was perturbed. Without a tolerance
-// figures must be the same bit for bit, which chaotic cells of one build are too.
+// Its figures moved by more than a tenth of the tolerance when the start was perturbed. Without a
+// tolerance figures must be the same bit for bit, which chaotic cells of one build are too.
 bool is_chaotic(const Subject& subject, const std::optional<Real>& tolerance);
 
 // A status that no run of BASE ended with, a coarse target that all of them reached and NEW does

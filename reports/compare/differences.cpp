@@ -12,19 +12,21 @@
 namespace isoline::reports {
 namespace {
 
-constexpr Real kRounding = 1e-16;  // of double precision, as a share of the value at the start
+constexpr Real kRounding = 1e-16;  // of double precision, as a share of the problem's scale
+constexpr Real kSmallest = 1e-6;   // share of the scale below which values are as good as solved
 
 // Not-a-number is no better than infinite.
 Real finite_or_never(Real value) { return std::isnan(value) ? kNever : value; }
 
-// As a share of |before|, above what rounding explains.
+// As a share of |before|, or of the smallest value that counts, above what rounding explains.
 Real least_tolerance(Real before, Real after, Real scale) {
   if (before == after) return 0;
   if (!std::isfinite(before) || !std::isfinite(after)) return kNever;
-  const Real rounding = std::isfinite(scale) ? kRounding * std::abs(scale) : 0;
-  const Real excess = std::abs(after - before) - rounding;
+  const Real size = std::isfinite(scale) ? std::abs(scale) : 0;
+  const Real excess = std::abs(after - before) - kRounding * size;
   if (excess <= 0) return 0;
-  return before == 0 ? kNever : excess / std::abs(before);
+  const Real unit = std::max(std::abs(before), kSmallest * size);
+  return unit == 0 ? kNever : excess / unit;
 }
 
 bool agree(Real before, Real after, Real scale, const std::optional<Real>& tolerance) {
@@ -43,6 +45,7 @@ Difference difference_of(const Subject& subject, const Quantity& quantity, Real 
   return {.change = after > before ? Change::worse : Change::better,
           .key = subject.key,
           .title = subject.title,
+          .optimizer = subject.optimizer.name,
           .what = quantity.name,
           .before = reached_figure(before),
           .after = reached_figure(after),
@@ -110,6 +113,7 @@ Difference state_difference(const Subject& a, const Subject& b) {
   return {.change = change,
           .key = a.key,
           .title = a.title,
+          .optimizer = a.optimizer.name,
           .what = "status",
           .before = a.state,
           .after = b.state,

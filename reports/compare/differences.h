@@ -13,7 +13,7 @@ enum class Change { worse, better, changed };
 
 struct Difference {
   Change change = Change::changed;
-  std::string key, title, what;
+  std::string key, title, optimizer, what;
   std::string before, after;  // as shown
   Real relative = 0;          // (after − before) / |before|; infinite where that says nothing
   std::string note;
@@ -26,8 +26,9 @@ Difference state_difference(const Subject& before, const Subject& after);
 Real movement(const Subject& before, const Subject& after);
 
 // The largest difference of each group of quantities and direction. Without a tolerance figures
-// agree if they are the same number; with one if they differ by no more than that share of the
-// first, or by rounding, 1e-16 of the value at the start.
+// agree if they are the same number; with one if they differ by no more than rounding, 1e-16 of
+// the problem's scale, and that share of the first, or of 1e-6 of the scale where that is more:
+// what is smaller solves the problem to the strictest target of the tables.
 std::vector<Difference> quantity_differences(const Subject& before, const Subject& after,
                                              const std::optional<Real>& tolerance);
 

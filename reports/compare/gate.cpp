@@ -1,31 +1,57 @@
-// Joins two sets of subjects, holds their figures to each other, judges their times, and concludes.
+// Pairs two sets of subjects, holds their figures to each other, judges their times, and concludes.
 #include "reports/compare/gate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "core/errors.h"
+#include "reports/compare/changes.h"
 #include "reports/compare/chaos.h"
+#include "reports/compare/pairing.h"
+#include "reports/compare/verdict.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
-// "1e-1, 1e-3, 1e-6".
-std::string target_names() {
-  std::vector<std::string> names;
-  for (const Tolerance& tolerance : kTolerances) names.emplace_back(tolerance.name);
-  return joined(names);
-}
-
 // Why figures of the two cannot be held to each other; empty where they can.
 std::string why_incomparable(const Subject& a, const Subject& b, const GateOptions& options) {
+  for (const Subject* side : {&a, &b})
+    if (!side->doubt.empty())
+      return fmt::format("{} cannot be trusted: {}", side == &a ? "BASE" : "NEW", side->doubt);
+  if (a.is_cut || b.is_cut)
+    return fmt::format("a clock or a kill ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
+                       b.is_cut ? b.state : a.state);
   if (a.asked != b.asked) return "other seeds, budgets or options were asked for";
   if (options.tolerance || (a.builds == b.builds && a.builds.size() == 1)) return "";
   if (a.builds.empty() && b.builds.empty()) return "";  // nothing has run on either side
   return "another build or instruction set; give --tolerance to compare their figures";
+}
+
+// "curve", "message, claimed": what of the records differs where all figures agree.
+Difference silent_difference(const Subject& a, const Subject& b) {
+  Difference difference{.change = Change::changed,
+                        .key = a.key,
+                        .title = a.title,
+                        .optimizer = a.optimizer.name,
+                        .what = "trace",
+                        .before = a.trace,
+                        .after = b.trace,
+                        .note = "the path differs, all compared figures agree"};
+  if (a.trace != b.trace) return difference;
+  std::vector<std::string> names;
+  for (const auto& [name, digest] : a.members) {
+    const auto other = b.members.find(name);
+    if (other == b.members.end() || other->second != digest) names.push_back(name);
+  }
+  for (const auto& [name, digest] : b.members)
+    if (!a.members.empty() && !a.members.contains(name)) names.push_back(name);
+  difference.what = names.empty() || a.members.empty() ? "record" : joined(names);
+  difference.before = a.rest;
+  difference.after = b.rest;
+  difference.note = "its path and all compared figures agree";
+  return difference;
 }
 
 class Gate {
@@ -33,56 +59,42 @@ class Gate {
   explicit Gate(const GateOptions& options) : options_(options) {}
 
   GateResult run(const std::vector<Subject>& before, const std::vector<Subject>& after) {
-    std::map<std::string, const Subject*> others;
-    for (const Subject& subject : after) others[subject.key] = &subject;
-    for (const Subject& subject : before) {
-      const auto other = others.find(subject.key);
-      if (other == others.end()) {
-        result_.only_before.push_back(subject.title);
-        continue;
-      }
-      join(subject, *other->second);
-      others.erase(other);
-    }
-    for (const Subject& subject : after)
-      if (others.contains(subject.key)) result_.only_after.push_back(subject.title);
+    const Pairs pairs = paired(before, after);
+    result_.builds = changed_builds(pairs);
+    result_.settings = changed_settings(pairs);
+    for (const auto& [a, b] : pairs.both) join(*a, *b);
+    miss(pairs.only_before, before);
+    for (const Subject* subject : pairs.only_after) result_.only_after.push_back(subject->title);
+    result_.added = grouped(pairs.only_after, after);
     choose_timed();
     result_.times = judge_times(timed_, options_.least_noise);
     sort_differences();
-    conclude();
+    result_.groups = grouped(result_.differences, result_.by_method);
+    add_remarks();
+    conclude(result_, options_);
     return result_;
   }
 
  private:
   void join(const Subject& a, const Subject& b) {
     ++result_.joined;
+    ++result_.by_method[a.optimizer.name];
     offer_times(a, b);
-    if (a.is_nondeterministic || b.is_nondeterministic) {
-      ++cut_;
-      if (a.lost != b.lost) result_.differences.push_back(state_difference(a, b));
-      return;
-    }
     const std::string reason = why_incomparable(a, b, options_);
-    if (!reason.empty()) {
-      if (a.lost != b.lost)
-        result_.differences.push_back(state_difference(a, b));
-      else
-        result_.incomparable.push_back({a.title, reason});
-      return;
-    }
-    judge(a, b);
+    if (reason.empty()) return judge(a, b);
+    const bool tells_status = a.is_cut || b.is_cut ? a.badness != b.badness : a.lost != b.lost;
+    if (tells_status && a.doubt.empty() && b.doubt.empty())
+      result_.differences.push_back(state_difference(a, b));
+    else
+      result_.incomparable.push_back({a.title, reason});
   }
 
   std::vector<Difference> differences_of(const Subject& a, const Subject& b) const {
     std::vector<Difference> found = quantity_differences(a, b, options_.tolerance);
     if (a.state != b.state) found.insert(found.begin(), state_difference(a, b));
-    if (found.empty() && !options_.tolerance && a.trace != b.trace)
-      found.push_back({.key = a.key,
-                       .title = a.title,
-                       .what = "trace",
-                       .before = a.trace,
-                       .after = b.trace,
-                       .note = "the path differs, all compared figures agree"});
+    const bool is_silent = found.empty() && !options_.tolerance;
+    if (is_silent && (a.trace != b.trace || a.rest != b.rest))
+      found.push_back(silent_difference(a, b));
     return found;
   }
 
@@ -95,7 +107,29 @@ class Gate {
     for (Difference& difference : found) result_.differences.push_back(std::move(difference));
   }
 
+  void miss(const std::vector<const Subject*>& lacking, const std::vector<Subject>& before) {
+    std::vector<bool> is_used(options_.allowed.size());
+    std::vector<const Subject*> unexpected;
+    for (const Subject* subject : lacking) {
+      const auto entry = entry_for(options_.allowed, *subject);
+      if (entry == options_.allowed.end()) {
+        unexpected.push_back(subject);
+        result_.only_before.push_back(subject->title);
+        continue;
+      }
+      result_.allowed.push_back({subject->title, entry->reason});
+      is_used[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
+    }
+    result_.lacking = grouped(unexpected, before);
+    for (std::size_t i = 0; i < is_used.size(); ++i)
+      if (!is_used[i])
+        result_.remarks.push_back(fmt::format(
+            "the list of allowed cells names {} × {}, which NEW does not lack: remove the entry",
+            options_.allowed[i].problem, options_.allowed[i].optimizer));
+  }
+
   void offer_times(const Subject& a, const Subject& b) {
+    senseless_ += a.senseless_times + b.senseless_times;
     const bool is_listed = std::ranges::any_of(
         options_.timed, [&](const std::string& start) { return a.key.starts_with(start); });
     if (!options_.timed.empty() && !is_listed) return;
@@ -131,53 +165,32 @@ class Gate {
     });
   }
 
-  std::size_t count(Change change) const {
-    return static_cast<std::size_t>(
-        std::ranges::count(result_.differences, change, &Difference::change));
-  }
-
   void remark(std::size_t number, const std::string& text) {
     if (number > 0) result_.remarks.push_back(fmt::format("{} {}", number, text));
   }
 
-  void conclude() {
+  void add_remarks() {
+    std::vector<std::string> targets;
+    for (const Tolerance& tolerance : kTolerances) targets.emplace_back(tolerance.name);
     remark(
         result_.chaotic,
         fmt::format("chaotic cells are judged by their status and by which of the targets {} they "
-                    "reach: their figures moved by more than the tolerance when their start was "
-                    "perturbed in the last bit",
-                    target_names()));
-    remark(cut_, "cells ended by a clock or a kill: only their status is compared");
+                    "reach: their figures moved by more than a tenth of the tolerance when their "
+                    "start was perturbed in the last bit",
+                    joined(targets)));
     remark(too_few_, fmt::format("cells have too few repetitions for a verdict on time: {} a side "
                                  "are needed (run --repeat {} --exclusive)",
                                  kLeastRepetitions, kLeastRepetitions));
+    remark(senseless_, "timings are no positive finite numbers and are left out");
     remark(other_processors_, "cells were timed on another processor: times are not comparable");
     remark(skipped_, fmt::format("more cells have repetitions enough; time is judged on the {} "
                                  "slowest (--time-cells lists others)",
                                  kMostTimed));
-    const auto is_slower = [](const TimeVerdict& t) { return t.change > 0; };
-    const auto is_faster = [](const TimeVerdict& t) { return t.change < 0; };
-    const bool is_part_unseen = !result_.incomparable.empty() || result_.joined == 0 ||
-                                (!options_.is_common_only && !result_.only_before.empty());
-    if (count(Change::worse) > 0 || std::ranges::any_of(result_.times, is_slower))
-      settle(2, "worse");
-    else if (is_part_unseen)
-      settle(4, result_.joined == 0 ? "not comparable: no cell is in both"
-                                    : "not comparable in part, nothing worse in the rest");
-    else if (count(Change::better) > 0 || std::ranges::any_of(result_.times, is_faster))
-      settle(3, "better, nothing worse");
-    else
-      settle(0, count(Change::changed) > 0 ? "changed, neither better nor worse" : "equal");
-  }
-
-  void settle(int exit_code, const std::string& verdict) {
-    result_.exit_code = exit_code;
-    result_.verdict = verdict;
   }
 
   const GateOptions& options_;
   std::vector<TimedCell> timed_;
-  std::size_t cut_ = 0, too_few_ = 0, other_processors_ = 0, skipped_ = 0;
+  std::size_t too_few_ = 0, other_processors_ = 0, skipped_ = 0, senseless_ = 0;
   GateResult result_;
 };
 

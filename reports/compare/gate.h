@@ -1,23 +1,32 @@
 // What changed from one set of results to another: the gate of continuous integration.
 //
-//   subject       the two sides in one form
+//   subject, report_subjects   the two sides in one form
+//   pairing       which of NEW answers which of BASE
+//   changes       options and parts of the build that differ
 //   differences   figures, exactly or within a tolerance
 //   chaos         what can be judged of results that hang on the last bit
 //   timing        times, by statistics
-//   gate          what joins and what does not; the verdict
+//   allowed       what NEW may lack
+//   gate          the verdict
+//   groups        differences by optimizer
+//   trend         headline figures of earlier baselines beside
 //   sides         reads both: result folders, a baseline, reports
 //   baseline      what of results stands in a repository
-//   gate_words, gate_terminal, gate_markdown, gate_json
+//   gate_words, gate_section, gate_json
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/exit.h"
 #include "core/threads.h"
-#include "reports/compare/differences.h"
+#include "reports/compare/allowed.h"
+#include "reports/compare/groups.h"
 #include "reports/compare/timing.h"
+#include "reports/compare/trend.h"
 
 namespace isoline::reports {
 
@@ -25,24 +34,36 @@ struct GateOptions {
   std::optional<Real> tolerance;  // relative; without it figures must agree bit for bit
   Real least_noise = kLeastNoise;
   std::vector<std::string> timed;  // beginnings of the keys of cells whose times are judged
-  bool is_common_only = false;     // cells that only BASE has do not count
-  Listener listener;               // of the records read
+  AllowedList allowed;             // cells that NEW may lack
+  bool is_common_only = false;     // it may lack any
+  std::optional<std::filesystem::path> earlier;  // a folder of baselines, for the trend
+  Listener listener;                             // of the records read
 };
 
 struct Incomparable {
   std::string title, reason;
 };
 
+struct AllowedCell {
+  std::string title, reason;
+};
+
 struct GateResult {
-  std::size_t joined = 0, equal = 0;    // subjects in both; of them, without any difference
-  std::size_t chaotic = 0;              // of them, judged by status and coarse targets
-  std::vector<Difference> differences;  // worst first
-  std::vector<TimeVerdict> times;       // worst first
-  std::vector<std::string> only_before, only_after;  // titles
+  std::size_t joined = 0, equal = 0;  // subjects in both; of them, without any difference
+  std::size_t chaotic = 0;            // of them, judged by status and coarse targets
+  std::map<std::string, std::size_t> by_method;  // of them, by optimizer
+  std::vector<std::string> builds, settings;     // what differs before any figure does, in words
+  std::vector<Difference> differences;           // worst first
+  std::vector<DifferenceGroup> groups;           // of them, by optimizer
+  std::vector<TimeVerdict> times;                // worst first
+  std::vector<std::string> only_before, only_after;  // titles; the allowed ones are not among them
+  std::vector<LackGroup> lacking, added;             // the same, by optimizer
+  std::vector<AllowedCell> allowed;                  // only in BASE
   std::vector<Incomparable> incomparable;
   std::vector<std::string> remarks;
-  std::string verdict;  // one sentence
-  int exit_code = 0;    // of the conventions: 0 good, 2 worse, 3 better only, 4 not comparable
+  std::vector<Headline> trend;  // oldest first, NEW last; empty where none was asked for
+  std::string verdict;          // one sentence, which names the cause
+  ExitCode exit_code = kGood;
 };
 
 // Two result folders; or a baseline and a folder; or two report.json, or one and a folder, which is

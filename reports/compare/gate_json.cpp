@@ -11,6 +11,7 @@ Json json_of(const Difference& d) {
   return {{"change", name_of(d.change)},
           {"cell", d.key},
           {"title", d.title},
+          {"optimizer", d.optimizer},
           {"figure", d.what},
           {"before", d.before},
           {"after", d.after},
@@ -31,26 +32,48 @@ Json json_of(const TimeVerdict& t) {
           {"noise", json_number(t.noise)}};
 }
 
+Json json_of(const DifferenceGroup& g) {
+  return {
+      {"change", name_of(g.change)}, {"optimizer", g.optimizer}, {"cells", g.cells}, {"of", g.of},
+      {"figures", g.what},           {"worst", g.worst.title}};
+}
+
+Json json_of(const AllowedCell& cell) { return {{"title", cell.title}, {"reason", cell.reason}}; }
+
+Json json_of(const Incomparable& one) { return {{"title", one.title}, {"reason", one.reason}}; }
+
+Json json_of(const Headline& headline) {
+  Json json = headline_json(headline);
+  json["label"] = headline.label;
+  return json;
+}
+
+template <class Value>
+Json list_of(const std::vector<Value>& values) {
+  Json list = Json::array();
+  for (const Value& value : values) list.push_back(json_of(value));
+  return list;
+}
+
 }  // namespace
 
 std::string gate_json(const GateResult& result) {
-  Json differences = Json::array(), times = Json::array(), incomparable = Json::array();
-  for (const Difference& difference : result.differences)
-    differences.push_back(json_of(difference));
-  for (const TimeVerdict& time : result.times) times.push_back(json_of(time));
-  for (const Incomparable& one : result.incomparable)
-    incomparable.push_back({{"title", one.title}, {"reason", one.reason}});
   const Json json{{"schema", kComparisonSchema},
                   {"verdict", result.verdict},
-                  {"exit_code", result.exit_code},
+                  {"exit_code", static_cast<int>(result.exit_code)},
                   {"joined", result.joined},
                   {"equal", result.equal},
                   {"chaotic", result.chaotic},
-                  {"differences", differences},
-                  {"times", times},
-                  {"not_comparable", incomparable},
+                  {"builds", result.builds},
+                  {"options", result.settings},
+                  {"differences", list_of(result.differences)},
+                  {"groups", list_of(result.groups)},
+                  {"times", list_of(result.times)},
+                  {"not_comparable", list_of(result.incomparable)},
                   {"only_in_base", result.only_before},
+                  {"allowed", list_of(result.allowed)},
                   {"only_in_new", result.only_after},
+                  {"trend", list_of(result.trend)},
                   {"remarks", result.remarks}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -31,6 +31,10 @@ const char* name_of_time(int change) {
   return change > 0 ? "slower" : "faster";
 }
 
+std::string step_text(const Difference& difference) {
+  return fmt::format("{} {} → {}", difference.what, difference.before, difference.after);
+}
+
 std::string remainder_text(const Difference& difference) {
   const std::string relative = relative_text(difference.relative);
   if (relative.empty() || difference.note.empty()) return relative + difference.note;
@@ -41,9 +45,7 @@ std::string ratio_text(const RatioEstimate& ratio) {
   return fmt::format("{:.3g}× ({:.3g} to {:.3g})", ratio.ratio, ratio.low, ratio.high);
 }
 
-std::string noise_text(const TimeVerdict& time) { return fmt::format("±{}", percent(time.noise)); }
-
-std::string headline_of(const GateResult& result) {
+std::string counts_of(const GateResult& result) {
   const auto count = [&](Change change) {
     return std::ranges::count(result.differences, change, &Difference::change);
   };
@@ -52,12 +54,6 @@ std::string headline_of(const GateResult& result) {
       "{} changed",
       result.joined, result.equal, result.chaotic, result.incomparable.size(), count(Change::worse),
       count(Change::better), count(Change::changed));
-}
-
-std::vector<std::string> lines_of(const std::vector<Incomparable>& all) {
-  std::vector<std::string> lines;
-  for (const Incomparable& one : all) lines.push_back(one.title + ": " + one.reason);
-  return lines;
 }
 
 }  // namespace isoline::reports

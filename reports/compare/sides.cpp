@@ -42,6 +42,33 @@ void remark_on(const Study& study, const std::filesystem::path& path,
                     study.superseded, path.string()));
 }
 
+// Of the baselines in a folder, ordered by name; what is none is left out.
+std::vector<Headline> headlines_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::vector<Headline> all;
+  for (const fs::path& file : files) try {
+      Baseline baseline = baseline_from_json(read_json(file));
+      baseline.headline.label = file.stem().string();
+      all.push_back(std::move(baseline.headline));
+    } catch (const UsageError&) {  // of a time before this schema
+    }
+  return all;
+}
+
+// Earlier baselines, the one compared with, and NEW.
+void add_trend(GateResult& result, const GateOptions& options, Headline before, Headline after) {
+  if (!options.earlier) return;
+  result.trend = headlines_in(*options.earlier);
+  before.label = "BASE";
+  after.label = "NEW";
+  result.trend.push_back(std::move(before));
+  result.trend.push_back(std::move(after));
+}
+
 GateResult compare_reports(const Side& before, const Side& after, const GateOptions& options) {
   const auto subjects_in = [](const Side& side) {
     if (!side.is_folder()) return subjects_of_report(side.file);
@@ -49,6 +76,7 @@ GateResult compare_reports(const Side& before, const Side& after, const GateOpti
     return subjects_of_report(
         parse_json(json_report(document_of(compare_optimizers(study))), side.path.string()));
   };
+  require(!options.earlier, "a trend is read off record folders and baselines, not off reports");
   GateResult result = compare_subjects(subjects_in(before), subjects_in(after), options);
   result.remarks.push_back("reports hold no repetitions: time is judged on record folders only");
   return result;
@@ -58,8 +86,9 @@ GateResult compare_with_baseline(const Side& before, const fs::path& after,
                                  const GateOptions& options) {
   const Baseline baseline = baseline_from_json(before.file);
   const Study study = read_study({after}, options.listener);
-  GateResult result =
-      compare_subjects(baseline.subjects, subjects_of(study, baseline.minima), options);
+  const std::vector<Subject> subjects = subjects_of(study, baseline.minima);
+  GateResult result = compare_subjects(baseline.subjects, subjects, options);
+  add_trend(result, options, baseline.headline, headline_of("NEW", subjects));
   result.remarks.push_back("a baseline holds no times: none is judged");
   remark_on(study, after, result.remarks);
   return result;
@@ -76,7 +105,9 @@ GateResult compare_folders(const fs::path& before, const fs::path& after,
     return subjects_of(study, *reference);
   };
   const std::vector<Subject> old_subjects = subjects_in(before);
-  GateResult result = compare_subjects(old_subjects, subjects_in(after), options);
+  const std::vector<Subject> new_subjects = subjects_in(after);
+  GateResult result = compare_subjects(old_subjects, new_subjects, options);
+  add_trend(result, options, headline_of("BASE", old_subjects), headline_of("NEW", new_subjects));
   result.remarks.insert(result.remarks.end(), remarks.begin(), remarks.end());
   return result;
 }

@@ -1,8 +1,9 @@
-// Turns records and reports into subjects of a comparison.
+// Turns records into subjects of a comparison.
 #include "reports/compare/subject.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -10,13 +11,26 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/threads.h"
-#include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
 bool is_lost(Status status) { return is_failure(status) || status == Status::inapplicable; }
+
+// f₀ − f_L where older records lack it; not-a-number where nothing is known.
+Real scale_of(const Record& record, const BestKnown& reference) {
+  return record.scale.value_or(record.summary.start_loss - reference.minimum(record));
+}
+
+// Read at kept iterations, where a record has no hits.
+Real work_until_reached(const Record& record, const BestKnown& reference, Real tau) {
+  const Real goal = reference.minimum(record) + tau * scale_of(record, reference);
+  const Curve& curve = record.curve;
+  for (std::size_t i = 0; i < curve.loss.size(); ++i)
+    if (std::isfinite(curve.loss[i]) && curve.loss[i] <= goal) return Real(curve.work[i]);
+  return kNever;
+}
 
 void add_work(Subject& subject, const Record& record, const BestKnown& reference) {
   if (record.hits) {
@@ -26,72 +40,103 @@ void add_work(Subject& subject, const Record& record, const BestKnown& reference
           work_quantity(hits.target[j], hits.iteration[j] < 0 ? kNever : Real(hits.work[j])));
     return;
   }
-  Run run{.record = &record};
-  fill_reached(run, reference);
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+  for (const Tolerance& tolerance : kTolerances)
     subject.quantities.push_back(
-        work_quantity(kTolerances[t].tau, run.reached_loss[Measure::work][t]));
+        work_quantity(tolerance.tau, work_until_reached(record, reference, tolerance.tau)));
 }
 
-std::string trace_of(const Record& record) {
-  Json result = without_timings(to_json(record));
-  result.erase("provenance");
-  result.erase("build");
-  result.at("request").erase("rates");
-  return digest(result.dump(-1, ' ', false, Json::error_handler_t::replace));
+// Read at kept iterations.
+Real work_until_found(const Record& record, Real tau) {
+  const Real goal = x_goal(tau, *record.x_scale, record.x_floor);
+  const Curve& curve = record.curve;
+  for (std::size_t i = 0; i < curve.x_error.size(); ++i)
+    if (curve.x_error[i] <= goal) return Real(curve.work[i]);
+  return kNever;
+}
+
+void add_x(Subject& subject, const Record& record) {
+  const Summary& summary = record.summary;
+  if (std::isnan(summary.start_x_error)) return;
+  subject.quantities.push_back(
+      x_error_quantity(summary.x_error, record.x_scale.value_or(summary.start_x_error)));
+  if (!record.x_scale) return;
+  for (const Tolerance& tolerance : kTolerances)
+    subject.quantities.push_back(
+        found_quantity(tolerance.tau, work_until_found(record, tolerance.tau)));
+}
+
+void add_figures(Subject& subject, const Record& record, const BestKnown& reference) {
+  const Summary& summary = record.summary;
+  const Real scale = scale_of(record, reference);
+  subject.quantities = {loss_quantity("loss", summary.loss, scale),
+                        loss_quantity("best loss", summary.best_loss, scale)};
+  add_x(subject, record);
+  add_work(subject, record, reference);
+}
+
+std::string digest_of(const Json& json) {
+  return digest(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+// The path apart from the rest, so that each is called by its name.
+void add_digests(Subject& subject, const Record& record) {
+  Json json = result_of(to_json(record));
+  for (const char* known : {"build", "build_parts", "cell", "schema"}) json.erase(known);
+  Json path = Json::object();
+  for (const char* name : {"curve", "trajectory", "series", "exhibit", "hits"})
+    if (json.contains(name)) {
+      path[name] = std::move(json[name]);
+      json.erase(name);
+    }
+  subject.trace = digest_of(path);
+  for (const auto& [name, value] : json.items()) subject.members[name] = digest_of(value);
+  subject.rest = digest_of(json);
+}
+
+Given given(const Component& component) {
+  return {.name = component.name,
+          .asked = component.asked.empty() ? component.spec : component.asked,
+          .spec = component.spec,
+          .options = component.options};
+}
+
+std::string terms_of(const Request& request) {
+  return fmt::format("seed {}, budget {}, threads {}", request.seed,
+                     to_json(request).at("budget").dump(), request.threads);
+}
+
+bool is_cut(const Record& record) {
+  return record.is_nondeterministic || record.status == Status::timeout ||
+         record.status == Status::interrupted;
+}
+
+void add_seconds(Subject& subject, const std::vector<Real>& seconds) {
+  for (const Real value : seconds)
+    if (std::isfinite(value) && value > 0)
+      subject.seconds.push_back(value);
+    else
+      ++subject.senseless_times;
 }
 
 Subject subject_of(const Record& record, const BestKnown& reference) {
   const Request& request = record.request;
-  const Summary& summary = record.summary;
   Subject subject = subject_that_ended(record.status);
   subject.key = record.cell;
-  subject.title = fmt::format("{} × {}, seed {}", shown_spec(request.problem.spec),
-                              shown_spec(request.optimizer.spec), request.seed);
+  subject.problem = given(request.problem);
+  subject.optimizer = given(request.optimizer);
+  subject.title = title_of(subject.problem, subject.optimizer, request.seed);
+  subject.terms = terms_of(request);
   subject.builds = {record.build};
-  subject.seconds = record.repeat_wall_seconds;
-  subject.is_nondeterministic = record.is_nondeterministic;
+  subject.parts = record.build_parts;
+  subject.aim = record.aim;
+  add_seconds(subject, record.repeat_wall_seconds);
+  subject.is_cut = is_cut(record);
   subject.processor = record.provenance.build->processor;
+  if (const std::string cell = cell_digest(request); cell != record.cell)
+    subject.doubt = fmt::format("its cell is not the digest of its request, {}", cell);
   if (record.status == Status::inapplicable) return subject;
-  subject.trace = trace_of(record);
-  subject.quantities = {loss_quantity("loss", summary.loss, summary.start_loss),
-                        loss_quantity("best loss", summary.best_loss, summary.start_loss)};
-  if (!std::isnan(summary.start_x_error))
-    subject.quantities.push_back(x_error_quantity(summary.x_error, summary.start_x_error));
-  add_work(subject, record, reference);
-  return subject;
-}
-
-void add_median(Subject& subject, const std::string& group, const std::string& name,
-                const Json& spread) {
-  const Json& median = spread.at("median");
-  subject.quantities.push_back(
-      {.group = group, .name = "median " + name, .value = real_of(median)});
-  subject.quantities.push_back(
-      {.group = group, .name = "runs without " + name, .value = real_of(spread.at("unsolved"))});
-}
-
-Subject subject_of_pair(const Json& cell) {
-  const auto text = [&](const char* key) { return cell.at(key).get<std::string>(); };
-  Subject subject{.key = text("problem") + " × " + text("optimizer"),
-                  .title = shown_spec(text("problem")) + " × " + shown_spec(text("optimizer")),
-                  .lost = cell.at("failed").get<std::size_t>()};
-  for (const auto& [status, count] : cell.at("statuses").items()) {
-    subject.state +=
-        fmt::format("{}{} {}", subject.state.empty() ? "" : ", ", status, count.dump());
-    if (status == "inapplicable") subject.lost += count.get<std::size_t>();
-  }
-  subject.badness = static_cast<int>(subject.lost);
-  subject.asked = cell.value("asked", std::string());
-  for (const Json& build : cell.value("builds", Json::array())) subject.builds.insert(build);
-  if (!cell.contains("figures")) return subject;
-  const Json& figures = cell.at("figures");
-  add_median(subject, "loss", "loss", figures.at("loss"));
-  if (figures.contains("x_error"))
-    add_median(subject, "error in x", "error in x", figures.at("x_error"));
-  for (const Tolerance& tolerance : kTolerances)
-    add_median(subject, "work", "work to " + figure(tolerance.tau),
-               figures.at("work").at(std::string(tolerance.name)));
+  add_digests(subject, record);
+  add_figures(subject, record, reference);
   return subject;
 }
 
@@ -106,11 +151,11 @@ int badness_of(Status status) {
 }
 
 Subject subject_that_ended(Status status) {
-  return {.key = "",
-          .title = "",
-          .state = std::string(name_of(status)),
-          .badness = badness_of(status),
-          .lost = is_lost(status)};
+  Subject subject;
+  subject.state = std::string(name_of(status));
+  subject.badness = badness_of(status);
+  subject.lost = is_lost(status);
+  return subject;
 }
 
 Status status_named(const std::string& name) {
@@ -119,34 +164,41 @@ Status status_named(const std::string& name) {
   return *status;
 }
 
-Quantity loss_quantity(const std::string& name, Real loss, Real start) {
-  return {.group = "loss", .name = name, .value = loss, .scale = start};
+std::string title_of(const Given& problem, const Given& optimizer, std::uint64_t seed) {
+  return fmt::format("{} × {}, seed {}", shown_spec(problem.spec), shown_spec(optimizer.spec),
+                     seed);
 }
 
-Quantity x_error_quantity(Real x_error, Real start) {
-  return {.group = "error in x", .name = "error in x", .value = x_error, .scale = start};
+Quantity loss_quantity(const std::string& name, Real loss, Real scale) {
+  return {.group = "loss", .name = name, .value = loss, .scale = scale};
+}
+
+Quantity x_error_quantity(Real x_error, Real scale) {
+  return {.group = "error in x", .name = "error in x", .value = x_error, .scale = scale};
 }
 
 Quantity work_quantity(Real tau, Real work) {
   return {.group = "work", .name = "work to " + figure(tau), .value = work};
 }
 
-std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference) {
-  std::vector<Subject> all(study.runs.size());
-  share(all.size(), [&](std::size_t i) { all[i] = subject_of(study.runs[i], reference); });
-  return all;
+Quantity found_quantity(Real tau, Real work) {
+  return {.group = "work to x", .name = "work to x within " + figure(tau), .value = work};
 }
 
-std::vector<Subject> subjects_of_report(const Json& report) {
-  try {
-    require(report.at("schema") == kReportSchema,
-            [&] { return fmt::format("the schema is not {}", kReportSchema); });
-    std::vector<Subject> all;
-    for (const Json& cell : report.at("cells")) all.push_back(subject_of_pair(cell));
-    return all;
-  } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("no {} report: {}", kReportSchema, error.what()));
-  }
+Real work_to(const Subject& subject, Aim aim, Real tau) {
+  const Quantity wanted = aim == Aim::x ? found_quantity(tau, kNever) : work_quantity(tau, kNever);
+  const auto at = std::ranges::find(subject.quantities, wanted.name, &Quantity::name);
+  return at == subject.quantities.end() ? kNever : at->value;
+}
+
+std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference) {
+  std::vector<Subject> all(study.runs.size());
+  share(all.size(), [&](std::size_t i) {
+    all[i] = subject_of(study.runs[i], reference);
+    if (study.disputed.contains(all[i].key))
+      all[i].doubt = "two records of this cell and build differ";
+  });
+  return all;
 }
 
 }  // namespace isoline::reports

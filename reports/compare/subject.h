@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "core/aim.h"
+#include "core/options.h"
 #include "core/records/record.h"
 #include "reports/read/reached.h"
 
@@ -18,7 +21,7 @@ struct Quantity {
   std::string group;  // "work" of "work to 1e-3"
   std::string name;
   Real value = kNever;
-  Real scale = 0;  // where rounding is measured from: the value at the start
+  Real scale = 0;  // of the problem: where rounding and what is too small to tell are measured from
 };
 
 // What runs did that started one unit in the last place away.
@@ -28,19 +31,35 @@ struct Perturbed {
   std::array<std::size_t, kTolerances.size()> reached{};  // of them, how many reached each target
 };
 
+// A problem or an optimizer as a run was given it; what is not known is empty.
+struct Given {
+  std::string name;
+  std::string asked;     // as typed: defaults and rates unfilled
+  std::string spec;      // the name and what differs from the defaults
+  OptionValues options;  // all of them
+};
+
 struct Subject {
-  std::string key;               // what joins two results
-  std::string title;             // "heat × gd, seed 3"
-  std::string state;             // "target"; "target 3, crashed 1"
-  int badness = 0;               // of the state: the greater the worse
-  std::size_t lost = 0;          // runs that went wrong or no longer apply
-  std::set<std::string> builds;  // of its records
-  std::string asked;             // digest of what was asked, where the key does not tell
+  std::string key;    // what joins two results
+  std::string title;  // "heat × gd, seed 3"
+  Given problem, optimizer;
+  std::string terms;                         // seed, budget and threads asked for; empty: unknown
+  std::string state;                         // "target"; "target 3, crashed 1"
+  int badness = 0;                           // of the state: the greater the worse
+  std::size_t lost = 0;                      // runs that went wrong or no longer apply
+  std::set<std::string> builds;              // of its records
+  std::map<std::string, std::string> parts;  // digests of its build's parts; empty: unknown
+  std::string asked;                         // digest of what a pair was asked in all its seeds
+  Aim aim = Aim::loss;
   std::vector<Quantity> quantities;
-  std::string trace;          // digest of all that is deterministic in it; empty: unknown
-  std::vector<Real> seconds;  // repetitions
+  std::string trace;                           // digest of its path; empty: unknown
+  std::map<std::string, std::string> members;  // digests of what else is deterministic, by name
+  std::string rest;                            // digest of those
+  std::vector<Real> seconds;                   // repetitions
+  std::size_t senseless_times = 0;             // of them, left out: infinite, or not a number
   std::string processor;
-  bool is_nondeterministic = false;    // a clock or a kill ended it
+  bool is_cut = false;                 // a clock or a kill ended it
+  std::string doubt;                   // why its record cannot be trusted; empty: it can
   std::optional<Perturbed> perturbed;  // where a baseline has measured it
 };
 
@@ -48,9 +67,13 @@ struct Subject {
 Subject subject_that_ended(Status status);
 int badness_of(Status status);
 Status status_named(const std::string& name);  // UsageError where there is none
-Quantity loss_quantity(const std::string& name, Real loss, Real start);
-Quantity x_error_quantity(Real x_error, Real start);
+std::string title_of(const Given& problem, const Given& optimizer, std::uint64_t seed);
+Quantity loss_quantity(const std::string& name, Real loss, Real scale);
+Quantity x_error_quantity(Real x_error, Real scale);
 Quantity work_quantity(Real tau, Real work);
+Quantity found_quantity(Real tau, Real work);  // until x was found
+// What a run took to one of the targets, in the sense of an aim; infinite where it missed it.
+Real work_to(const Subject& subject, Aim aim, Real tau);
 
 // `reference` sets f_L where a problem declares none, so that both sides have the same targets.
 std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference);

@@ -17,6 +17,7 @@ std::string json_report(const Document& document);      // schema isoline.report
 
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
 std::string terminal_section(const Section& section);  // within a hundred columns
+std::string markdown_section(const Section& section);
 
 // Parts of report.json.
 nlohmann::json statistics_json(const Document& document);

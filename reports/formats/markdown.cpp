@@ -56,7 +56,9 @@ std::string table_text(const Table& table) {
   return text + (table.is_folded ? "\n\n</details>\n\n" : "\n\n");
 }
 
-std::string section_text(const Section& section) {
+}  // namespace
+
+std::string markdown_section(const Section& section) {
   if (section.is_empty()) return "";
   std::string text = fmt::format("\n## {}\n\n", markdown_text(section.title));
   if (!section.lead.empty()) text += markdown_text(section.lead) + "\n\n";
@@ -70,8 +72,6 @@ std::string section_text(const Section& section) {
   return text;
 }
 
-}  // namespace
-
 std::string markdown_report(const Document& document) {
   std::string text =
       fmt::format("# Isoline report\n\n{}. Status: {}.\n\n", document.headline, document.statuses);
@@ -79,7 +79,7 @@ std::string markdown_report(const Document& document) {
     text += fmt::format("> **Incomplete: {}**\n\n", markdown_text(document.incomplete));
   for (const std::string& remark : document.remarks)
     text += fmt::format("- {}\n", markdown_text(remark));
-  for (const Section& section : document.sections) text += section_text(section);
+  for (const Section& section : document.sections) text += markdown_section(section);
   return text;
 }
 

@@ -63,12 +63,19 @@ bool is_newer(const Record& a, const Record& b) {
 // Where the record of each cell stands among the `kept` first ones of all.
 using Places = std::unordered_map<std::string, std::size_t>;
 
+// What no clock decides is the same in all records of one build.
+bool are_at_odds(const Record& a, const Record& b) {
+  return a.build == b.build && !a.is_nondeterministic && !b.is_nondeterministic &&
+         result_of(to_json(a)) != result_of(to_json(b));
+}
+
 void keep_newest(Study& study, Places& place, std::size_t index) {
   Record& record = study.runs[index];
   const std::size_t kept = place.size();
   const auto [at, is_first] = place.emplace(record.cell, kept);
   Record& known = study.runs[at->second];
   if (!is_first) ++study.superseded;
+  if (!is_first && are_at_odds(record, known)) study.disputed.insert(record.cell);
   if (&known != &record && (is_first || is_newer(record, known))) known = std::move(record);
 }
 

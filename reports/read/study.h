@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ struct Study {
   std::vector<AuditedOptimizer> audits;  // by name; of several folders the first that has it
   std::vector<TunedRate> rates;          // rows of tables of rates that runs used
   std::vector<Unreadable> unreadable;
-  std::size_t superseded = 0;  // readable records left aside for a newer one of the same cell
+  std::size_t superseded = 0;      // readable records left aside for a newer one of the same cell
+  std::set<std::string> disputed;  // cells of which two records of one build hold other results
   std::vector<std::filesystem::path> folders;
 
   // The exhibit of a record that keeps pictures beside it; nothing where they cannot be read.

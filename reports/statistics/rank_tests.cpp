@@ -16,6 +16,7 @@ std::vector<std::size_t> doubled_ranks(const std::vector<Real>& values) {
   std::iota(order.begin(), order.end(), 0);
   std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
   for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+    ++last;  // even where a value does not equal itself
     while (last < order.size() && values[order[last]] == values[order[first]]) ++last;
     for (std::size_t i = first; i < last; ++i) ranks[order[i]] = first + last + 1;
   }

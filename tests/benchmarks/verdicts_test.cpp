@@ -1,7 +1,10 @@
 // The verdict on a run is the harness's own: what is verified, what was hit, and what a method
 // claims beside it.
 #include <cmath>
+#include <map>
+#include <set>
 
+#include "core/ladder.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {
@@ -30,7 +33,13 @@ const FinishedMatrix& matrix() {
 }
 
 bool is_met(const Record& record, Real loss, Real tau) {
-  return loss <= *record.minimum + tau * (record.summary.start_loss - *record.minimum);
+  return std::isfinite(loss) && loss <= *record.minimum + tau * *record.scale;
+}
+
+// What a run is stopped at: the loss is quadratic in the error in x.
+Real stopping_tau(const Record& record) {
+  const Real tau = record.request.budget.target;
+  return record.aim == Aim::x ? tau * tau : tau;
 }
 
 TEST(Verdicts, VerifiedIsWhatTheReturnedPointMeets) {
@@ -54,7 +63,7 @@ TEST(Verdicts, TargetIsTheVerdictWhereverTheTargetIsMet) {
       continue;
     }
     EXPECT_EQ(record.status == Status::target,
-              is_met(record, record.summary.loss, record.request.budget.target))
+              is_met(record, record.summary.loss, stopping_tau(record)))
         << title_of(record) << " is " << name_of(record.status);
   }
 }
@@ -66,6 +75,39 @@ TEST(Verdicts, WithoutADeclaredMinimumNothingIsVerifiedAndNothingHit) {
     count += !record.minimum.has_value();
   }
   EXPECT_GT(count, 0U);  // brown-dennis[m=10]
+}
+
+TEST(Verdicts, FoundIsWhatTheErrorInXOfTheReturnedPointMeets) {
+  std::size_t met = 0, missed = 0;
+  for (const Record& record : matrix().records)
+    for (const auto& [name, tau] : kVerified) {
+      const std::optional<bool> found = record.found.at(name);
+      EXPECT_EQ(found.has_value(), record.x_scale.has_value()) << title_of(record);
+      if (!found) continue;
+      EXPECT_EQ(*found, record.summary.x_error <= x_goal(tau, *record.x_scale, record.x_floor))
+          << title_of(record) << name;
+      (*found ? met : missed) += 1;
+    }
+  EXPECT_GT(met, 50U);
+  EXPECT_GT(missed, 20U);
+}
+
+TEST(Verdicts, NameWhatTheUserOfTheProblemWants) {
+  for (const Record& record : matrix().records) {
+    if (record.status == Status::inapplicable) continue;
+    const Aim aim = catalog().problems.at(record.request.problem.name).aim;
+    EXPECT_EQ(record.aim, aim) << title_of(record);
+    EXPECT_EQ(aim, record.request.problem.name == "square" ? Aim::x : Aim::loss);
+  }
+}
+
+TEST(Verdicts, TheScaleOfTheLossIsThatOfTheProblemWhateverTheDrawnStart) {
+  std::map<std::string, std::set<Real>> scales;
+  for (const Record& record : matrix().records)
+    if (record.scale && record.request.problem.name == "rosenbrock")
+      scales[record.request.problem.spec].insert(*record.scale);
+  Real least = 24.2 / 2;  // ½Σf² at (−1.2, 1), published as 24.2
+  for (const Real scale : scales.at("rosenbrock")) EXPECT_LE(scale, least * (1 + 1e-12));
 }
 
 TEST(Verdicts, LibrariesClaimAndOurMethodsDoNot) {

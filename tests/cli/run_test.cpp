@@ -213,7 +213,7 @@ TEST_F(Run, CompareAndMergeSeeOneChangedCell) {
   EXPECT_EQ(conflict.exit_code, 2);
   EXPECT_TRUE(contains(conflict.err, "brown-dennis × gd")) << conflict.err;
   EXPECT_EQ(count_records(shell.folder() / "torn"), 2U);
-  EXPECT_EQ(shell("./isoline compare again torn").exit_code, 4);
+  EXPECT_EQ(shell("./isoline compare again torn").exit_code, 2);
 }
 
 TEST_F(Run, ValidateFindsWhatIsWrongAndExitsTwo) {

@@ -14,7 +14,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run", "report", "compare", "baseline", "merge", "claims", "list", "describe", "check",
+       {"run", "report", "compare", "baseline", "merge", "best", "claims", "list", "describe", "check",
         "audit", "validate", "tune", "train", "infer", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
@@ -27,7 +27,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
 TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   const std::string completion = Shell()("./isoline completion bash").out;
   EXPECT_TRUE(contains(completion,
-                       "\"run report compare baseline merge claims list describe check audit "
+                       "\"run report compare baseline merge best claims list describe check audit "
                        "validate tune train infer completion  --help --version\""))
       << completion;
 }
@@ -83,6 +83,7 @@ const std::vector<Mistake> kMistakes = {
     {"compare nowhere .", "nowhere"},
     {"compare . . --tolerance -1", "--tolerance"},
     {"compare . . --json --markdown", "--json"},
+    {"compare . . --allow nowhere.json", "nowhere.json"},
     {"merge nowhere --out results", "nowhere"},
     {"merge .", "--out"},
     {"claims notebok", "did you mean 'notebook'"},

@@ -14,8 +14,8 @@ namespace {
 
 Record sample() {
   Record record{.cell = "0123456789abcdef", .build = "fedcba9876543210"};
-  record.request = {.problem = {"square", {}, "square", 1},
-                    .optimizer = {"gd", {{"rate", 0.1}}, "gd[rate=0.1]", 2},
+  record.request = {.problem = {"square", {}, "square", "square"},
+                    .optimizer = {"gd", {{"rate", 0.1}}, "gd[rate=0.1]", "gd[rate=0.1]"},
                     .seed = 7};
   record.status = Status::diverged;
   record.message = "went \"away\"";

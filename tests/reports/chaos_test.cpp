@@ -111,6 +111,52 @@ TEST(Chaos, ACellThatMovesLessThanTheToleranceIsSteady) {
   EXPECT_EQ(compared({{5, change}}, hardly, hardly, {.tolerance = 1e-9}).exit_code, 0);
 }
 
+// What moved by nearly the tolerance when its start was perturbed moves beyond it on another
+// processor, which rounds in every operation.
+TEST(Chaos, ACellThatMovesByATenthOfTheToleranceIsJudgedCoarselyToo) {
+  const auto by = [](Real share) {
+    return [share](Record& record) { record.summary.loss *= 1 + share; };
+  };
+  const auto elsewhere = by(3 * kTolerance);
+  EXPECT_EQ(compared({{5, elsewhere}}, by(0.3 * kTolerance), by(0)).exit_code, 0);
+  EXPECT_EQ(compared({{5, elsewhere}}, by(0.03 * kTolerance), by(0)).exit_code, 2);
+}
+
+// Of a problem whose user wants x, the coarse targets are those of x.
+TEST(Chaos, TheCoarseTargetsAreThoseOfTheAim) {
+  const auto found = [](std::size_t hits) {
+    return [hits](Record& record) {
+      const Record other = record_of({.seed = record.request.seed, .hits = hits});
+      record.curve = other.curve;  // x to 1e-1 from 11 hits on, to 1e-3 from 31
+      record.aim = Aim::x;
+      record.x_scale = 1;
+      record.summary.loss *= 1.02;
+    };
+  };
+  const std::map<std::uint64_t, Edit> base = {{5, found(20)}};
+  const auto verdict_on = [&](const Edit& edit) {
+    const ResultFolder before, after;
+    fill(after, {{5, edit}});
+    before.add_file("baseline.json",
+                    baseline_json(study_with(base), {study_with({{5, [&](Record& record) {
+                                                                    found(20)(record);
+                                                                    record.summary.loss *= 2;
+                                                                  }}})}));
+    return compare_results(before.path() / "baseline.json", after.path(),
+                           {.tolerance = kTolerance});
+  };
+  const auto then = [&](std::size_t hits) {
+    return [&, hits](Record& record) {
+      found(hits)(record);
+      record.summary.loss *= 1.5;
+    };
+  };
+  EXPECT_EQ(verdict_on(then(20)).exit_code, kGood);
+  EXPECT_EQ(verdict_on(then(9)).exit_code, kWorse);
+  EXPECT_EQ(verdict_on(then(9)).differences.at(0).what, "target 1e-1");
+  EXPECT_EQ(verdict_on(then(40)).exit_code, kBetterOnly);
+}
+
 TEST(Chaos, WhatSomePerturbedRunsDidIsNoDifference) {
   EXPECT_EQ(compared({{5, reaches(31)}}, reaches(31)).exit_code, 0) << "one of them got there";
   EXPECT_EQ(compared({{5, reaches(12)}}, reaches(12)).exit_code, 0) << "one of them did not";

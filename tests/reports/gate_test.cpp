@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
@@ -112,6 +113,15 @@ TEST(Gate, ADifferenceOfThePathAloneIsAChange) {
   EXPECT_EQ(result.equal, 11U);
   ASSERT_EQ(result.differences.size(), 1U);
   EXPECT_EQ(result.differences[0].change, Change::changed);
+  EXPECT_TRUE(has(result.differences[0].note, "the path differs"));
+}
+
+TEST(Gate, WhatDiffersBesideThePathIsCalledByItsName) {
+  const GateResult result = compared([](Record& record) { record.message = "as it likes"; });
+  EXPECT_EQ(result.exit_code, 0);
+  ASSERT_EQ(result.differences.size(), 1U);
+  EXPECT_EQ(result.differences[0].what, "message");
+  EXPECT_FALSE(has(gate_terminal(result), "the path differs")) << gate_terminal(result);
 }
 
 TEST(Gate, AnotherBuildIsNotComparableWithoutATolerance) {
@@ -127,12 +137,12 @@ TEST(Gate, AnotherBuildIsNotComparableWithoutATolerance) {
   EXPECT_EQ(compared(broken).exit_code, 2);
 }
 
-TEST(Gate, CellsOfOneSideAreListedAndThoseThatNewLacksDoNotPass) {
+TEST(Gate, CellsOfOneSideAreListedAndThoseThatNewLacksAreWorse) {
   const ResultFolder all, some;
   fill(all, [](Record&) {});
   some.add(read_study({all.path()}).runs[0]);
   const GateResult lacking = compare_results(all.path(), some.path(), {});
-  EXPECT_EQ(lacking.exit_code, 4);
+  EXPECT_EQ(lacking.exit_code, kWorse);
   EXPECT_EQ(lacking.only_before.size(), 11U);
   EXPECT_EQ(compare_results(all.path(), some.path(), {.is_common_only = true}).exit_code, 0);
   const GateResult grown = compare_results(some.path(), all.path(), {});
@@ -141,15 +151,6 @@ TEST(Gate, CellsOfOneSideAreListedAndThoseThatNewLacksDoNotPass) {
   const ResultFolder empty;
   EXPECT_EQ(compare_results(all.path(), empty.path(), {.is_common_only = true}).exit_code, 4);
   EXPECT_THROW(compare_results(all.path(), "/no/such/folder", {}), UsageError);
-}
-
-TEST(Gate, CellsEndedByAClockAreComparedByStatusAlone) {
-  const GateResult result = compared([](Record& record) {
-    record.is_nondeterministic = true;
-    record.summary.loss *= 2;
-  });
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_TRUE(has(gate_terminal(result), "ended by a clock")) << gate_terminal(result);
 }
 
 TEST(Gate, SaysWhereRepetitionsAreTooFew) {

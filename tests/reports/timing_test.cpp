@@ -103,5 +103,12 @@ TEST(Timing, IsTheSameEachTime) {
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].noise, second[i].noise);
 }
 
+// A rank that equals no other must end the search for its equals.
+TEST(Timing, RanksOfWhatIsNotANumberEnd) {
+  const std::vector<Real> with_nan = {0.1, std::nan(""), 0.2};
+  EXPECT_EQ(mid_ranks(with_nan).size(), 3U);
+  EXPECT_LE(mann_whitney_p(with_nan, {0.1, 0.3, 0.4}), 1);
+}
+
 }  // namespace
 }  // namespace isoline::reports

@@ -62,7 +62,6 @@ void expect_described(const Entry& entry) {
   EXPECT_FALSE(entry.title.empty()) << entry.name;
   EXPECT_FALSE(entry.formula.empty()) << entry.name;
   EXPECT_FALSE(entry.source.empty()) << entry.name;
-  EXPECT_GE(entry.revision, 1) << entry.name;
   std::set<std::string> options;
   for (const OptionField& option : entry.options) {
     EXPECT_FALSE(option.doc.empty()) << entry.name << ": " << option.name;

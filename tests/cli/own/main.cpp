@@ -51,5 +51,5 @@ Catalog with_mine() {
 }  // namespace isoline
 
 int main(int count, char** arguments) {
-  return isoline::main(count, arguments, isoline::with_mine, {kCommit, kDirty});
+  return isoline::main(count, arguments, isoline::with_mine, {kCommit, kDirty, kSources});
 }

@@ -1,0 +1,46 @@
+// Holds the names of records to what they hold.
+#include "benchmarks/merge/contradictions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "benchmarks/merge/join.h"
+#include "core/json.h"
+#include "core/records/request.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+auto place_of(const RecordIdentity& record) {
+  return std::tuple(record.file.parent_path(), record.cell, record.build);
+}
+
+}  // namespace
+
+std::string cell_violation(const Json& record) {
+  const auto claimed = record.at("cell").get<std::string>();
+  const std::string cell = request_from_json(record.at("request")).cell;
+  if (cell == claimed) return "";
+  return fmt::format("its cell is {}, the digest of its request is {}", claimed, cell);
+}
+
+std::vector<DoubleRecord> double_records(std::vector<RecordIdentity> records) {
+  std::ranges::sort(records, {}, [](const RecordIdentity& record) {
+    return std::tuple_cat(place_of(record), std::tuple(record.file));
+  });
+  std::vector<DoubleRecord> all;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const RecordIdentity &first = records[i - 1], &second = records[i];
+    if (place_of(first) != place_of(second)) continue;
+    const JoinedRecord both = join_records(read_json(first.file), read_json(second.file));
+    if (!both.difference.empty())
+      all.push_back({second.file, fmt::format("{} is of the same cell and build and differs at {}",
+                                              first.file.filename().string(), both.difference)});
+  }
+  return all;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,98 @@
+# cmake -DROOT=… -DOUTPUT=… -P SourceDigests.cmake
+#
+# Digests of what computes a run, written as the C++ function tree_sources(): "harness" is all of
+# core/ outside core/records/ and whatever benchmarks/run/execute.cpp reaches; each file that
+# registers a component has the digest of itself and of what it reaches besides. A file reaches what
+# it includes; a header reaches the file of its name that implements it, and those without a header
+# of their own that include it first.
+cmake_minimum_required(VERSION 3.25)
+set(rooms core networks problems optimizers benchmarks/plan benchmarks/run)
+
+foreach(room IN LISTS rooms)
+  file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/${room}/*.h ${ROOT}/${room}/*.cpp)
+  list(APPEND files ${found})
+endforeach()
+list(FILTER files EXCLUDE REGEX "^core/records/")
+list(SORT files)
+
+foreach(file IN LISTS files)
+  file(SHA256 ${ROOT}/${file} digest_of_${file})
+  file(STRINGS ${ROOT}/${file} lines REGEX "^#include \"")
+  list(TRANSFORM lines REPLACE "^#include \"([^\"]*)\".*" "\\1")
+  set(included "")
+  foreach(line IN LISTS lines)
+    if(line IN_LIST files)
+      list(APPEND included ${line})
+    endif()
+  endforeach()
+  list(APPEND reached_by_${file} ${included})
+  if(NOT file MATCHES "\\.cpp$")
+    continue()
+  endif()
+  cmake_path(GET file STEM stem)
+  file(STRINGS ${ROOT}/${file} definition REGEX "void register_${stem}\\(" LIMIT_COUNT 1)
+  cmake_path(REPLACE_EXTENSION file .h OUTPUT_VARIABLE header)
+  if(definition)
+    list(APPEND components ${file})
+  elseif(NOT header IN_LIST files AND included)
+    list(GET included 0 header)
+  endif()
+  list(APPEND reached_by_${header} ${file})
+endforeach()
+
+# closure(out first...): the files that these reach, and they themselves, sorted.
+function(closure out)
+  set(open ${ARGN})
+  set(found ${ARGN})
+  while(open)
+    list(POP_BACK open file)
+    foreach(next IN LISTS reached_by_${file})
+      if(NOT next IN_LIST found)
+        list(APPEND found ${next})
+        list(APPEND open ${next})
+      endif()
+    endforeach()
+  endwhile()
+  list(SORT found)
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
+# add_entry(name files...): one line of the table.
+function(add_entry name)
+  set(text "")
+  foreach(file IN LISTS ARGN)
+    string(APPEND text "${file} ${digest_of_${file}}\n")
+  endforeach()
+  string(SHA256 digest "${text}")
+  string(SUBSTRING ${digest} 0 16 digest)
+  set(entries "${entries}      {\"${name}\", \"${digest}\"},\n" PARENT_SCOPE)
+endfunction()
+
+set(harness ${files})
+list(FILTER harness INCLUDE REGEX "^core/")
+closure(run_loop benchmarks/run/execute.cpp)
+list(APPEND harness ${run_loop})
+list(REMOVE_DUPLICATES harness)
+list(SORT harness)
+add_entry(harness ${harness})
+foreach(component IN LISTS components)
+  closure(parts ${component})
+  list(REMOVE_ITEM parts ${harness})
+  list(REMOVE_ITEM parts ${component})
+  add_entry(${component} ${component} ${parts})
+endforeach()
+
+file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
+// Generated from the sources: what computes each component, as digests.
+#include "benchmarks/plan/build_parts.h"
+
+namespace isoline::benchmarks {
+
+const std::map<std::string, std::string>& tree_sources() {
+  static const std::map<std::string, std::string> all{
+@entries@  };
+  return all;
+}
+
+}  // namespace isoline::benchmarks
+]])

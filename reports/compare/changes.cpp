@@ -1,0 +1,131 @@
+// Holds the options and the builds of paired subjects to each other.
+#include "reports/compare/changes.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/spec.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+// "1e-4", "1e4", "0.9": the shorter of two ways.
+std::string option_text(const OptionValue& value) {
+  const Real* const number = std::get_if<Real>(&value);
+  const std::string plain = text_of(value);
+  if (number == nullptr || !std::isfinite(*number) || *number == 0) return plain;
+  const int exponent = static_cast<int>(std::floor(std::log10(std::abs(*number))));
+  const std::string scientific = fmt::format(
+      "{}e{}", std::stod(fmt::format("{:.15g}", *number * std::pow(10, -exponent))), exponent);
+  return scientific.size() < plain.size() ? scientific : plain;
+}
+
+bool is_set_in(const std::string& spec, const std::string& option) {
+  const Spec parsed = parse_spec(spec);
+  return std::ranges::find(parsed.options, option, &std::pair<std::string, std::string>::first) !=
+         parsed.options.end();
+}
+
+// Paired by what was asked, two differ in an option only by a default or by a table of rates.
+std::string change_text(const Given& a, const Given& b, const std::string& option) {
+  const OptionValue* const old = a.options.find(option);
+  const OptionValue* const now = b.options.find(option);
+  if (old == nullptr) return fmt::format("new option {} {}", option, option_text(*now));
+  if (now == nullptr) return fmt::format("option {} is gone, it was {}", option, option_text(*old));
+  if (is_set_in(a.spec, option) && is_set_in(b.spec, option))
+    return fmt::format("tabled {} {} → {}", option, option_text(*old), option_text(*now));
+  return fmt::format("default of {} {} → {}", option, option_text(*old), option_text(*now));
+}
+
+void count_changes(const Given& a, const Given& b, std::map<std::string, std::size_t>& changes) {
+  if (a.options.empty() && b.options.empty()) return;
+  if (a.spec.empty() || b.spec.empty() || a.options == b.options) return;
+  std::set<std::string> options;
+  for (const OptionValues* values : {&a.options, &b.options})
+    for (const NamedOption& each : *values) options.insert(each.name);
+  for (const std::string& option : options) {
+    const OptionValue* const old = a.options.find(option);
+    const OptionValue* const now = b.options.find(option);
+    if (old != nullptr && now != nullptr && *old == *now) continue;
+    ++changes[a.name + ": " + change_text(a, b, option)];
+  }
+}
+
+// A part of a build, and how its change is told.
+struct Part {
+  const char *name, *text;
+};
+constexpr std::array<Part, 5> kParts = {
+    {{"platform", "another platform (compiler, flags, libraries or kernel)"},
+     {"harness", "another harness (core, meter or run loop)"},
+     {"problem", "another source of the problems"},
+     {"network", "another source of the networks of"},
+     {"optimizer", "another source of the optimizers"}}};
+
+struct PartChange {
+  std::set<std::string> names;  // of problems or optimizers, where it is theirs
+  std::size_t cells = 0;
+};
+
+void count_parts(const Subject& a, const Subject& b, std::map<std::string, PartChange>& changes) {
+  for (const Part& part : kParts) {
+    const auto old = a.parts.find(part.name), now = b.parts.find(part.name);
+    const bool is_known = old != a.parts.end() && now != b.parts.end();
+    if (!is_known || old->second == now->second) continue;
+    PartChange& change = changes[part.name];
+    ++change.cells;
+    const std::string name = part.name;
+    if (name == "optimizer") change.names.insert(b.optimizer.name);
+    if (name == "problem" || name == "network") change.names.insert(b.problem.name);
+  }
+}
+
+}  // namespace
+
+std::string names_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 12;
+  if (names.size() <= kMost) return joined(names);
+  return fmt::format("{} and {} more", joined({names.begin(), names.begin() + kMost}),
+                     names.size() - kMost);
+}
+
+std::vector<std::string> changed_settings(const Pairs& pairs) {
+  std::map<std::string, std::size_t> changes;
+  for (const auto& [a, b] : pairs.both) {
+    count_changes(a->problem, b->problem, changes);
+    count_changes(a->optimizer, b->optimizer, changes);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [text, cells] : changes)
+    lines.push_back(fmt::format("{} ({})", text, counted(cells, "cell")));
+  return lines;
+}
+
+std::vector<std::string> changed_builds(const Pairs& pairs) {
+  std::map<std::string, PartChange> changes;
+  std::size_t silent = 0;
+  for (const auto& [a, b] : pairs.both) {
+    if (a->builds == b->builds) continue;
+    count_parts(*a, *b, changes);
+    silent += a->parts.empty() || b->parts.empty();
+  }
+  std::vector<std::string> lines;
+  for (const Part& part : kParts) {
+    const auto at = changes.find(part.name);
+    if (at == changes.end()) continue;
+    const auto& [names, cells] = at->second;
+    const std::string of = names.empty() ? "" : " " + names_text({names.begin(), names.end()});
+    lines.push_back(fmt::format("{}{}: {}", part.text, of, counted(cells, "cell")));
+  }
+  if (silent > 0)
+    lines.push_back(fmt::format("another build, whose parts a side does not tell: {}",
+                                counted(silent, "cell")));
+  return lines;
+}
+
+}  // namespace isoline::reports

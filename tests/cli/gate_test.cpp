@@ -1,0 +1,130 @@
+// The gate of this repository on runs of the built program: each planted fault fails it, with one
+// line that names the cause.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "core/exit.h"
+#include "core/records/record.h"
+#include "tests/cli/shell.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kRun = "./isoline run --problem square,brown-dennis --iterations 20 --no-report ";
+
+// A baseline of adam, gd and newton on two problems, and the same results beside it.
+class PlantedFault : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(shell(kRun + "--optimizer adam,gd,newton --out new").exit_code, 0);
+    const Finished made = shell(
+        "./isoline baseline new --perturbations 1 --out base.json && ./isoline validate "
+        "base.json");
+    ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+  }
+
+  Finished gate() const {
+    return shell("ISOLINE=./isoline BASELINE=base.json bash " ISOLINE_SOURCE_DIR
+                 "/.ci/compare new");
+  }
+
+  // Every record of an optimizer as a changed program would have written it.
+  void change_records(const std::string& optimizer, const std::function<void(Record&)>& edit) {
+    std::vector<Record> records;
+    for (const auto& entry : fs::directory_iterator(runs)) {
+      Record record = read_record(entry.path());
+      if (record.request.optimizer.name != optimizer) continue;
+      fs::remove(entry.path());
+      records.push_back(std::move(record));
+    }
+    ASSERT_EQ(records.size(), 2U);
+    for (Record& record : records) {
+      edit(record);
+      record.cell = cell_digest(record.request);
+      write_text(runs / record.file_name(), to_json(record).dump());
+    }
+  }
+
+  // It fails, and the last line on standard error is the cause.
+  void expect_fault(int exit_code, const std::string& cause) {
+    const Finished result = gate();
+    EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
+    const std::size_t last = result.err.rfind('\n', result.err.size() - 2);
+    const std::string line = result.err.substr(last == std::string::npos ? 0 : last + 1);
+    EXPECT_TRUE(contains(line, cause)) << result.err;
+    EXPECT_EQ(read_text(shell.folder() / "new/comparison.md"), result.out);
+  }
+
+  Shell shell;
+  fs::path runs = shell.folder() / "new" / "runs";
+};
+
+TEST_F(PlantedFault, NoneLetsTheSameResultsPass) {
+  const Finished result = gate();
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_TRUE(contains(result.out, "Comparison: equal")) << result.out;
+  EXPECT_TRUE(contains(result.out, "| NEW | ")) << "the trend ends with the new results";
+}
+
+TEST_F(PlantedFault, InADefaultFailsTheGate) {
+  change_records("adam", [](Record& record) {
+    record.request.optimizer.options.set("epsilon", 1e-2);  // from 1e-8
+    record.summary.loss *= 1.5;
+    record.build_parts["optimizer"] = "0123456789abcdef";
+  });
+  expect_fault(kWorse, "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); adam in all 2");
+  EXPECT_TRUE(contains(gate().out, "another source of the optimizers adam: 2 cells"));
+}
+
+TEST_F(PlantedFault, InAFormulaFailsTheGate) {
+  change_records("gd", [](Record& record) { record.summary.loss *= 1 + 1e-5; });
+  expect_fault(kWorse, "worse: gd in all 2 cells, in ");
+}
+
+TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {
+  fs::remove_all(shell.folder() / "new");
+  ASSERT_EQ(shell(kRun + "--optimizer adam,gd --out new").exit_code, 0);
+  expect_fault(kWorse, "worse: NEW lacks 2 cells of BASE (all 2 of newton)");
+  write_text(shell.folder() / "allowed.json",
+             R"({"schema": "isoline.allowed/1",
+                 "cells": [{"optimizer": "newton", "reason": "it moved out"}]})");
+  EXPECT_EQ(
+      shell("./isoline compare base.json new --tolerance 1e-6 --allow allowed.json").exit_code, 0);
+}
+
+TEST_F(PlantedFault, ACellThatAClockCutFailsTheGate) {
+  change_records("newton", [](Record& record) { record.is_nondeterministic = true; });
+  expect_fault(kNotComparable, "a clock or a kill ended it in NEW");
+}
+
+TEST_F(PlantedFault, BetterResultsPass) {
+  change_records("gd", [](Record& record) { record.summary.loss *= 0.5; });
+  const Finished result = gate();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "Comparison: better, nothing worse")) << result.out;
+}
+
+TEST_F(PlantedFault, InARecordIsFoundByValidate) {
+  const fs::path file = fs::directory_iterator(runs)->path();
+  Record record = read_record(file);
+  record.summary.loss *= 2;
+  write_text(runs / "copy.json", to_json(record).dump());
+  const Finished twice = shell("./isoline validate new");
+  EXPECT_EQ(twice.exit_code, 2) << twice.out;
+  EXPECT_TRUE(contains(twice.out, "is of the same cell and build and differs at /summary/loss"))
+      << twice.out;
+  fs::remove(runs / "copy.json");
+  EXPECT_EQ(shell("./isoline validate new").exit_code, 0);
+  record.request.seed = 77;
+  write_text(file, to_json(record).dump());
+  const Finished renamed = shell("./isoline validate new");
+  EXPECT_EQ(renamed.exit_code, 2) << renamed.out;
+  EXPECT_TRUE(contains(renamed.out, "its cell is ")) << renamed.out;
+}
+
+}  // namespace
+}  // namespace isoline::benchmarks

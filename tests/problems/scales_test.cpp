@@ -1,0 +1,102 @@
+// By what a loss and an error in x are called small: the problem's own measure, whatever the start
+// that was drawn.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "problems/dense_physics.h"
+#include "tests/problems/make.h"
+
+namespace isoline::problems {
+namespace {
+
+class Doubled final : public DensePhysics {
+ public:
+  Doubled() : DensePhysics(1, 1) {}
+  void value(VectorRef x, VectorOut y) const override { y = 2 * x; }
+  void derivative(VectorRef, BatchOut J) const override { J(0, 0) = 2; }
+};
+
+Real loss_scale(const Problem& problem) { return problem.loss_scale(problem.batch()); }
+Real x_scale(const Problem& problem) { return problem.x_scale(problem.batch()); }
+
+TEST(Scales, OfALossWithoutSignalIsThatOfTheStandardStart) {
+  for (const char* name : {"rosenbrock", "beale", "wood", "square", "scaling"}) {
+    const Real published = loss_scale(make(name));
+    EXPECT_EQ(published, loss_at_start(make(name))) << name;
+    for (const std::uint64_t seed : {1U, 2U, 3U})
+      EXPECT_EQ(loss_scale(make(name, seed)), published) << name << ", seed " << seed;
+  }
+}
+
+TEST(Scales, OfALossWithASignalIsThatOfNoOutput) {
+  const Problem sine = make("sine");
+  EXPECT_DOUBLE_EQ(loss_scale(sine), 0.5 * sine.target().squaredNorm());
+  const Problem exponential = make("exponential");  // y* = e⁻⁶: its start is at y = 1
+  EXPECT_DOUBLE_EQ(loss_scale(exponential), 0.5 * std::exp(-12));
+  EXPECT_GT(loss_at_start(exponential), 1e4 * loss_scale(exponential));
+}
+
+TEST(Scales, OfALossThatDoesNotVanishIsItsLeast) {
+  const Problem problem = make("brown-dennis", 3);
+  EXPECT_EQ(loss_scale(problem), *problem.minimum());
+}
+
+TEST(Scales, OfALossIsWhatTheProblemDeclares) {
+  const Problem problem({.physics = std::make_unique<Doubled>(),
+                         .start = Vector::Ones(1),
+                         .target = Matrix::Ones(1, 1),
+                         .minimum = 0,
+                         .scale = 7,
+                         .x_error = [](BatchRef x, const Batch&) { return x.norm(); },
+                         .x_scale = 5});
+  EXPECT_EQ(loss_scale(problem), 7);
+  EXPECT_EQ(x_scale(problem), 5);
+  EXPECT_EQ(problem.x_floor(problem.batch()), 0);
+}
+
+TEST(Scales, OfXAreTheSolutionsNormOrThatOfTheStandardStart) {
+  EXPECT_DOUBLE_EQ(x_scale(make("exponential")), 6);  // |log e⁻⁶|
+  EXPECT_DOUBLE_EQ(x_scale(make("rosenbrock", 3)), std::sqrt(2));
+  EXPECT_DOUBLE_EQ(x_scale(make("square", 3)), std::hypot(3, 3));  // x* = 0; the standard start
+  const Problem poisson = make("poisson[N=8]", 2);
+  EXPECT_DOUBLE_EQ(x_scale(poisson), poisson.truth()->norm());
+}
+
+TEST(Scales, OfALearningProblemAreMeansOverItsValidation) {
+  const Problem problem = make("exponential[mode=learn]");
+  Batch validation;
+  problem.draw_validation(validation);
+  EXPECT_DOUBLE_EQ(problem.x_scale(validation), validation.truth.cwiseAbs().mean());
+  EXPECT_FALSE(problem.minimum().has_value());  // no network attains 0
+}
+
+TEST(Scales, HeatHasTheFloorThatItsDampedInverseLeavesOfExactData) {
+  const Problem problem = make("heat[N=8]");
+  Point at;
+  problem.forward(Vector::Zero(problem.unknowns()), at);
+  Matrix x(problem.inputs(), 1);
+  problem.local_inverse(problem.target(), x, at);
+  const Real floor = problem.x_floor(problem.batch());
+  EXPECT_DOUBLE_EQ(floor, (x - *problem.truth()).norm());
+  EXPECT_GT(floor, 1e-6 * x_scale(problem));  // or none would be needed
+  EXPECT_LT(floor, x_scale(problem));
+  EXPECT_EQ(make("poisson[N=8]").x_floor(problem.batch()), 0);
+}
+
+TEST(Scales, WhoSeeksXSaysSoAndKnowsIt) {
+  for (const auto& [name, entry] : all_problems()) {
+    const Problem problem = make(name);
+    EXPECT_EQ(problem.aim(), entry.aim) << name;
+    if (entry.aim == Aim::x && !problem.is_learned()) {
+      EXPECT_GT(x_scale(problem), 0) << name;
+    }
+  }
+  for (const char* name : {"scaling", "square", "exponential", "poisson", "heat"})
+    EXPECT_EQ(all_problems().at(name).aim, Aim::x) << name;
+  for (const char* name : {"sine", "rosenbrock", "brown-dennis", "hig-toy"})
+    EXPECT_EQ(all_problems().at(name).aim, Aim::loss) << name;
+}
+
+}  // namespace
+}  // namespace isoline::problems
