@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
