@@ -6,7 +6,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/measure_words.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "reports/formats/escape.h"
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
+#include "reports/read/orders.h"
 
 namespace isoline::reports {
 namespace {
@@ -180,7 +181,10 @@ void fill_standings(Comparison& c) {
 std::optional<Lead> lead_of(const Comparison& c, bool is_open, Measure by) {
   Costs costs = common_costs(c, kTightest, by);
   if (is_open) costs = without_privileged(c, std::move(costs));
-  return lead_among(costs, groups_of(c), family_of(c, c.order));
+  std::optional<Lead> lead = lead_among(costs, groups_of(c), family_of(c, c.order));
+  // Of three methods or more it is asked first whether they differ at all.
+  if (lead && lead->rivals.size() > 1 && friedman_of(c) > kSignificant) lead->is_settled = false;
+  return lead;
 }
 
 }  // namespace isoline::reports

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/statistics/friedman.h"
 #include "reports/statistics/rank_tests.h"
 #include "reports/statistics/runtimes.h"

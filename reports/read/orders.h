@@ -16,8 +16,9 @@ std::map<std::string, std::vector<Real>> ranks_by_name(const Comparison& compari
 // Friedman's p over these ranks, of the methods that apply to most of the settings.
 Real friedman_of(const Comparison& comparison);
 
-// Minus the digits gained on each problem given to an optimizer, of a ranked one the common ones, at the best point seen or at the
-// one returned: the median over seeds. A failed run gains none, which is infinitely few.
+// Minus the digits gained on each problem given to an optimizer, of a ranked one the common ones,
+// at the best point seen or at the one returned: the median over seeds. A failed run gains none,
+// which is infinitely few.
 std::vector<Real> lacking_digits(const Comparison& comparison, std::size_t optimizer,
                                  Real Summary::*loss);
 Real lacking_digits(const Comparison& comparison, const Cell& cell, Real Summary::*loss);

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/read/orders.h"
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <set>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
@@ -13,14 +15,21 @@
 namespace isoline::reports {
 namespace {
 
+// Methods, however many meanings each has: all, or those that were given a problem.
+std::size_t methods_of(const Comparison& c, std::optional<std::size_t> problem = {}) {
+  std::set<std::string> names;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (!problem || c.cell(*problem, s).planned > 0) names.insert(c.optimizers[s].name_of_all());
+  return names.size();
+}
+
 // "heat: 17, heat[N=16]: 12" where some problems were not asked of every optimizer; else empty.
 std::string partial_rows(const Comparison& c) {
   constexpr std::size_t kNamed = 8;
   std::vector<std::string> rows;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const auto planned =
-        std::ranges::count_if(c.cells[p], [](const Cell& x) { return x.planned > 0; });
-    if (static_cast<std::size_t>(planned) < c.optimizers.size())
+    const std::size_t planned = methods_of(c, p);
+    if (planned < methods_of(c))
       rows.push_back(fmt::format("{}: {}", shown_spec(c.problems[p].spec), planned));
   }
   const std::size_t more = rows.size() > kNamed ? rows.size() - kNamed : 0;
@@ -129,7 +138,7 @@ std::string missing_text(const Comparison& comparison) {
 std::string headline(const Comparison& c) {
   std::string problems = counted(c.names, "problem");
   if (c.problems.size() > c.names) problems += fmt::format(" ({} settings)", c.problems.size());
-  return fmt::format("{} on {}, {}, {}", counted(c.optimizers.size(), "optimizer"), problems,
+  return fmt::format("{} on {}, {}, {}", counted(methods_of(c), "optimizer"), problems,
                      counted(c.seeds.size(), "seed"), counted(c.study->runs.size(), "run"));
 }
 
@@ -139,10 +148,10 @@ std::vector<std::string> remarks(const Comparison& c) {
   if (const std::string rows = partial_rows(c); !rows.empty())
     all.push_back(fmt::format(
         "Not every problem was given to every optimizer, as where a grid is too large for methods "
-        "that factorize a matrix or take no derivatives. An empty cell was never planned and counts "
-        "for nobody: work is compared within one problem, and each optimizer is judged on the "
-        "problems given to it. Optimizers by problem, of {}: {}.",
-        c.optimizers.size(), rows));
+        "that factorize a matrix or take no derivatives. An empty cell was never planned. Methods are "
+        "ranked on the {} that all ranked ones were given; what only some were given forms orders of "
+        "its own. Optimizers by problem, of {}: {}.",
+        counted(c.order.settings.size(), setting_noun(c)), methods_of(c), rows));
   if (study.superseded > 0)
     all.push_back(
         fmt::format("{} older results of the same cells were left aside.", study.superseded));

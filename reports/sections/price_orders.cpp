@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/read/leaders.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/measure_words.h"

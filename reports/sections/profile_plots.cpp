@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/measure_words.h"

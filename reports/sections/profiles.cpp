@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/measure_words.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"

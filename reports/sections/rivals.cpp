@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/read/orders.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"
@@ -22,30 +22,28 @@ constexpr std::size_t kMostRanks = 20;
 // The profiles of two alone, on the problems given to both.
 Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
   std::vector<std::optional<Real>> mine(costs.size()), other(costs.size());
-  std::size_t n = 0, wins = 0, losses = 0;
   for (std::size_t p = 0; p < costs.size(); ++p) {
     if (!costs[p][0] || !costs[p][rival]) continue;
     const auto ratios = cost_ratios({costs[p][0], costs[p][rival]});
     mine[p] = ratios[0];
     other[p] = ratios[1];
-    ++n;
-    wins += *ratios[0] < *ratios[1];
-    losses += *ratios[1] < *ratios[0];
   }
   std::vector<Real> grid;
   for (Real i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8));
+  const Pairing pairing = pairing_of(costs, groups_of(c), 0, rival);
+  const std::size_t even = pairing.ties + pairing.neither;
   const std::string names[] = {optimizer_text(c, 0), optimizer_text(c, rival)};
   return {.id = fmt::format("plot-pair-{}", rival),
           .title = fmt::format("{} against {} alone", names[0], names[1]),
           .reading = fmt::format("{} needs less on {} of {} problems, {} on {}; {} tie{}.",
-                                 names[0], wins, n, names[1], losses, n - wins - losses,
-                                 n - wins - losses == 1 ? "" : "s"),
+                                 names[0], pairing.wins, pairing.doublings.size() + pairing.neither,
+                                 names[1], pairing.losses, even, even == 1 ? "" : "s"),
           .caption = fmt::format("Profiles of two alone, {} to {}, with 95 % bands; failed: {} and "
                                  "{}.",
                                  counted_name(c), tau_name(c), failed_cell(c, 0).text,
                                  failed_cell(c, rival).text),
           .x_label = "factor of the less of the two",
-          .y_label = "share of problems",
+          .y_label = fmt::format("share of {}s", setting_noun(c)),
           .is_log_x = true,
           .series = {share_series(c, 0, mine, grid), share_series(c, rival, other, grid)}};
 }

@@ -1,7 +1,7 @@
 // Who solves the problems: the verdict, the standings of the common order, and who stands apart.
 #include <fmt/format.h>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"

@@ -161,8 +161,8 @@ TEST(Comparison, TwoGridsOfOneEquationAreOneProblem) {
 }
 
 // "sine-x" sorts between "sine" and "sine[xi=32]", which are of one name all the same. On sine the
-// two are even, on sine-x a is ahead: one draw in four has sine alone, where they share the lead, so
-// a keeps 7/8. Were the settings of sine drawn apart, it would keep 17/27.
+// two are even, on sine-x a is ahead: one draw in four has sine alone, where they share the lead,
+// so a keeps 7/8. Were the settings of sine drawn apart, it would keep 17/27.
 TEST(Comparison, SettingsOfOneProblemAreDrawnTogetherWhateverStandsBetweenThem) {
   const Study study = study_of({{"sine", "a", 1},
                                 {"sine", "b", 100},

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/sections.h"

@@ -1,5 +1,5 @@
 // Finds the fields of methods that were given the same settings.
-#include "reports/read/fields.h"
+#include "reports/read/grounds.h"
 
 #include <algorithm>
 #include <map>
