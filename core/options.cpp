@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/spec.h"
 #include "core/suggest.h"
 
 namespace isoline {
@@ -156,7 +157,9 @@ std::string short_spec(const OptionTable& table, const std::string& name,
   std::vector<std::string> given;
   for (const OptionField& field : table) {
     const OptionValue& value = options.at(field.name);
-    if (value != field.standard) given.push_back(field.name + "=" + text_of(value));
+    if (value == field.standard) continue;
+    const std::string* text = std::get_if<std::string>(&value);
+    given.push_back(field.name + "=" + (text ? quoted(*text) : text_of(value)));
   }
   return given.empty() ? name : fmt::format("{}[{}]", name, fmt::join(given, ","));
 }

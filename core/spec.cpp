@@ -5,24 +5,37 @@
 
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/json.h"
 
 namespace isoline {
 namespace {
 
-// Splits at `separator` outside of any bracket.
+// Where the text in double quotes that begins at `begin` ends: past its closing quote.
+std::size_t end_of_quoted(std::string_view text, std::size_t begin) {
+  std::size_t at = begin + 1;
+  while (at < text.size() && text[at] != '"') at += text[at] == '\\' ? 2 : 1;
+  require(at < text.size(), [&] { return fmt::format("'{}' leaves a quote open", text); });
+  return at + 1;
+}
+
+// Splits at `separator` outside of any bracket and of text in double quotes.
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts{""};
   int depth = 0;
-  for (const char letter : text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const char letter = text[at];
+    const std::size_t end = letter == '"' ? end_of_quoted(text, at) : at + 1;
     depth += (letter == '[') - (letter == ']');
     require(depth >= 0,
             [&] { return fmt::format("'{}' closes a bracket that it did not open", text); });
     if (letter == separator && depth == 0)
       parts.emplace_back();
     else
-      parts.back() += letter;
+      parts.back() += text.substr(at, end - at);
+    at = end;
   }
   require(depth == 0, [&] { return fmt::format("'{}' leaves a bracket open", text); });
   return parts;
@@ -34,6 +47,12 @@ std::string trim(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\n") - first + 1));
 }
 
+// A value as it is meant: a JSON string where it stands in double quotes, else as it is written.
+std::string unquoted(const std::string& value) {
+  if (!value.starts_with('"')) return value;
+  return parse_json(value, "the value " + value).get<std::string>();
+}
+
 // All specs that `name` makes with one more option, a value each.
 std::vector<Spec> crossed(const std::vector<Spec>& specs, const std::string& key,
                           const std::vector<std::string>& values) {
@@ -41,7 +60,7 @@ std::vector<Spec> crossed(const std::vector<Spec>& specs, const std::string& key
   for (const Spec& spec : specs)
     for (const std::string& value : values) {
       all.push_back(spec);
-      all.back().options.emplace_back(key, trim(value));
+      all.back().options.emplace_back(key, unquoted(trim(value)));
     }
   return all;
 }
@@ -85,6 +104,16 @@ Spec parse_spec(std::string_view text) {
   const std::vector<Spec> specs = parse_specs(text);
   require(specs.size() == 1, [&] { return fmt::format("expected one component, got '{}'", text); });
   return specs[0];
+}
+
+std::string quoted(const std::string& value) {
+  const auto is_one = [&](char separator) { return split(value, separator).size() == 1; };
+  try {
+    const bool is_whole = !value.empty() && !value.starts_with('"') && trim(value) == value;
+    if (is_whole && is_one(',') && is_one('|')) return value;
+  } catch (const UsageError&) {  // it opens what it does not close
+  }
+  return json_text(value);
 }
 
 OptionValues options_of(const Spec& spec) {

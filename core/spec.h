@@ -1,5 +1,6 @@
 // The language of the command line and of suites: SPEC := name[key=value,…]. A value may itself be
-// a SPEC; commas split only at depth 0; `|` sweeps: sine[xi=1|3|10] is three specs.
+// a SPEC; commas split only at depth 0; `|` sweeps: sine[xi=1|3|10] is three specs. A value may be
+// a JSON string in double quotes, inside which , | [ ] are literal.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,9 @@ struct Spec {
 // "a[x=1|2],b" -> a[x=1], a[x=2], b.
 std::vector<Spec> parse_specs(std::string_view text);
 Spec parse_spec(std::string_view text);  // UsageError unless it is exactly one
+
+// A text as the value of a spec, in double quotes where it would not come back the same without.
+std::string quoted(const std::string& value);
 
 OptionValues options_of(const Spec& spec);  // as texts; UsageError where a name is given twice
 

@@ -35,7 +35,8 @@ void register_adadelta(OptimizerRegistry& registry) {
       {.name = "adadelta",
        .title = "Adadelta",
        .formula = "s ← ρ s + (1−ρ) ∇L²,  Δ = √(u+ε)/√(s+ε) ∇L,  u ← ρ u + (1−ρ) Δ²,  θ ← θ − η Δ",
-       .source = "Zeiler (2012), algorithm 1"}));
+       .source = "Zeiler (2012), algorithm 1",
+       .tunable = {.option = "rate", .below = 2}}));
 }
 
 }  // namespace isoline::optimizers

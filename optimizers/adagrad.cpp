@@ -30,7 +30,8 @@ void register_adagrad(OptimizerRegistry& registry) {
   registry.add(rule_entry<Adagrad>({.name = "adagrad",
                                     .title = "Adagrad",
                                     .formula = "s ← s + ∇L²,  θ ← θ − η ∇L/(√s + ε)",
-                                    .source = "Duchi, Hazan, Singer (2011), fig. 1"}));
+                                    .source = "Duchi, Hazan, Singer (2011), fig. 1",
+                                    .tunable = {.option = "rate", .below = 0}}));
 }
 
 }  // namespace isoline::optimizers

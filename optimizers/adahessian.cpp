@@ -90,7 +90,8 @@ void register_adahessian(OptimizerRegistry& registry) {
        .source = "Yao et al. (2021)",
        .note = "Defaults are those of torch_optimizer, p = ½ among them; the paper has p = 1. "
                "Products with the Hessian are exact. The probes are the same for every seed.",
-       .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian_product}}));
+       .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian_product},
+       .tunable = {.option = "rate"}}));
 }
 
 }  // namespace isoline::optimizers

@@ -38,7 +38,8 @@ void register_adam(OptimizerRegistry& registry) {
       {.name = "adam",
        .title = "Adam",
        .formula = "m ← β₁ m + (1−β₁) ∇L,  v ← β₂ v + (1−β₂) ∇L²,  θ ← θ − η m̂/(√v̂ + ε)",
-       .source = "Kingma, Ba (2015), algorithm 1"}));
+       .source = "Kingma, Ba (2015), algorithm 1",
+       .tunable = {.option = "rate", .below = 0}}));
 }
 
 }  // namespace isoline::optimizers

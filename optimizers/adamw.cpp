@@ -41,7 +41,8 @@ void register_adamw(OptimizerRegistry& registry) {
                                   .formula = "θ ← (1 − η λ) θ − η m̂/(√v̂ + ε)",
                                   .source = "Loshchilov, Hutter (2019), algorithm 2",
                                   .note = "Its fixed point is not the minimum of L but is pulled "
-                                          "toward θ = 0."}));
+                                          "toward θ = 0.",
+                                  .tunable = {.option = "rate", .below = 0}}));
 }
 
 }  // namespace isoline::optimizers

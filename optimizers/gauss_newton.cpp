@@ -55,7 +55,8 @@ void register_gauss_newton(OptimizerRegistry& registry) {
            "network in single precision is noise below some 1e-6 of its largest: see cutoff.",
        .needs = {Oracle::forward, Oracle::jacobian},
        .is_input_scale_invariant = true,
-       .most_rank = 2048}));
+       .most_rank = 2048,
+       .tunable = {.option = "rate", .below = 5}}));
 }
 
 }  // namespace isoline::optimizers

@@ -17,10 +17,12 @@ void fields(GradientDescent& o, auto& field) { field("rate", o.rate, above(0), "
 }  // namespace
 
 void register_gd(OptimizerRegistry& registry) {
-  registry.add(rule_entry<GradientDescent>({.name = "gd",
-                                            .title = "Gradient descent",
-                                            .formula = "θ ← θ − η ∇L",
-                                            .source = "Cauchy (1847)"}));
+  registry.add(rule_entry<GradientDescent>(
+      {.name = "gd",
+       .title = "Gradient descent",
+       .formula = "θ ← θ − η ∇L",
+       .source = "Cauchy (1847)",
+       .tunable = {.option = "rate", .below = 4, .unit = Tunable::Unit::cauchy}}));
 }
 
 }  // namespace isoline::optimizers

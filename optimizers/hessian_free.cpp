@@ -165,7 +165,8 @@ void register_hessian_free(OptimizerRegistry& registry) {
            "A step costs two products an iteration of the conjugate gradients. Everything within "
            "a step is on the same samples. A step without sufficient decrease is rejected. The "
            "Gauss-Newton matrix is that of network and physics together.",
-       .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward}}));
+       .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward},
+       .tunable = {.option = "damping", .below = 4, .factor = 10}}));
 }
 
 }  // namespace isoline::optimizers

@@ -95,7 +95,8 @@ void register_hig(OptimizerRegistry& registry) {
            "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2). "
            "By the smaller Gram matrix for cut-offs of 1e-7 and more, else by the SVD of J.",
        .needs = {Oracle::forward, Oracle::jacobian},
-       .most_rank = 2048}));
+       .most_rank = 2048,
+       .tunable = {.option = "rate", .below = 4}}));
 }
 
 }  // namespace isoline::optimizers

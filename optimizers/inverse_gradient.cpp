@@ -51,6 +51,7 @@ void register_inverse_gradient(OptimizerRegistry& registry) {
                                       .needs = {Oracle::forward, Oracle::jacobian},
                                       .is_input_scale_invariant = true,
                                       .most_rank = 2048,
+                                      .tunable = {.option = "rate", .below = 5},
                                       .objection = objection}));
 }
 

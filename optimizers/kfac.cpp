@@ -140,6 +140,7 @@ void register_kfac(OptimizerRegistry& registry) {
        .note = "For networks of dense layers. G is exact, by one pullback for each output; without "
                "the paper's rescaling, momentum and adaptive damping.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::layer_factors},
+       .tunable = {.option = "rate", .below = 1},
        .objection = objection}));
 }
 

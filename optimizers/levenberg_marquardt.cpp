@@ -127,7 +127,8 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
                                          .note = "A rejected candidate is an iteration too.",
                                          .needs = {Oracle::forward, Oracle::jacobian},
                                          .is_input_scale_invariant = true,
-                                         .most_rank = 2048}));
+                                         .most_rank = 2048,
+                                         .tunable = {.option = "initial-damping", .factor = 10}}));
 }
 
 }  // namespace isoline::optimizers

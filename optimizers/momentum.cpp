@@ -27,10 +27,12 @@ void fields(Momentum& o, auto& field) {
 }  // namespace
 
 void register_momentum(OptimizerRegistry& registry) {
-  registry.add(rule_entry<Momentum>({.name = "momentum",
-                                     .title = "Gradient descent with momentum",
-                                     .formula = "v ← μ v + ∇L,  θ ← θ − η v",
-                                     .source = "Polyak (1964)"}));
+  registry.add(rule_entry<Momentum>(
+      {.name = "momentum",
+       .title = "Gradient descent with momentum",
+       .formula = "v ← μ v + ∇L,  θ ← θ − η v",
+       .source = "Polyak (1964)",
+       .tunable = {.option = "rate", .below = 4, .unit = Tunable::Unit::cauchy}}));
 }
 
 }  // namespace isoline::optimizers

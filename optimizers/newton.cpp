@@ -42,7 +42,8 @@ void register_newton(OptimizerRegistry& registry) {
        .note = "Without safeguards: saddles and maxima attract it as minima do.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
        .is_input_scale_invariant = true,
-       .most_unknowns = 2048}));
+       .most_unknowns = 2048,
+       .tunable = {.option = "rate", .below = 5}}));
 }
 
 }  // namespace isoline::optimizers

@@ -178,6 +178,7 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
           .needs_same_samples = true,
           .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
           .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
+          .tunable = m.is_luksans() ? Tunable{.option = "memory", .below = 4} : Tunable{},
           .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
             return std::make_unique<Nlopt>(algorithm,
                                            static_cast<Index>(options.number("memory", kMemory)));

@@ -65,6 +65,19 @@ inline std::string_view name_of(Family family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }
 
+// The one option of a method that tuning chooses. A grid has the default, so many values below it
+// and the rest above, each `factor` times the one before.
+struct Tunable {
+  enum class Unit {
+    option,  // the default itself
+    cauchy,  // ‖∇L‖²/‖J∇L‖² at a problem's start: of a step along ∇L, whose size has no other
+  };
+  std::string option = {};  // empty: there is nothing to tune
+  int below = 3;
+  Real factor = 3.1622776601683795;  // half a decade
+  Unit unit = Unit::option;
+};
+
 struct OptimizerEntry;
 using OptimizerRegistry = Registry<OptimizerEntry>;
 
@@ -83,6 +96,8 @@ struct OptimizerEntry {
   Index most_unknowns = std::numeric_limits<Index>::max();
   Index most_rank = std::numeric_limits<Index>::max();
   OptionTable options = {};
+  Tunable tunable = {};
+  bool in_all = true;     // whether `*` of a suite means it: not where an argument is required
   std::string file = {};  // that registers it, as the registry saw it
   // All it needs, where that depends on the options or the problem; `needs` is then the least.
   std::function<OracleSet(const OptionValues& options, const Problem&)> needs_for = {};

@@ -68,6 +68,7 @@ void register_rescaled(OptimizerRegistry& registry) {
                 .note = "by=truth has d = x − x*, as the published script does.",
                 .needs = {Oracle::forward, Oracle::network},
                 .options = option_table<Options>(),
+                .tunable = {.option = "network-optimizer", .below = 6},
                 .needs_for = needs_for,
                 .inside = NetworkDescent::inside,
                 .make = [](const OptionValues& options,

@@ -31,7 +31,8 @@ void register_rmsprop(OptimizerRegistry& registry) {
   registry.add(rule_entry<Rmsprop>({.name = "rmsprop",
                                     .title = "RMSprop",
                                     .formula = "s ← α s + (1−α) ∇L²,  θ ← θ − η ∇L/(√s + ε)",
-                                    .source = "Tieleman, Hinton (2012), lecture 6e"}));
+                                    .source = "Tieleman, Hinton (2012), lecture 6e",
+                                    .tunable = {.option = "rate", .below = 2}}));
 }
 
 }  // namespace isoline::optimizers

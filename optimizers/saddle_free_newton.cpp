@@ -52,7 +52,8 @@ void register_saddle_free_newton(OptimizerRegistry& registry) {
        .source = "Holl, Koltun, Thuerey (2022), published script; Dauphin et al. (2014)",
        .note = "S̄ is the geometric mean of |S|; directions without curvature stay.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
-       .most_unknowns = 2048}));
+       .most_unknowns = 2048,
+       .tunable = {.option = "rate", .below = 5}}));
 }
 
 }  // namespace isoline::optimizers

@@ -122,6 +122,7 @@ void register_sip(OptimizerRegistry& registry) {
                 .needs = {Oracle::forward, Oracle::network},
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
+                .tunable = {.option = "step", .below = 5},
                 .needs_for = needs_for,
                 .inside = NetworkDescent::inside,
                 .objection = objection,

@@ -49,6 +49,7 @@ void register_supervised(OptimizerRegistry& registry) {
                 .needs = {Oracle::forward, Oracle::network, Oracle::truth},
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
+                .tunable = {.option = "network-optimizer"},
                 .inside = NetworkDescent::inside,
                 .objection = objection,
                 .make = [](const OptionValues& options,

@@ -190,6 +190,9 @@ struct ProblemEntry {
   std::string note = {};  // deviations and what a reader should know
   Aim aim = Aim::loss;    // what its user wants: a small loss, or the x that was sought
   OptionTable options = {};
+  // Whether `*` of a suite means it: not where a forward solve takes over a millisecond or an
+  // argument is required.
+  bool in_all = true;
   std::string file = {};           // that registers it, as the registry saw it
   std::vector<Panel> panels = {};  // figures to draw of its runs
   std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};

@@ -299,14 +299,16 @@ void CommandLine::add_validate() {
 
 void CommandLine::add_tune() {
   const auto [verb, given] =
-      add("tune", "Choose a rate for each pair over a grid, on tuning seeds, with an equal budget",
+      add("tune", "Choose one option of each method for each problem, with an equal budget for all",
           tune_verb);
   option(verb, "SPEC,--problem", given.problem,
-         "Problems, as in `isoline run`: one of the two ways to name them is needed");
+         "Problems, as in `isoline run`; of a suite those to keep");
+  option(verb, "--suite", given.suite, "The pairs of this suite, with its budgets");
   option(verb, "--optimizer", given.optimizer,
-         "Names of optimizers (default: sip and all of first order)");
-  option(verb, "--grid", given.grid, "Option and its values: low..high x count")
-      ->capture_default_str();
+         "Names of optimizers (default: all that have an option to tune)");
+  option(verb, "--grid", given.grid,
+         "Option and its values, low..high x count (default: the option that a method "
+         "declares, at seven values around its default and more at an edge)");
   option(verb, "--unit", given.unit,
          "Unit of the grid: one, the problem's Cauchy step, or the published rate")
       ->check(CLI::IsMember({"one", "cauchy", "published"}))

@@ -88,6 +88,8 @@ void print(const Sheet& sheet) {
     fmt::print("Family      {}\n", sheet.family);
   fmt::print("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", "));
   if (!is_problem)
+    fmt::print("Tuned by    {}\n", sheet.tunable.empty() ? "nothing" : sheet.tunable);
+  if (!is_problem)
     fmt::print("Privileges  {}\n", sheet.privileges.empty()
                                        ? "none"
                                        : fmt::format("{}", fmt::join(sheet.privileges, "; ")));

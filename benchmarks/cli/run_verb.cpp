@@ -15,6 +15,7 @@
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/soundness.h"
+#include "benchmarks/run/used_rates.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
@@ -30,6 +31,7 @@ struct Undertaking {
   std::string name;
   std::vector<Request> requests;
   fs::path folder;
+  Rates rates = {};
 };
 
 void override_blocks(const RunArguments& given, Suite& suite) {
@@ -57,7 +59,8 @@ Undertaking undertaking_of(const RunArguments& given, const Catalog& catalog) {
                      .optimizers = {given.optimizer.empty() ? "*" : given.optimizer}}};
   }
   override_blocks(given, suite);
-  Undertaking all{suite.name, expand(catalog, suite, Rates::named(given.rates)), given.out};
+  Rates rates = Rates::named(given.rates);
+  Undertaking all{suite.name, expand(catalog, suite, rates), given.out, std::move(rates)};
   if (is_suite && is_limited)
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;
@@ -132,6 +135,8 @@ int run_verb(const RunArguments& given, Session& session) {
     print_plan(all, options.jobs, given, session);
     return kGood;
   }
+  require_sound(catalog, all.requests);
+  write_used_rates(all.rates, all.requests, all.folder);
   const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options);
   print_outcome(outcome, given.quiet);
   if (!given.no_report) report_on(all.folder, given.quiet, session);

@@ -5,10 +5,13 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/filter.h"
+#include "benchmarks/plan/suite.h"
 #include "benchmarks/run/tune.h"
 #include "core/files.h"
 #include "core/json.h"
@@ -16,26 +19,45 @@
 
 namespace isoline::benchmarks {
 
-using optimizers::Family;
 namespace {
 
+constexpr const char* kScore =
+    "median work to 1e-6 of the loss, or of x where the problem's aim is x; then the median of what "
+    "is left of it at the end";
+
+// The cells of a suite, but for the blocks that name their own table of rates.
+std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given) {
+  Suite suite = read_suite(given.suite);
+  std::erase_if(suite.blocks, [](const MatrixBlock& block) { return !block.rates.empty(); });
+  return filtered(catalog, expand(catalog, suite, Rates()), given.problem, given.optimizer);
+}
+
+std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& given) {
+  require(!given.problem.empty(),
+          "tune: name the problems, as SPEC or by --problem, or a --suite of them");
+  const MatrixBlock block{.problems = {given.problem},
+                          .optimizers = {given.optimizer.empty() ? "*" : given.optimizer},
+                          .budget = {.iterations = given.iterations, .work = given.work}};
+  return expand(catalog, {.name = "tuning", .title = "", .blocks = {block}}, Rates());
+}
+
 TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
-  TuningPlan plan{.grid = parse_grid(given.grid, given.unit),
-                  .seeds = parse_seeds(given.seeds),
-                  .budget = {.iterations = given.iterations, .work = given.work}};
-  for (const Spec& spec : parse_specs(given.problem))
-    plan.problems.push_back(complete_problem(catalog, spec));
-  if (given.optimizer.empty()) {
-    plan.optimizers = {"sip"};
-    for (const auto& [name, entry] : catalog.optimizers)
-      if (entry.family == Family::first_order) plan.optimizers.push_back(name);
-    return plan;
+  TuningPlan plan{.seeds = parse_seeds(given.seeds)};
+  if (!given.grid.empty()) plan.grid = parse_grid(given.grid, given.unit);
+  const Rates rates = Rates::builtin();
+  std::set<std::pair<std::string, std::string>> known;
+  for (const Request& cell :
+       given.suite.empty() ? cells_named(catalog, given) : cells_of(catalog, given)) {
+    const std::string& name = cell.optimizer.name;
+    const optimizers::Tunable& tunable = catalog.optimizers.at(name).tunable;
+    if (tunable.option.empty() || !known.emplace(cell.problem.spec, name).second) continue;
+    const Rates::Row* row = rates.find(cell.problem, name);
+    plan.pairs.push_back({.problem = cell.problem,
+                          .optimizer = name,
+                          .budget = cell.budget,
+                          .options = row && !row->is_from_grid ? row->options : OptionValues()});
   }
-  for (const Spec& spec : parse_specs(given.optimizer)) {
-    require(spec.options.empty(),
-            [&] { return fmt::format("name {} without options: the grid sets them", spec.name); });
-    plan.optimizers.push_back(catalog.optimizers.at(spec.name).name);
-  }
+  require(!plan.pairs.empty(), "tune: none of these methods has an option to tune");
   return plan;
 }
 
@@ -63,17 +85,18 @@ std::string text_of(const Json& grid, const Json& rows) {
 
 void write_table(const TuneArguments& given, const TuningPlan& plan, Json rows) {
   if (std::filesystem::exists(given.table)) rows = joined(read_json(given.table).at("rows"), rows);
-  const Json grid{{"points", plan.grid.values.size()},
-                  {"seeds", given.seeds},
-                  {"budget", {{"iterations", given.iterations}, {"work", given.work}}},
-                  {"score", "median work to 1e-6, then median final loss"}};
+  const Budget& budget = plan.pairs[0].budget;
+  Json grid{{"points", plan.grid ? plan.grid->values.size() : kGridValues},
+            {"seeds", given.seeds},
+            {"budget", {{"iterations", budget.iterations}, {"work", budget.work}}},
+            {"score", kScore}};
+  if (!plan.grid) grid["extensions"] = kMostExtensions;
   write_text(given.table, text_of(grid, rows));
 }
 
 }  // namespace
 
 int tune_verb(const TuneArguments& given, Session& session) {
-  require(!given.problem.empty(), "tune: name the problems, as SPEC or by --problem");
   const Catalog& catalog = session.catalog();
   const TuningPlan plan = plan_of(catalog, given);
   const RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),

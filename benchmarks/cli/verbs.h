@@ -97,7 +97,7 @@ struct ValidateArguments {
 int validate_verb(const ValidateArguments& given, Session& session);
 
 struct TuneArguments {
-  std::string problem, optimizer, grid = "rate=1e-4..1e2x7", unit = "one", seeds = "100..102";
+  std::string problem, optimizer, suite, grid, unit = "one", seeds = "100..102";
   std::string table, folder = "results/tuning";
   std::int64_t iterations = 100'000, work = 2000;
   int jobs = 0;

@@ -104,6 +104,18 @@ Json join_plans(const Json& a, const Json& b) {
   return to_json(plan);
 }
 
+Json join_rates(const Json& a, const Json& b) {
+  std::map<std::pair<std::string, std::string>, Json> rows;  // by problem and optimizer
+  for (const Json* one : {&a, &b})
+    for (const Json& row : one->at("rows")) {
+      const auto [at, is_first] = rows.try_emplace({row.at("problem"), row.at("optimizer")}, row);
+      if (!is_first && row.dump() < at->second.dump()) at->second = row;
+    }
+  Json all = Json::array();
+  for (const auto& [pair, row] : rows) all.push_back(row);
+  return {{"schema", "isoline.rates/1"}, {"rows", all}};
+}
+
 bool have_other_wordings(const std::vector<std::string>& sheets) {
   std::set<std::string> wordings;
   for (const std::string& text : sheets) {

@@ -22,6 +22,10 @@ JoinedRecord join_records(const Json& a, const Json& b);
 // The union of two plans, sorted; suites and cells once each. Plan schema in, plan schema out.
 Json join_plans(const Json& a, const Json& b);
 
+// The union of two lists of the rates that plans used, sorted; of two wordings of one row the
+// lesser text stays.
+Json join_rates(const Json& a, const Json& b);
+
 // Whether sheets of one component, as JSON texts, differ in more than measured prices: no two
 // measurements are alike.
 bool have_other_wordings(const std::vector<std::string>& sheets);

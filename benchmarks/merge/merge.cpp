@@ -58,7 +58,8 @@ class Merge {
                [this](const std::string& name, const Group& files) { record(name, files); });
     merge_part("components",
                [this](const std::string& name, const Group& files) { sheet(name, files); });
-    merge_plans();
+    merge_lists("plan.json", join_plans);
+    merge_lists("rates.json", join_rates);
     merge_audits();
     remark(other_provenance_,
            "records agree but for timings and provenance; the latest run's provenance is kept");
@@ -140,16 +141,17 @@ class Merge {
     write_unflushed(out_ / "components" / name, *std::ranges::min_element(texts));
   }
 
-  void merge_plans() {
+  // A file that each folder may have, united by `join` where several have it.
+  void merge_lists(const char* name, Json (*join)(const Json&, const Json&)) {
     Group files;
     for (const fs::path& folder : folders_)
-      if (const fs::path file = folder / "plan.json"; fs::exists(file)) files.push_back(file);
+      if (const fs::path file = folder / name; fs::exists(file)) files.push_back(file);
     const std::vector<std::string> texts = texts_of(files);
     if (texts.empty()) return;
-    if (texts.size() == 1) return write_unflushed(out_ / "plan.json", texts[0]);
-    Json plan = parse_json(texts[0], "plan.json");
-    for (const std::string& text : texts) plan = join_plans(plan, parse_json(text, "plan.json"));
-    write_unflushed(out_ / "plan.json", plan.dump() + "\n");
+    if (texts.size() == 1) return write_unflushed(out_ / name, texts[0]);
+    Json all = parse_json(texts[0], name);
+    for (const std::string& text : texts) all = join(all, parse_json(text, name));
+    write_unflushed(out_ / name, all.dump() + "\n");
   }
 
   void merge_audits() {

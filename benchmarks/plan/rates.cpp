@@ -59,7 +59,9 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
     for (const Json& row : json.at("rows")) {
       const Spec problem = parse_spec(row.at("problem").get<std::string>());
       rates.rows_[{problem.name, row.at("optimizer")}].push_back(
-          {options_of(problem), option_values_from(row.at("options")), origin});
+          {options_of(problem), option_values_from(row.at("options")), origin,
+           row.value("source", Json::object()).dump(),
+           row.contains("source") && row["source"].contains("grid")});
     }
   } catch (const Json::exception& error) {
     throw UsageError(fmt::format("{} is no table of rates: {}", origin, error.what()));

@@ -24,6 +24,8 @@ class Rates {
     OptionValues problem;  // the options that it is for, as text
     OptionValues options;  // to fill in
     std::string origin;    // file that says so
+    std::string source;    // the paper or the grid that each value is from, as JSON text
+    bool is_from_grid = false;
   };
   // The row for a problem and an optimizer's name, or nullptr. A row is for the problems that have
   // the options it names, in their default mode unless it names the mode; the row that names most

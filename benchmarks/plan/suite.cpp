@@ -52,8 +52,8 @@ std::vector<Spec> chosen_problems(const Catalog& catalog, const MatrixBlock& blo
       for (Spec& spec : parse_specs(text)) specs.push_back(std::move(spec));
       continue;
     }
-    for (const std::string& name : catalog.problems.names())
-      if (!is_excepted(name, block.except_problems)) specs.push_back({name, {}});
+    for (const auto& [name, entry] : catalog.problems)
+      if (entry.in_all && !is_excepted(name, block.except_problems)) specs.push_back({name, {}});
   }
   return specs;
 }
@@ -67,7 +67,7 @@ std::vector<Spec> chosen_optimizers(const Catalog& catalog, const MatrixBlock& b
     }
     const std::size_t before = specs.size();
     for (const auto& [name, entry] : catalog.optimizers)
-      if (is_selected(entry, text) && !is_excepted(name, block.except_optimizers))
+      if (entry.in_all && is_selected(entry, text) && !is_excepted(name, block.except_optimizers))
         specs.push_back({name, {}});
     require(specs.size() > before, [&] { return fmt::format("'{}' selects no optimizer", text); });
   }
@@ -80,7 +80,9 @@ void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates&
   for (const Spec& problem_spec : chosen_problems(catalog, block)) {
     const Component problem = complete_problem(catalog, problem_spec);
     for (const Spec& spec : optimizers) {
-      const Rates::Row* row = rates.find(problem, spec.name, block.rates);
+      const bool is_at_defaults = block.rates == "none";
+      const Rates::Row* row =
+          is_at_defaults ? nullptr : rates.find(problem, spec.name, block.rates);
       const Component optimizer = with_rates(catalog, spec, row);
       for (const std::uint64_t seed : block.seeds) {
         Request request = named({.problem = problem,

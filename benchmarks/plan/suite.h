@@ -23,7 +23,9 @@ struct MatrixBlock {
   Budget budget;
   int threads = 1;
   double hard_seconds = 0;  // when a cell is killed; 0: the standard limit
-  std::string rates;        // the one table to look in; empty: all that are not of tuned rates
+  // The one table to look in, or "none", which leaves all at the defaults; empty: all tables that
+  // are not of tuned rates.
+  std::string rates;
 };
 
 struct Suite {

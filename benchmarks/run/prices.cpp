@@ -1,6 +1,7 @@
-// Measures prices: rounds of forward solves alone and of forward solves each followed by one call
-// of the oracle, side by side, so that a drift of the machine falls on both. What the call adds is
-// its price: the first at a fresh point, with all that it has to prepare.
+// Measures prices: a forward solve at a fresh point and one call of the oracle after it, each timed
+// by itself, over and over; a round is many such pairs on work space of its own. Its price is the
+// ratio of the two medians, so that neither a drift of the machine nor what others take of it
+// counts, and nothing is subtracted. The call includes all that it has to prepare at a fresh point.
 #include "benchmarks/run/prices.h"
 
 #include <algorithm>
@@ -17,11 +18,12 @@ using networks::LayerFactor;
 using problems::Point;
 namespace {
 
-constexpr double kRoundSeconds = 5e-5;  // of forward solves: two hundred readings of the clock
-constexpr double kOracleSeconds = 5e-3, kLongOracleSeconds = 5e-2, kMatrixSeconds = 1e-2;
-// Of one problem.
-constexpr double kProblemSeconds = 1, kSlowSeconds = 1e-2;
-constexpr std::size_t kMostRounds = 31, kFewRounds = 3;
+constexpr double kRoundSeconds = 2e-4;  // of calls, so that a round is many of the short ones
+constexpr double kOracleSeconds = 1e-2, kLongOracleSeconds = 0.15, kMatrixSeconds = 1e-2;
+constexpr double kProblemSeconds = 1;
+constexpr double kClockSeconds = 2e-5;  // a call this long can afford the clock of the processor
+constexpr std::size_t kMostPairs = 1000, kMostRounds = 31, kFewRounds = 3;
+constexpr Real kWidest = 4;  // a range over this factor, or down to nothing, says too little
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
 
 // Room for what goes into the oracles of a problem and comes out of them.
@@ -85,75 +87,106 @@ std::vector<Oracle> measured_ones(OracleSet offered) {
   return products;
 }
 
-// Of the processor: what others take of a busy machine does not count.
-double seconds_of(std::size_t times, const std::function<void()>& call) {
-  const double begin = processor_seconds();
-  for (std::size_t i = 0; i < times; ++i) call();
-  return std::max(processor_seconds() - begin, 1e-9);
-}
-
-Real at_share(const std::vector<Real>& ascending, Real share) {
-  return ascending[static_cast<std::size_t>(share * static_cast<Real>(ascending.size() - 1) + 0.5)];
-}
-
-// Ratios of single rounds, ascending.
-std::vector<Real> rounds_of(std::size_t calls, const std::function<void()>& forward,
-                            const std::function<void()>& both) {
-  std::vector<Real> ratios;
-  for (double spent = 0; ratios.size() < kMostRounds;) {
-    const double alone = seconds_of(calls, forward), together = seconds_of(calls, both);
-    ratios.push_back(std::max(0.0, together / alone - 1));
-    spent += alone + together;
-    if (spent > kLongOracleSeconds) break;
-    if (spent > kOracleSeconds && ratios.size() >= kFewRounds) break;
+// What one call takes: of the processor, where it is long enough to be interrupted; else by its
+// time-stamp counter, which costs little beside a microsecond.
+double seconds_of(double expected, const std::function<void()>& call) {
+  if (expected > kClockSeconds) {
+    const double begin = processor_seconds();
+    call();
+    return processor_seconds() - begin;
   }
-  std::ranges::sort(ratios);
-  return ratios;
+  const std::uint64_t begin = ticks();
+  call();
+  return static_cast<double>(ticks() - begin) * seconds_per_tick();
 }
 
-MeasuredPrice price_of(Oracle oracle, std::int64_t declared, std::size_t calls,
-                       const std::vector<Real>& ratios) {
-  return {.oracle = std::string(name_of(oracle)),
-          .declared = declared,
-          .price = at_share(ratios, 0.5),
-          .low = at_share(ratios, kTail),
-          .high = at_share(ratios, 1 - kTail),
-          .rounds = static_cast<std::int64_t>(ratios.size()),
-          .calls = static_cast<std::int64_t>(ratios.size() * calls)};
+Real at_share(std::vector<Real>& values, Real share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<Real>(values.size() - 1) + 0.5);
+  std::ranges::nth_element(values, values.begin() + at);
+  return values[static_cast<std::size_t>(at)];
+}
+
+// Of one oracle: what is expected of it and of the forward solve before it, in seconds.
+struct Question {
+  Oracle oracle;
+  double forward, expected;
+};
+
+struct Rounds {
+  std::vector<Real> forward_seconds, ratios;
+  std::size_t calls = 0;
+};
+
+// On work space of its own: where arrays happen to lie is part of the range over rounds.
+void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
+  Point at;
+  Room room(problem);
+  const double wanted = kRoundSeconds / std::max(of.forward, of.expected);
+  const auto pairs = std::clamp(static_cast<std::size_t>(wanted), std::size_t{1}, kMostPairs);
+  std::vector<Real> before, asked;
+  for (std::size_t i = 0; i <= pairs; ++i) {
+    const double solve = seconds_of(of.forward, [&] { problem.forward(problem.start(), at); });
+    const double call = seconds_of(of.expected, [&] { ask(of.oracle, problem, at, room); });
+    if (i == 0) continue;  // the first allocates
+    before.push_back(solve);
+    asked.push_back(call);
+  }
+  const Real forward = std::max(at_share(before, 0.5), 1e-9);
+  rounds.calls += pairs;
+  rounds.forward_seconds.push_back(forward);
+  rounds.ratios.push_back(of.oracle == Oracle::forward ? 1 : at_share(asked, 0.5) / forward);
+}
+
+Rounds rounds_of(const Problem& problem, const Question& of) {
+  Rounds rounds;
+  const double begin = processor_seconds();
+  while (rounds.ratios.size() < kMostRounds) {
+    add_round(problem, of, rounds);
+    const double spent = processor_seconds() - begin;
+    if (spent > kLongOracleSeconds) break;
+    if (spent > kOracleSeconds && rounds.ratios.size() >= kFewRounds) break;
+  }
+  return rounds;
+}
+
+MeasuredPrice price_of(Oracle oracle, std::int64_t declared, double forward, Rounds& rounds) {
+  MeasuredPrice price{.oracle = std::string(name_of(oracle)),
+                      .declared = declared,
+                      .price = at_share(rounds.ratios, 0.5),
+                      .low = at_share(rounds.ratios, kTail),
+                      .high = at_share(rounds.ratios, 1 - kTail),
+                      .rounds = static_cast<std::int64_t>(rounds.ratios.size()),
+                      .calls = static_cast<std::int64_t>(rounds.calls)};
+  price.resolved = is_resolved(price, forward);
+  return price;
 }
 
 }  // namespace
 
+bool is_resolved(const MeasuredPrice& price, double forward_seconds) {
+  return forward_seconds >= kLeastForwardSeconds && price.low > 0 &&
+         price.high <= kWidest * price.low;
+}
+
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build) {
   MeasuredPrices measured{.build = build, .processor = this_build()->processor, .oracles = {}};
   Point at;
-  Room room(problem);
-  const std::function<void()> forward = [&] { problem.forward(problem.start(), at); };
-  const double begin = processor_seconds(), cold = seconds_of(1, forward);  // allocates
-  const auto few = static_cast<std::size_t>(std::clamp(1e-3 / cold, 1.0, 100.0));
-  const double once = seconds_of(few, forward) / static_cast<double>(few);
-  const auto calls = static_cast<std::size_t>(std::ceil(kRoundSeconds / once));
-  std::vector<Real> seconds;
-  for (double spent = 0; seconds.size() < kMostRounds && spent < kOracleSeconds;
-       spent += seconds.back() * static_cast<double>(calls))
-    seconds.push_back(seconds_of(calls, forward) / static_cast<double>(calls));
-  std::ranges::sort(seconds);
-  measured.forward_seconds = at_share(seconds, 0.5);
-  measured.oracles.push_back(
-      price_of(Oracle::forward, 1, calls, std::vector<Real>(seconds.size(), 1)));
+  const std::function<void()> solve = [&] { problem.forward(problem.start(), at); };
+  const double begin = processor_seconds();
+  seconds_of(1, solve);  // allocates
+  const double once = std::max(seconds_of(1, solve), 1e-9);
+  Rounds alone = rounds_of(problem, {Oracle::forward, once, once});
+  measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
   const OracleCounts declared = problem.prices();
+  const double forward = measured.forward_seconds;
+  measured.oracles.push_back(price_of(Oracle::forward, 1, forward, alone));
   for (const Oracle oracle : measured_ones(problem.offers())) {
     if (processor_seconds() - begin > kProblemSeconds) break;
     const auto kind = static_cast<std::size_t>(oracle);
-    const double expected = measured.forward_seconds * static_cast<double>(declared[kind]);
+    const double expected = forward * static_cast<double>(declared[kind]);
     if (row_of(oracle).is_dense_matrix && expected > kMatrixSeconds) continue;
-    const std::function<void()> both = [&] {
-      problem.forward(problem.start(), at);
-      ask(oracle, problem, at, room);
-    };
-    if (once < kSlowSeconds) both();  // allocates
-    measured.oracles.push_back(
-        price_of(oracle, declared[kind], calls, rounds_of(calls, forward, both)));
+    Rounds rounds = rounds_of(problem, {oracle, forward, expected});
+    measured.oracles.push_back(price_of(oracle, declared[kind], forward, rounds));
   }
   return measured;
 }

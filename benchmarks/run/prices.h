@@ -12,7 +12,13 @@ namespace isoline::benchmarks {
 
 using problems::Problem;
 
-// Every oracle that the problem offers, at its start. Some 5 ms an oracle; a dense matrix that
+// A price is resolved where a forward solve takes a microsecond and the rounds agree within a
+// factor: below, a call is mostly the overhead of calling, and its price drifts from session to
+// session by more than the rounds of one tell.
+inline constexpr double kLeastForwardSeconds = 1e-6;
+bool is_resolved(const MeasuredPrice& price, double forward_seconds);
+
+// Every oracle that the problem offers, at its start. Some 10 ms an oracle; a dense matrix that
 // would take more than 10 ms, as its declared price has it, is left out, and what is left when a
 // second has gone.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);

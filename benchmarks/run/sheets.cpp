@@ -18,8 +18,8 @@ namespace isoline::benchmarks {
 using optimizers::privileges_of;
 namespace {
 
-constexpr Index kGrid = 81;   // points a side of a landscape
-constexpr Index kSmall = 16;  // largest target and truth that a sheet shows
+constexpr Index kGrid = 81;                // points a side of a landscape
+constexpr Index kSmall = 16;               // largest target and truth that a sheet shows
 constexpr Index kMostEntries = 256 * 256;  // of a Jacobian that is factorized: 20 ms
 constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate"};
 
@@ -149,7 +149,8 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
           .options_text = json_text(describe_options(entry.options)),
           .oracles = names_of(entry.needs),
           .privileges = possible_privileges(entry, component),
-          .family = std::string(name_of(entry.family))};
+          .family = std::string(name_of(entry.family)),
+          .tunable = entry.tunable.option};
 }
 
 namespace {

@@ -4,34 +4,31 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "benchmarks/run/run_plan.h"
+#include "benchmarks/run/tuning_grid.h"
 
 namespace isoline::benchmarks {
 
 using Json = nlohmann::json;
 
-struct TuningGrid {
-  std::string option = "rate";
-  std::vector<Real> values;  // in `unit`
-  // "one"; "cauchy": ‖∇L‖²/‖J∇L‖² at the problem's start, the natural unit of a step along ∇L; or
-  // "published": the pair's own rate in the tables that are not tuned.
-  std::string unit = "one";
+struct TunedPair {
+  Component problem;
+  std::string optimizer;  // a name
+  Budget budget;
+  OptionValues options = {};  // that it has anyway, as from a paper
 };
 
-// "rate=1e-4..1e-1x4": four values from 1e-4 to 1e-1, evenly on a logarithmic axis.
-TuningGrid parse_grid(const std::string& text, const std::string& unit);
-
-// Every problem with every optimizer at every value and seed. An optimizer that has no such option
-// itself is given it in its network's optimizer; its other options are those of the tables.
+// Every pair is tried at seven values of its method's tunable option. While the best stands at an
+// edge, one more is tried beyond it, three at most. A grid of one's own is for all pairs, and is
+// not extended.
 struct TuningPlan {
-  std::vector<Component> problems;
-  std::vector<std::string> optimizers;  // names
-  TuningGrid grid;
+  std::vector<TunedPair> pairs;
   std::vector<std::uint64_t> seeds;
-  Budget budget;
+  std::optional<GivenGrid> grid;
 };
 
 struct TuningResult {
@@ -39,14 +36,10 @@ struct TuningResult {
   Outcome outcome;
 };
 
-// The score of a value: the median work to τ = 1e-6, then the median final loss; less is better,
-// and of a learning problem the loss alone, on its validation. A value with which any seed diverges
-// or fails has neither. Each row also tells the expected least loss of the best of b values drawn
-// at random from the grid, for b = 1 to all of them.
+// A row tells the values, their scores, the expected least loss (or error in x) of the best of b of
+// them drawn at random, for b = 1 to all, and whether the best still stands at an edge. Pairs that
+// are inapplicable have none; where every value failed the one nearest to the default stays.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options);
-
-// E[best of b] of n losses: Σ y₍ᵢ₎ C(n − i, b − 1)/C(n, b) over the sorted ones, for b = 1 … n.
-std::vector<Real> best_of(std::vector<Real> losses);
 
 }  // namespace isoline::benchmarks

@@ -45,6 +45,7 @@ void fields(Like<MeasuredPrice> auto& price, auto& field) {
   field("high", price.high, kNotNegative);
   field("rounds", price.rounds, kPositive);
   field("calls", price.calls, kPositive);
+  field.forgiven("resolved", price.resolved);
 }
 
 void fields(Like<MeasuredPrices> auto& prices, auto& field) {
@@ -68,6 +69,7 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field("oracles", sheet.oracles);
   field("privileges", sheet.privileges);
   field("family", sheet.family);
+  field.optional("tunable", sheet.tunable);
   field("inverse", sheet.inverse);
   field("unknowns", sheet.unknowns);
   field("residuals", sheet.residuals);

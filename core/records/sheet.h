@@ -34,6 +34,7 @@ struct MeasuredPrice {
   std::int64_t declared = 0;
   Real price = 0, low = 0, high = 0;  // the median of the rounds, and their middle 80 %
   std::int64_t rounds = 0, calls = 0;
+  bool resolved = true;  // else overhead and noise: the declared one says more
 };
 
 // Measured at the published instance of a problem, with nothing else running.
@@ -51,11 +52,12 @@ struct Sheet {
   std::vector<std::string> oracles;     // offered by a problem, needed by an optimizer
   std::vector<std::string> privileges;  // of an optimizer
   std::string family;                   // of an optimizer
+  std::string tunable;                  // of an optimizer: the option that tuning chooses, if any
   std::string inverse;                  // of a problem: none, exact, damped or estimate
   Index unknowns = 0, residuals = 0;    // of a problem
   std::optional<Aim> aim;               // of a problem: what its user wants
-  // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the solution,
-  // or at the start where none is known; infinite where J lacks rank.
+  // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the
+  // solution, or at the start where none is known; infinite where J lacks rank.
   std::optional<Real> condition;
   std::optional<Landscape> landscape_x, landscape_y;  // of a problem with two unknowns, two outputs
   std::vector<Real> target;                           // y*, where small

@@ -21,11 +21,12 @@ std::string marked_text(std::string_view text) {
     std::string_view letter, command;
   };
   constexpr Mark kMarks[] = {
-      {"✗", "$\\times$"}, {"–", "--"},        {"≤", "$\\le$"},
-      {"≥", "$\\ge$"},    {"−", "$-$"},       {"†", "\\textsuperscript{\\textdagger}"},
-      {"₀", "$_0$"},      {"×", "$\\times$"}, {"é", "\\'e"},
-      {"µ", "$\\mu$"},    {"±", "$\\pm$"},    {"→", "$\\to$"},
-      {"°", "$^\\circ$"}, {"α", "$\\alpha$"}, {"’", "'"}};
+      {"✗", "$\\times$"},  {"–", "--"},        {"≤", "$\\le$"},
+      {"≥", "$\\ge$"},     {"−", "$-$"},       {"†", "\\textsuperscript{\\textdagger}"},
+      {"₀", "$_0$"},       {"×", "$\\times$"}, {"é", "\\'e"},
+      {"µ", "$\\mu$"},     {"±", "$\\pm$"},    {"→", "$\\to$"},
+      {"≈", "$\\approx$"}, {"⁻¹", "$^{-1}$"},  {"…", "\\ldots{}"},
+      {"°", "$^\\circ$"},  {"α", "$\\alpha$"}, {"’", "'"}};
   std::string out, plain;
   while (!text.empty()) {
     const auto* mark =

@@ -7,7 +7,6 @@
 
 #include "reports/sections/evidence.h"
 #include "reports/sections/measure_words.h"
-#include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -20,19 +19,24 @@ struct SideBySide {
   std::vector<Real> doublings;  // log2 of tuned over plain where one solves; capped as profiles are
 };
 
+const Request& request_of(const Comparison& c, const Cell& cell) {
+  return c.runs[cell.runs.front()].record->request;
+}
+
 bool has_rates(const Comparison& c, std::size_t s) {
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const Origin origin = origin_of(c, p, s);
-    if (c.cell(p, s).is_measured() && origin != Origin::defaults && origin != Origin::given)
-      return true;
-  }
-  return false;
+  return std::ranges::any_of(c.cells, [&](const auto& row) {
+    const Cell& cell = row[s];
+    return cell.is_measured() && !request_of(c, cell).rates.empty() &&
+           request_of(c, cell).optimizer.spec != request_of(c, cell).optimizer.name;
+  });
 }
 
 bool is_at_defaults(const Comparison& c, std::size_t s) {
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    if (c.cell(p, s).is_measured() && origin_of(c, p, s) != Origin::defaults) return false;
-  return true;
+  return std::ranges::all_of(c.cells, [&](const auto& row) {
+    const Cell& cell = row[s];
+    return !cell.is_measured() ||
+           request_of(c, cell).optimizer.spec == request_of(c, cell).optimizer.name;
+  });
 }
 
 SideBySide compared(const Comparison& c, std::size_t tuned, std::size_t plain) {

@@ -159,9 +159,9 @@ std::string edges_text(const std::vector<Rates>& all) {
   }
   if (rows == 0) return "";
   return fmt::format(
-      "Of {} tuned rates {} stand at an edge of their grid, and {} are the best of values none of "
-      "which got there while it was tuned.",
-      rows, edges, never);
+      "The best value is at an edge of its grid for {} of {}, and for {} of them no value got there "
+      "while it was tuned.",
+      edges, counted(rows, "tuned rate"), never);
 }
 
 std::vector<Rates> all_rates(const Comparison& c) {
@@ -186,9 +186,9 @@ std::string rates_text(const Comparison& c) {
   if (tuned.empty() && published.empty()) return "";
   for (const std::string& method : tuned) published.erase(method);
   return fmt::format(
-      "Of {} methods {} have rates tuned on the very {}s they are judged on, on other seeds{}; the "
-      "others run as asked or at their defaults.",
-      methods.size(), tuned.size(), setting_noun(c),
+      "Of {} methods {} {} rates tuned on the very {}s that judge, on other seeds{}; the others run "
+      "as asked or at their defaults.",
+      methods.size(), tuned.size(), tuned.size() == 1 ? "has" : "have", setting_noun(c),
       published.empty() ? "" : fmt::format(", and {} published ones", published.size()));
 }
 

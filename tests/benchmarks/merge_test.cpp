@@ -64,6 +64,19 @@ void add_audit(const ResultFolder& folder, RandomStream& random) {
   folder.add_file("audit.json", audit_to_json(all).dump(1) + "\n");
 }
 
+// The rates that its plan used: two of four methods', of which one is told in several ways.
+void add_rates(const ResultFolder& folder, RandomStream& random) {
+  Json rows = Json::array();
+  for (const char* optimizer : {"a", "b", "c", "d"}) {
+    if (random.uniform() < 0.5) continue;
+    const Real rate = *optimizer == 'c' ? random.uniform() : 1;
+    rows.push_back(
+        {{"problem", "square"}, {"optimizer", optimizer}, {"options", {{"rate", rate}}}});
+  }
+  const Json table{{"schema", "isoline.rates/1"}, {"rows", rows}};
+  folder.add_file("rates.json", table.dump() + "\n");
+}
+
 // A folder of random cells out of twelve: timings, start and provenance differ between folders, and
 // so does the result of cell 11, which is in conflict wherever two folders have it.
 void fill(const ResultFolder& folder, std::uint64_t number) {
@@ -87,6 +100,7 @@ void fill(const ResultFolder& folder, std::uint64_t number) {
   }
   if (number % 4 != 0) folder.add(plan_of(records));
   if (number % 5 != 0) add_audit(folder, random);
+  if (number % 3 != 0) add_rates(folder, random);
   folder.add(Sheet{.kind = "problem",
                    .name = "square",
                    .spec = "square",

@@ -68,32 +68,64 @@ TEST(Prices, OfMatricesAreLeftOutWhereOneWouldTakeTooLong) {
     EXPECT_FALSE(has(matrix)) << matrix;
 }
 
-// y = x after so many additions forward, and twenty times as many back.
+// y = x after so many additions forward, and so many back.
 class Laborious final : public DensePhysics {
  public:
-  Laborious() : DensePhysics(1, 1) {}
-  void value(VectorRef x, VectorOut y) const override { y[0] = x[0] + labour(kForward); }
-  void derivative(VectorRef, BatchOut J) const override { J(0, 0) = 1 + labour(20 * kForward); }
+  Laborious(int forward, int back) : DensePhysics(1, 1), forward_(forward), back_(back) {}
+  void value(VectorRef x, VectorOut y) const override { y[0] = x[0] + labour(forward_); }
+  void derivative(VectorRef, BatchOut J) const override { J(0, 0) = 1 + labour(back_); }
 
  private:
-  static constexpr int kForward = 2000;
   static Real labour(int additions) {
     volatile Real sum = 0;
     for (int i = 0; i < additions; ++i) sum = sum + 0;
     return sum;
   }
+  int forward_, back_;
 };
 
-// Both are measured side by side, so that a busy machine slows them alike: 20 within a factor of 4.
-TEST(Prices, AreInForwardSolves) {
-  const Problem problem({.physics = std::make_unique<Laborious>(),
+MeasuredPrice pullback_price(int forward, int back) {
+  const Problem problem({.physics = std::make_unique<Laborious>(forward, back),
                          .start = Vector::Ones(1),
                          .target = Vector::Zero(1)});
   const MeasuredPrices measured = measure_prices(problem, "b");
-  const auto pullback = std::ranges::find(measured.oracles, "pullback", &MeasuredPrice::oracle);
-  ASSERT_NE(pullback, measured.oracles.end());
-  EXPECT_GT(pullback->price, 5);
-  EXPECT_LT(pullback->price, 80);
+  return *std::ranges::find(measured.oracles, "pullback", &MeasuredPrice::oracle);
+}
+
+// Both are measured side by side, so that a busy machine slows them alike: 20 within a factor of 4.
+TEST(Prices, AreInForwardSolves) {
+  const MeasuredPrice pullback = pullback_price(2000, 40'000);
+  EXPECT_GT(pullback.price, 5);
+  EXPECT_LT(pullback.price, 80);
+}
+
+// A difference of two times would be lost in what they vary by.
+TEST(Prices, OfACallThatIsShortBesideTheForwardSolveAreNeverZero) {
+  const MeasuredPrice pullback = pullback_price(200'000, 200);
+  EXPECT_GT(pullback.low, 0);
+  EXPECT_LT(pullback.price, 0.1);
+}
+
+TEST(Prices, BelowAMicrosecondAForwardSolveOrWithoutAnAgreedRangeAreNotResolved) {
+  const auto is_sound = [](Real low, Real price, Real high, double forward_seconds) {
+    return is_resolved({.oracle = "pullback", .price = price, .low = low, .high = high},
+                       forward_seconds);
+  };
+  EXPECT_TRUE(is_sound(1, 1.5, 2, 1e-5));
+  EXPECT_FALSE(is_sound(1, 1.5, 2, 1e-7));
+  EXPECT_FALSE(is_sound(0, 0, 0.1, 1e-5));
+  EXPECT_FALSE(is_sound(0.1, 1, 2, 1e-5));
+}
+
+TEST(Prices, TellInTheSheetWhetherTheyAreResolved) {
+  Sheet sheet;
+  sheet.options_text = "[]";
+  sheet.prices = MeasuredPrices{.build = "b", .processor = "p", .forward_seconds = 1e-8};
+  sheet.prices->oracles = {{.oracle = "pullback", .rounds = 1, .calls = 1, .resolved = false}};
+  Json json = to_json(sheet);
+  EXPECT_FALSE(sheet_from_json(json).prices->oracles[0].resolved);
+  json["prices"]["oracles"][0].erase("resolved");  // an older sheet
+  EXPECT_TRUE(sheet_from_json(json).prices->oracles[0].resolved);
 }
 
 TEST(Prices, StandInTheSheetAndAreKeptByLaterRuns) {

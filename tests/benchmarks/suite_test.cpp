@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "benchmarks/plan/filter.h"
 #include "benchmarks/plan/resources.h"
+#include "benchmarks/run/tuning_grid.h"
 #include "core/json.h"
 #include "core/option_json.h"
 #include "core/records/schema.h"
@@ -16,7 +18,6 @@
 
 namespace isoline::benchmarks {
 
-using optimizers::Family;
 using optimizers::OptimizerEntry;
 namespace {
 
@@ -78,16 +79,62 @@ TEST(Quick, GivesNoCellMoreThan2000UnitsOfWorkUnlessItLearns) {
   }
 }
 
-TEST(Quick, GivesEachMethodAGridThatItCanTreat) {
-  for (const Request& cell : cells_of("quick")) {
-    if (cell.seed != 0 || !cell.problem.options.contains("N")) continue;
-    const OptimizerEntry& entry = catalog().optimizers.at(cell.optimizer.name);
-    const auto side = std::get<Index>(cell.problem.options.at("N"));
-    if (entry.family == Family::nlopt_derivative_free)
-      EXPECT_EQ(side, 8) << entry.name;
-    else
-      EXPECT_TRUE(side == 16 || side == 64) << entry.name;
+// The order of all methods keeps its differential equations: everyone is asked 8 × 8.
+TEST(Quick, GivesEveryMethodTheSmallestGridsAndEachTheLargestThatItCanTreat) {
+  std::map<std::string, std::set<Index>> sides;
+  for (const Request& cell : cells_of("quick"))
+    if (cell.problem.name == "poisson" || cell.problem.name == "heat")
+      sides[cell.problem.name + " " + cell.optimizer.name].insert(
+          std::get<Index>(cell.problem.options.at("N")));
+  for (const char* problem : {"poisson", "heat"})
+    for (const auto& [name, entry] : catalog().optimizers) {
+      const std::set<Index>& asked = sides[std::string(problem) + " " + name];
+      EXPECT_TRUE(asked.contains(8)) << name;
+      EXPECT_EQ(asked.size(), is_selected(entry, "@derivative-free") ? 1U : 2U) << name;
+      EXPECT_EQ(asked.contains(16), is_selected(entry, "@factorizing")) << name;
+      EXPECT_EQ(asked.contains(64), is_selected(entry, "@matrix-free")) << name;
+    }
+}
+
+TEST(Defaults, AreTheCellsOfQuickWithEveryMethodAtItsDefaults) {
+  using Cell = std::tuple<std::string, std::string, std::uint64_t, std::int64_t, std::int64_t>;
+  const auto asked = [](const std::string& suite) {
+    std::multiset<Cell> cells;
+    for (const Request& cell : cells_of(suite))
+      cells.insert({cell.problem.spec, cell.optimizer.name, cell.seed, cell.budget.work,
+                    cell.budget.iterations});
+    return cells;
+  };
+  EXPECT_EQ(asked("defaults"), asked("quick"));
+  for (const Request& cell : cells_of("defaults")) {
+    EXPECT_EQ(cell.optimizer.spec, cell.optimizer.name);
+    EXPECT_EQ(cell.rates, "");
   }
+}
+
+// What would take too long, or lacks an argument, joins the registries and not the suites.
+TEST(Suites, PassOverWhatItsEntryKeepsOutOfAll) {
+  Catalog all = builtin_catalog();
+  problems::ProblemEntry slow = all.problems.at("square");
+  slow.name = "slow";
+  slow.in_all = false;
+  all.problems.add(slow);
+  OptimizerEntry odd = all.optimizers.at("gd");
+  odd.name = "odd";
+  odd.in_all = false;
+  all.optimizers.add(odd);
+  const auto names_something = [&](const std::string& problem, const std::string& optimizer) {
+    const Suite suite{.name = "mine",
+                      .title = "",
+                      .blocks = {{.problems = {problem}, .optimizers = {optimizer}}}};
+    return std::ranges::any_of(expand(all, suite, {}), [](const Request& cell) {
+      return cell.problem.name == "slow" || cell.optimizer.name == "odd";
+    });
+  };
+  EXPECT_FALSE(names_something("*", "*"));
+  EXPECT_FALSE(names_something("*", "@first-order"));
+  EXPECT_TRUE(names_something("slow", "gd"));
+  EXPECT_TRUE(names_something("square", "odd"));
 }
 
 TEST(Suites, AMisspeltNameIsAnErrorWithASuggestion) {
@@ -202,14 +249,36 @@ TEST(Rates, OfTheTreeNameWhatExistsWithinItsRangesAndSaysWhereEachValueIsFrom) {
   }
 }
 
-TEST(Rates, CoverEveryFirstOrderCellOfQuick) {
-  const Rates rates = Rates::builtin();
+// Equal tuning: every method that has something to tune was, on every problem that it can treat.
+TEST(Rates, CoverEveryTunableMethodOnEveryProblemOfQuick) {
+  std::set<std::string> seen;
   for (const Request& cell : cells_of("quick")) {
     const OptimizerEntry& entry = catalog().optimizers.at(cell.optimizer.name);
-    if (entry.family != Family::first_order) continue;
-    EXPECT_NE(rates.find(cell.problem, entry.name), nullptr)
-        << cell.problem.spec << " × " << entry.name;
-    EXPECT_FALSE(cell.rates.empty()) << cell.problem.spec << " × " << entry.name;
+    const std::string text = cell.problem.spec + " × " + entry.name;
+    const bool is_published = cell.problem.spec.find("mode=learn") != std::string::npos;
+    if (entry.tunable.option.empty() || is_published || !seen.insert(text).second) continue;
+    const Problem problem = make_problem(catalog(), cell.problem, 0);
+    if (why_inapplicable(entry, cell.optimizer.options, problem).empty())
+      EXPECT_EQ(cell.rates, "direct.json") << text;
+  }
+  EXPECT_GT(seen.size(), 400U);
+}
+
+TEST(Rates, OfQuickWereEachChosenFromSevenValuesOfTheMethodsOwnOptionAndAFewBeyondAnEdge) {
+  const Json table = parse_json(std::string(builtin_rates().at("direct")), "direct");
+  EXPECT_EQ(table["grid"]["points"], kGridValues);
+  for (const Json& row : table["rows"]) {
+    const std::string text =
+        row["problem"].get<std::string>() + " × " + row["optimizer"].get<std::string>();
+    const Component problem =
+        complete_problem(catalog(), parse_spec(row["problem"].get<std::string>()));
+    const auto knob = knob_of(catalog(), row["optimizer"], problem, {});
+    ASSERT_TRUE(knob.has_value()) << text;
+    ASSERT_TRUE(row["source"]["grid"].contains(knob->option)) << text;
+    const std::size_t values = row["source"]["grid"][knob->option].size();
+    EXPECT_GE(values, std::size_t{kGridValues}) << text;
+    EXPECT_LE(values, std::size_t{kGridValues + 2 * kMostExtensions}) << text;
+    EXPECT_EQ(row["source"]["best_of"].size(), values) << text;
   }
 }
 

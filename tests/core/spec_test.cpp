@@ -30,8 +30,35 @@ TEST(Spec, NestedBarsBelongToTheInnerSpec) {
   EXPECT_EQ(options_of(specs[0]).text("network-optimizer"), "adam[rate=1|2]");
 }
 
+TEST(Spec, AValueInDoubleQuotesIsAJsonStringWithLiteralCommasBarsAndBrackets) {
+  const auto specs =
+      parse_specs(R"(process[command="python3 a,b|c ]x[ \"q\" \u00e9",seed=1|2],gd)");
+  ASSERT_EQ(specs.size(), 3U);
+  EXPECT_EQ(options_of(specs[1]).text("command"), "python3 a,b|c ]x[ \"q\" é");
+  EXPECT_EQ(options_of(specs[1]).text("seed"), "2");
+  EXPECT_EQ(specs[2].name, "gd");
+  EXPECT_EQ(parse_specs(R"(a[b="1,2"|"3|4"])").size(), 2U);
+  const auto nested = parse_spec(R"(sip[network-optimizer=process[command="x,]"]])");
+  EXPECT_EQ(options_of(nested).text("network-optimizer"), R"(process[command="x,]"])");
+}
+
+TEST(Spec, AnyTextComesBackFromTheSpecThatIsMadeOfIt) {
+  const OptionTable table{{"command", std::string("none"), {}, {}, ""}};
+  for (const char* text :
+       {"python3 mine.py", "a,b", "a|b", "[", "]", "a]b[c", "\"", "a\"b", "", " a ",
+        "adam[rate=1e-3,beta1=0.8]", "\"quoted\"", "back\\slash\",", "line\n"}) {
+    const std::string spec = short_spec(table, "process", {{"command", std::string(text)}});
+    const auto back = parse_specs(spec);
+    ASSERT_EQ(back.size(), 1U) << spec;
+    EXPECT_EQ(options_of(back[0]).text("command"), text) << spec;
+  }
+  const OptionValues plain{{"command", std::string("adam[rate=1e-3,beta1=0.8]")}};
+  EXPECT_EQ(short_spec(table, "sip", plain), "sip[command=adam[rate=1e-3,beta1=0.8]]");
+}
+
 TEST(Spec, WhatDoesNotParseIsAUsageError) {
-  for (const char* wrong : {"sine[", "sine]", "sine[xi]", "[xi=1]", "sine[xi=1]x", "a,,b", ""})
+  for (const char* wrong : {"sine[", "sine]", "sine[xi]", "[xi=1]", "sine[xi=1]x", "a,,b", "",
+                            "a[b=\"c]", "a[b=\"c\"d]"})
     EXPECT_THROW(parse_specs(wrong), UsageError) << wrong;
 }
 

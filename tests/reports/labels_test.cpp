@@ -73,9 +73,10 @@ TEST(Labels, TellValueAndOriginWhereATableChose) {
   EXPECT_EQ(setting_text(c, 1, at("gd")), "gd (1, published)");
   EXPECT_EQ(setting_text(c, 0, at("ceres-lm")), "ceres-lm");
   const Section section = document_of(c).section("tuning");
-  EXPECT_NE(section.readings[0].text.find("Of 2 methods 1 have rates tuned"), std::string::npos)
+  EXPECT_NE(section.readings[0].text.find("Of 2 methods 1 has rates tuned"), std::string::npos)
       << section.readings[0].text;
-  EXPECT_NE(section.readings[1].text.find("Of 1 tuned rates 1 stand at an edge"), std::string::npos)
+  EXPECT_NE(section.readings[1].text.find("at an edge of its grid for 1 of 1 tuned rate,"),
+            std::string::npos)
       << section.readings[1].text;
   ASSERT_EQ(section.plots.size(), 1U);
   // One of two values gets there: half, and with both all.

@@ -1,0 +1,243 @@
+// Tuning: every method's one option, on an equal number of values, scored by what a problem's user
+// wants.
+#include "benchmarks/run/tune.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/sheets.h"
+#include "benchmarks/run/tuning_score.h"
+#include "benchmarks/run/used_rates.h"
+#include "core/json.h"
+#include "core/records/schema.h"
+#include "problems/dense_physics.h"
+#include "tests/temporary_folder.h"
+
+namespace isoline::benchmarks {
+
+using optimizers::Tunable;
+namespace {
+
+constexpr Real kNever = std::numeric_limits<Real>::infinity();
+
+const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+Component problem_of(const std::string& spec) {
+  return complete_problem(catalog(), parse_spec(spec));
+}
+
+// --- which option
+
+TEST(Tuning, OfEveryMethodIsOneNumberOfItsOwnAndOnlyLibrariesHaveNone) {
+  std::size_t without = 0;
+  for (const auto& [name, entry] : catalog().optimizers) {
+    if (entry.tunable.option.empty()) {
+      ++without;
+      EXPECT_TRUE(name.starts_with("ceres-") || name.starts_with("nlopt-")) << name;
+      continue;
+    }
+    const Component problem = problem_of(name == "supervised" ? "hig-toy" : "rosenbrock");
+    const auto knob = knob_of(catalog(), name, problem, {});
+    ASSERT_TRUE(knob.has_value()) << name;
+    EXPECT_GT(knob->standard, 0) << name;
+    EXPECT_NO_THROW(complete_optimizer(catalog(), name, with_value(*knob, {}, knob->standard)));
+  }
+  EXPECT_EQ(without, 15U);
+}
+
+TEST(Tuning, IsToldByTheSheetOfAMethod) {
+  const auto told = [](const std::string& name) {
+    const Sheet sheet = optimizer_sheet(catalog(), complete_optimizer(catalog(), name, {}));
+    return sheet_from_json(to_json(sheet)).tunable;
+  };
+  EXPECT_EQ(told("levenberg-marquardt"), "initial-damping");
+  EXPECT_EQ(told("ceres-lm"), "");
+}
+
+TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
+  const auto spec = [](const std::string& optimizer, const std::string& problem) {
+    const auto knob = knob_of(catalog(), optimizer, problem_of(problem), {});
+    return complete_optimizer(catalog(), optimizer, with_value(*knob, {}, 0.25)).spec;
+  };
+  EXPECT_EQ(spec("sip", "sine"), "sip[step=0.25]");
+  EXPECT_EQ(spec("sip", "hig-toy"), "sip[network-optimizer=adam[rate=0.25]]");
+  EXPECT_EQ(spec("rescaled", "sine"), "rescaled[network-optimizer=gd[rate=0.25]]");
+  EXPECT_EQ(spec("nlopt-lbfgs", "sine"), "nlopt-lbfgs[memory=0]");  // in whole numbers
+}
+
+// --- which values
+
+TEST(TuningGrids, AreSevenValuesOfWhichOneIsTheDefault) {
+  for (const auto& [name, entry] : catalog().optimizers) {
+    const auto knob = knob_of(catalog(), name, problem_of("hig-toy"), {});
+    if (!knob || knob->tunable.unit == Tunable::Unit::cauchy) continue;
+    const std::vector<Real> values = grid_of(*knob, knob->standard);
+    EXPECT_EQ(values.size(), 7U) << name;
+    EXPECT_TRUE(std::ranges::is_sorted(values)) << name;
+    EXPECT_EQ(std::ranges::count(values, knob->standard), 1) << name;
+  }
+}
+
+TEST(TuningGrids, OfStepsAlongTheGradientAreInCauchyStepsAndHoldTheDefaultWhereItLiesWithin) {
+  const auto knob = knob_of(catalog(), "gd", problem_of("sine"), {});
+  ASSERT_EQ(knob->tunable.unit, Tunable::Unit::cauchy);
+  const std::vector<Real> near = grid_of(*knob, 0.2), far = grid_of(*knob, 1e-6);
+  EXPECT_EQ(near.size(), 7U);
+  EXPECT_EQ(std::ranges::count(near, knob->standard), 1);
+  EXPECT_EQ(far.size(), 7U);
+  EXPECT_LT(far.back(), knob->standard);
+}
+
+TEST(TuningGrids, EndWhereTheOptionDoes) {
+  Knob knob{.option = "memory", .standard = 100, .range = between(0, 1000), .is_whole = true};
+  knob.tunable = {.option = "memory", .below = 4};
+  const std::vector<Real> values = grid_of(knob, 100);
+  EXPECT_EQ(values, (std::vector<Real>{1, 3, 10, 32, 100, 316, 1000}));
+  EXPECT_FALSE(value_beyond(knob, values, true).has_value());
+  EXPECT_EQ(value_beyond({.standard = 1, .range = above(0)}, {0.1, 1}, false), 0.0316);
+}
+
+// --- which is best
+
+Record run_of(Aim aim, std::int64_t hit, Real loss, Real x_error) {
+  Record record;
+  record.status = Status::budget;
+  record.aim = aim;
+  record.hits.emplace();
+  record.hits->work.assign(51, hit);
+  record.x_scale = 10;
+  record.curve.work = {0, 40, 80};
+  record.curve.x_error = {10, 1, x_error};
+  record.summary.loss = loss;
+  record.summary.x_error = x_error;
+  return record;
+}
+
+TEST(TuningScores, CountWorkUntilWhatTheProblemsUserWants) {
+  EXPECT_EQ(score_of({run_of(Aim::loss, 30, 1e-9, 5)}), (TuningScore{30, 1e-9}));
+  EXPECT_EQ(score_of({run_of(Aim::x, 30, 1e-9, 5)}), (TuningScore{kNever, 5}));
+  EXPECT_EQ(score_of({run_of(Aim::x, -1, 1, 9e-6)}), (TuningScore{80, 9e-6}));  // 1e-6 of ‖x*‖
+  Record floored = run_of(Aim::x, -1, 1, 0.5);
+  floored.x_floor = 0.6;
+  EXPECT_EQ(score_of({floored}), (TuningScore{80, 0.5}));
+}
+
+TEST(TuningScores, AreMediansAndNothingWhereASeedDiverged) {
+  const auto run = [](std::int64_t hit, Real loss) { return run_of(Aim::loss, hit, loss, 1); };
+  EXPECT_EQ(score_of({run(30, 1), run(10, 3), run(-1, 2)}), (TuningScore{30, 2}));
+  std::vector<Record> runs{run(30, 1), run(10, 3), run(20, 2)};
+  runs[1].status = Status::diverged;
+  EXPECT_EQ(score_of(runs), TuningScore{});
+}
+
+TEST(TuningScores, OfATieGoToTheDefaultOrToWhatIsNearest) {
+  const std::vector<Real> values{0.01, 0.1, 1, 10};
+  const TuningScore good{10, 1e-9}, bad{kNever, 1};
+  EXPECT_EQ(best_value(values, {good, good, good, good}, 1), 2U);
+  EXPECT_EQ(best_value(values, {bad, bad, bad, bad}, 0.1), 1U);
+  EXPECT_EQ(best_value(values, {good, bad, bad, good}, 1), 3U);
+  EXPECT_EQ(best_value(values, {bad, bad, good, bad}, 0.01), 2U);
+  EXPECT_EQ(best_value(values, {{10, 2}, {10, 1}, bad, bad}, 10), 1U);
+}
+
+TEST(TuningScores, ExpectedBestOfBFallsFromTheMeanToTheLeast) {
+  EXPECT_EQ(best_of({3, 1, 2}), (std::vector<Real>{2, 4.0 / 3, 1}));
+}
+
+// --- the whole
+
+// y = s x: gradient descent on ½(s x)² solves it in one step at the rate 1/s².
+class Steep final : public problems::DensePhysics {
+ public:
+  explicit Steep(Real slope) : DensePhysics(1, 1), slope_(slope) {}
+  void value(VectorRef x, VectorOut y) const override { y[0] = slope_ * x[0]; }
+  void derivative(VectorRef, BatchOut J) const override { J(0, 0) = slope_; }
+
+ private:
+  Real slope_;
+};
+
+struct SteepOptions {
+  Real slope = 1, start = 1;
+};
+void fields(SteepOptions& o, auto& field) {
+  field("slope", o.slope, above(0), "s");
+  field("start", o.start, above(0), "x at the start");
+}
+
+problems::ProblemParts make_steep(const SteepOptions& o, const Draw& draw) {
+  problems::ProblemParts parts;
+  parts.physics = std::make_unique<Steep>(o.slope);
+  parts.start = draw.start(Vector::Constant(1, o.start));
+  parts.target = Vector::Zero(1);
+  parts.minimum = 0;
+  return parts;
+}
+
+Catalog with_steep() {
+  Catalog all = builtin_catalog();
+  all.problems.add(problem_entry({.name = "steep", .title = "Steep"}, make_steep));
+  return all;
+}
+
+Json rows_of(const Catalog& all, const std::string& problem, const std::string& optimizer,
+             std::int64_t iterations) {
+  const TemporaryFolder folder;
+  const TuningPlan plan{.pairs = {{.problem = complete_problem(all, parse_spec(problem)),
+                                   .optimizer = optimizer,
+                                   .budget = {.iterations = iterations, .work = 400}}},
+                        .seeds = {100, 101, 102}};
+  return *tune(all, plan, folder.path(), {.jobs = 2}).rows;
+}
+
+// A step of adam is as long as its rate: of a million, the longest goes the farthest.
+TEST(Tuning, GoesOnBeyondAnEdgeThatIsBestAndMarksWhereItStops) {
+  const Json row = rows_of(with_steep(), "steep[start=1e6]", "adam", 1).at(0);
+  const Json& source = row["source"];
+  EXPECT_EQ(source["grid"]["rate"].size(), 10U);  // seven, and three beyond
+  EXPECT_EQ(row["options"]["rate"], source["grid"]["rate"][9]);
+  EXPECT_EQ(source["edge"], true);
+  EXPECT_EQ(source["score"].size(), 10U);
+  EXPECT_EQ(source["best_of"].size(), 10U);
+}
+
+// Cauchy's step, 1/s², solves it at once.
+TEST(Tuning, StopsAtSevenValuesWhereTheBestIsAmongThem) {
+  const Json row = rows_of(with_steep(), "steep[slope=1e-4]", "gd", 100).at(0);
+  EXPECT_EQ(row["source"]["grid"]["rate"].size(), 7U);
+  EXPECT_EQ(row["options"]["rate"], 1e8);
+  EXPECT_FALSE(row["source"].contains("edge"));
+}
+
+TEST(Tuning, LeavesOutWhatIsInapplicable) {
+  EXPECT_EQ(rows_of(builtin_catalog(), "rosenbrock", "kfac", 10).size(), 0U);
+}
+
+TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {
+  const TemporaryFolder folder;
+  const Suite suite{.name = "mine",
+                    .title = "",
+                    .blocks = {{.problems = {"rosenbrock", "sine[mode=learn,xi=32]"},
+                                .optimizers = {"adam", "ceres-lm"}}}};
+  const Rates rates = Rates::builtin();
+  write_used_rates(rates, expand(catalog(), suite, rates), folder.path());
+  write_used_rates(rates, {}, folder.path());  // another plan of the folder uses none
+  const Json table = read_json(folder.path() / "rates.json");
+  const Json schema = parse_json(std::string(builtin_schemas().at("rates")), "rates");
+  EXPECT_EQ(schema_violations(table, schema), std::vector<std::string>{});
+  ASSERT_EQ(table["rows"].size(), 2U);
+  EXPECT_EQ(table["rows"][0]["file"], "direct.json");
+  EXPECT_TRUE(table["rows"][0]["source"].contains("grid"));
+  EXPECT_EQ(table["rows"][1]["file"], "learn.json");
+  EXPECT_TRUE(table["rows"][1]["source"].contains("paper"));
+}
+
+}  // namespace
+}  // namespace isoline::benchmarks
