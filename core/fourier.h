@@ -4,15 +4,12 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "core/array.h"
 
 struct fftw_plan_s;  // FFTW's own name for a plan: its header stays inside fourier.cpp
 
 namespace isoline {
-
-std::string fourier_version();  // of FFTW, "3.3.10"
 
 struct DestroyPlan {
   void operator()(fftw_plan_s* plan) const;

@@ -161,11 +161,9 @@ class Examination {
             1e-13 + error / start.loss,
             "squares of residuals that are zero but for rounding, and the declared error");
     }
-    if (problem_.aim() == Aim::x) {
-      const Real scale = problem_.x_scale(problem_.batch());
-      add("the size of the x that is sought is known", scale > 0 && std::isfinite(scale) ? 0 : 1, 0,
-          "its user wants x, and errors in x are measured by it");
-    }
+    if (problem_.aim() == Aim::x)
+      add("the size of the x that is sought is known",
+          problem_.x_scale(problem_.batch()) > 0 ? 0 : 1, 0, "errors in x are measured by it");
     if (problem_.truth() && !std::isnan(problem_.x_error(*problem_.truth())))
       add("the error in x of the truth is zero",
           problem_.x_error(*problem_.truth()) / std::max(1.0, problem_.truth()->norm()), 1e-14,

@@ -2,6 +2,7 @@
 // problem is one with the identity network. Const: what depends on θ lives in a Point.
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -54,8 +55,8 @@ Vector near(const Vector& standard, StartScale scale, RandomStream& noise);
 // θ₀ of a run, and the standard start that it was drawn around: it itself where nothing is drawn.
 struct Start {
   Start() = default;
-  template <class Derived>
-  Start(const Eigen::MatrixBase<Derived>& theta) : drawn(theta), standard(drawn) {}
+  template <std::convertible_to<Vector> Theta>
+  Start(const Theta& theta) : drawn(theta), standard(drawn) {}
   Start(Vector theta, Vector around) : drawn(std::move(theta)), standard(std::move(around)) {}
 
   Vector drawn, standard;  // (n)

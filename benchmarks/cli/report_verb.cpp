@@ -32,8 +32,7 @@ reports::Yardstick yardstick_of(const ReportArguments& given) {
 }  // namespace
 
 int report_verb(const ReportArguments& given, Session& session) {
-  const std::vector<fs::path> folders(given.folders.begin(), given.folders.end());
-  const Study study = read_study(folders, on_terminal("reading records"));
+  const Study study = read_study(given.folders, on_terminal("reading records"));
   require(!study.runs.empty(), [&] {
     const std::string damaged =
         study.unreadable.empty()
@@ -43,8 +42,9 @@ int report_verb(const ReportArguments& given, Session& session) {
                        fmt::join(given.folders, ", "), damaged);
   });
   const reports::Yardstick yardstick = yardstick_of(given);
-  write_and_print(study, given.out.empty() ? folders.front() / "report" : fs::path(given.out),
-                  session, false, yardstick);
+  write_and_print(
+      study, given.out.empty() ? fs::path(given.folders.front()) / "report" : fs::path(given.out),
+      session, false, yardstick);
   return kGood;
 }
 

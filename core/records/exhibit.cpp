@@ -21,7 +21,7 @@ std::vector<Real> turned(const Real* values, Index N) {
 
 }  // namespace
 
-void write_pictures(const Exhibit& exhibit, const std::filesystem::path& path) {
+void write_pictures(const Exhibit& exhibit, const std::string& path) {
   const Index N = exhibit.grid;
   NumberArray array{{kPanels, N, N}, {}};
   for (const Grid* panel : {&exhibit.target, &exhibit.x, &exhibit.truth}) {
@@ -32,12 +32,11 @@ void write_pictures(const Exhibit& exhibit, const std::filesystem::path& path) {
   write_npy(path, array);
 }
 
-void read_pictures(Exhibit& exhibit, const std::filesystem::path& path) {
+void read_pictures(Exhibit& exhibit, const std::string& path) {
   const Index N = exhibit.grid;
   const NumberArray array = read_npy(path);
-  require(array.shape == std::vector<Index>{kPanels, N, N}, [&] {
-    return fmt::format("{} holds no three pictures of {} × {}", path.string(), N, N);
-  });
+  require(array.shape == std::vector<Index>{kPanels, N, N},
+          [&] { return fmt::format("{} holds no three pictures of {} × {}", path, N, N); });
   const Real* panel = array.values.data();
   for (Grid* out : {&exhibit.target, &exhibit.x, &exhibit.truth}) {
     *out = Grid(N * N, 1, turned(panel, N));

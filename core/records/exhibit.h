@@ -2,7 +2,7 @@
 // a column. Grids are stored beside the record, as an array (3, N, N) of y*, x and x* in `.npy`.
 #pragma once
 
-#include <filesystem>
+#include <string>
 
 #include "core/grid.h"
 
@@ -15,7 +15,7 @@ struct Exhibit {
   bool is_picture() const { return grid > 0; }
 };
 
-void write_pictures(const Exhibit& exhibit, const std::filesystem::path& path);
-void read_pictures(Exhibit& exhibit, const std::filesystem::path& path);
+void write_pictures(const Exhibit& exhibit, const std::string& path);
+void read_pictures(Exhibit& exhibit, const std::string& path);
 
 }  // namespace isoline

@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "core/digest.h"
-#include "core/fourier.h"
+#include "core/fourier_version.h"
 #include "core/processor.h"
 #include "core/records/provenance_fields.h"
 #include "core/threads.h"

@@ -30,9 +30,7 @@ Record record_from_text(const std::string& text, const std::string& origin) {
 
 Record record_from_json(const Json& json) { return record_from_text(json.dump(), "it"); }
 
-Record read_record(const std::filesystem::path& path) {
-  return record_from_text(read_text(path), path.string());
-}
+Record read_record(const std::string& path) { return record_from_text(read_text(path), path); }
 
 Json run_schema() {
   Json schema;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -88,7 +87,7 @@ Json to_json(const Record& record);
 // UsageError where it is no such record; the origin is named where it is no JSON.
 Record record_from_json(const Json& json);
 Record record_from_text(const std::string& text, const std::string& origin);
-Record read_record(const std::filesystem::path& path);
+Record read_record(const std::string& path);
 
 Json run_schema();  // what benchmarks/schemas/run.json holds
 

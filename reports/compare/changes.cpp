@@ -43,8 +43,7 @@ std::string change_text(const Given& a, const Given& b, const std::string& optio
 }
 
 void count_changes(const Given& a, const Given& b, std::map<std::string, std::size_t>& changes) {
-  if (a.options.empty() && b.options.empty()) return;
-  if (a.spec.empty() || b.spec.empty() || a.options == b.options) return;
+  if (a.options == b.options) return;
   std::set<std::string> options;
   for (const OptionValues* values : {&a.options, &b.options})
     for (const NamedOption& each : *values) options.insert(each.name);
@@ -97,6 +96,7 @@ std::string names_text(const std::vector<std::string>& names) {
 std::vector<std::string> changed_settings(const Pairs& pairs) {
   std::map<std::string, std::size_t> changes;
   for (const auto& [a, b] : pairs.both) {
+    if (a->terms.empty() || b->terms.empty()) continue;  // a title tells no options
     count_changes(a->problem, b->problem, changes);
     count_changes(a->optimizer, b->optimizer, changes);
   }

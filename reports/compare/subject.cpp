@@ -129,12 +129,12 @@ Subject subject_of(const Record& record, const BestKnown& reference) {
   subject.builds = {record.build};
   subject.parts = record.build_parts;
   subject.aim = record.aim;
-  add_seconds(subject, record.repeat_wall_seconds);
   subject.is_cut = is_cut(record);
   subject.processor = record.provenance.build->processor;
   if (const std::string cell = cell_digest(request); cell != record.cell)
     subject.doubt = fmt::format("its cell is not the digest of its request, {}", cell);
   if (record.status == Status::inapplicable) return subject;
+  add_seconds(subject, record.repeat_wall_seconds);
   add_digests(subject, record);
   add_figures(subject, record, reference);
   return subject;

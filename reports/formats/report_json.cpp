@@ -1,6 +1,7 @@
 // All aggregates as JSON, schema isoline.report/1. `figures` are the same for the same build, so
 // that two reports can be compared; times are not, nor costs, which are at measured prices.
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -197,7 +198,8 @@ std::string json_report(const Document& document) {
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (c.cell(p, s).planned > 0) cells.push_back(cell_json(c, p, s));
   for (const Unreadable& file : c.study->unreadable)
-    unreadable.push_back({{"file", file.file.filename().string()}, {"reason", file.reason}});
+    unreadable.push_back(
+        {{"file", std::filesystem::path(file.file).filename().string()}, {"reason", file.reason}});
   const Json json{{"schema", kReportSchema},
                   {"suites", c.study->plan.suites},
                   {"planned", c.planned},

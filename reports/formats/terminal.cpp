@@ -137,7 +137,7 @@ std::string failure_lines(const Comparison& c) {
                                 record.request.seed, record.message));
   }
   for (const Unreadable& file : c.study->unreadable)
-    lines.push_back(fmt::format("unreadable: {}: {}", file.file.string(), file.reason));
+    lines.push_back(fmt::format("unreadable: {}: {}", file.file, file.reason));
   std::string text;
   for (std::size_t i = 0; i < lines.size() && i < kMost; ++i)
     text += terminal_text(lines[i]) + "\n";

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
@@ -79,7 +80,7 @@ void keep_newest(Study& study, Places& place, std::size_t index) {
   if (&known != &record && (is_first || is_newer(record, known))) known = std::move(record);
 }
 
-void read_runs(Study& study, const std::vector<fs::path>& folders, const Listener& listener) {
+void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener) {
   std::vector<fs::path> files;
   for (const fs::path& folder : folders)
     for (fs::path& file : json_files(folder / "runs")) files.push_back(std::move(file));
@@ -161,10 +162,9 @@ std::optional<Exhibit> Study::pictures_of(const Record& record) const {
   return std::nullopt;
 }
 
-Study read_study(const std::vector<fs::path>& folders, const Listener& listener) {
+Study read_study(const std::vector<std::string>& folders, const Listener& listener) {
   for (const fs::path& folder : folders)
-    require(fs::is_directory(folder),
-            [&] { return fmt::format("no result folder {}", folder.string()); });
+    require(fs::is_directory(folder), [&] { return "no result folder " + folder.string(); });
   Study study;
   study.folders = folders;
   std::set<std::string> cells, sheets;

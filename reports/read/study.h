@@ -1,7 +1,6 @@
 // What a report reads: the plan, the records and the sheets of one or several result folders.
 #pragma once
 
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -17,7 +16,7 @@ namespace isoline::reports {
 
 // A file that is no record, sheet or plan. It is listed, so that nothing vanishes in silence.
 struct Unreadable {
-  std::filesystem::path file;
+  std::string file;
   std::string reason;
 };
 
@@ -30,7 +29,7 @@ struct Study {
   std::vector<Unreadable> unreadable;
   std::size_t superseded = 0;      // readable records left aside for a newer one of the same cell
   std::set<std::string> disputed;  // cells of which two records of one build hold other results
-  std::vector<std::filesystem::path> folders;
+  std::vector<std::string> folders;
 
   // The exhibit of a record that keeps pictures beside it; nothing where they cannot be read.
   std::optional<Exhibit> pictures_of(const Record& record) const;
@@ -38,6 +37,6 @@ struct Study {
 
 // Folders are laid out as core/records/sheet.h says; a missing one is a UsageError. The listener is
 // told of the records.
-Study read_study(const std::vector<std::filesystem::path>& folders, const Listener& listener = {});
+Study read_study(const std::vector<std::string>& folders, const Listener& listener = {});
 
 }  // namespace isoline::reports

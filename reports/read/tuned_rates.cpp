@@ -2,6 +2,7 @@
 #include "reports/read/tuned_rates.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -56,8 +57,8 @@ std::vector<TunedRate> rates_from_text(const std::string& text, const std::strin
   return rates;
 }
 
-std::vector<TunedRate> read_rates(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "rates.json";
+std::vector<TunedRate> read_rates(const std::string& folder) {
+  const std::filesystem::path file = std::filesystem::path(folder) / "rates.json";
   if (!std::filesystem::exists(file)) return {};
   return rates_from_text(read_text(file), file.string());
 }

@@ -2,7 +2,6 @@
 // with what it was chosen from. OUT/rates.json, schema isoline.rates/1.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,7 +24,7 @@ struct TunedRate {
 };
 
 // None where the folder has no such file.
-std::vector<TunedRate> read_rates(const std::filesystem::path& folder);
+std::vector<TunedRate> read_rates(const std::string& folder);
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin);
 
 }  // namespace isoline::reports

@@ -1,6 +1,8 @@
 // Runs that went wrong, and files that are no records: nothing vanishes in silence.
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -27,7 +29,8 @@ Section failures_section(const Comparison& c) {
     table.row_topics.push_back({.optimizer = run.optimizer, .problem = run.problem});
   }
   for (const Unreadable& file : unreadable)
-    table.rows.push_back({file.file.filename().string(), "", "", "unreadable", file.reason, ""});
+    table.rows.push_back({std::filesystem::path(file.file).filename().string(), "", "",
+                          "unreadable", file.reason, ""});
   section.tables.push_back(std::move(table));
   return section;
 }

@@ -133,15 +133,15 @@ TEST(Chaos, TheCoarseTargetsAreThoseOfTheAim) {
       record.summary.loss *= 1.02;
     };
   };
-  const std::map<std::uint64_t, Edit> base = {{5, found(20)}};
+  const std::map<std::uint64_t, Edit> known = {{5, found(20)}};
   const auto verdict_on = [&](const Edit& edit) {
     const ResultFolder before, after;
     fill(after, {{5, edit}});
     before.add_file("baseline.json",
-                    baseline_json(study_with(base), {study_with({{5, [&](Record& record) {
-                                                                    found(20)(record);
-                                                                    record.summary.loss *= 2;
-                                                                  }}})}));
+                    baseline_json(study_with(known), {study_with({{5, [&](Record& record) {
+                                                                     found(20)(record);
+                                                                     record.summary.loss *= 2;
+                                                                   }}})}));
     return compare_results(before.path() / "baseline.json", after.path(),
                            {.tolerance = kTolerance});
   };

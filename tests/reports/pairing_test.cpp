@@ -190,6 +190,7 @@ TEST(Pairing, AnOlderBaselineTellsNoMoreThanTitles) {
   ASSERT_EQ(result.groups.size(), 1U);
   EXPECT_EQ(result.groups[0].optimizer, "adam");
   EXPECT_EQ(result.groups[0].cells, 4U);
+  EXPECT_TRUE(result.settings.empty()) << "titles tell no options";
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST(Trend, StandsInTheBaselineAndBesideEarlierOnes) {
             std::vector<std::string>());
 }
 
-TEST(Trend, WithoutEarlierOnesIsBaseAndNew) {
+TEST(Trend, WithoutEarlierOnesShowsTheTwoSides) {
   const ResultFolder folder, earlier;
   fill(folder);
   const GateResult result =
