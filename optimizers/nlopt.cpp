@@ -167,22 +167,23 @@ const OptionField kRemembered{
     "memory", kMemory, between(0, 1000), {}, "steps remembered; 0: as many as fit into 10 MB"};
 
 OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
-  return {.name = m.name,
-          .title = m.title,
-          .family = family,
-          .formula = m.formula,
-          .source = m.source,
-          .note = m.note,
-          .needs = needs,
-          .is_input_scale_invariant = m.is_input_scale_invariant,
-          .needs_same_samples = true,
-          .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
-          .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
-          .tunable = m.is_luksans() ? Tunable{.option = "memory", .below = 4} : Tunable{},
-          .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
-            return std::make_unique<Nlopt>(algorithm,
-                                           static_cast<Index>(options.number("memory", kMemory)));
-          }};
+  return {
+      .name = m.name,
+      .title = m.title,
+      .family = family,
+      .formula = m.formula,
+      .source = m.source,
+      .note = m.note,
+      .needs = needs,
+      .is_input_scale_invariant = m.is_input_scale_invariant,
+      .needs_same_samples = true,
+      .most_unknowns = family == Family::nlopt ? m.most_unknowns : kMostWithoutGradient,
+      .options = m.is_luksans() ? OptionTable{kRemembered} : OptionTable{},
+      .tunable = m.is_luksans() ? Tunable{.option = "memory", .below = 5, .factor = 2} : Tunable{},
+      .make = [algorithm = m.algorithm](const OptionValues& options, const OptimizerRegistry&) {
+        return std::make_unique<Nlopt>(algorithm,
+                                       static_cast<Index>(options.number("memory", kMemory)));
+      }};
 }
 
 // What minimize_lbfgs hands through NLopt. Luksan's first trial step, the whole gradient, and his

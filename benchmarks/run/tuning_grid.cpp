@@ -60,7 +60,7 @@ Knob knob_inside(const Catalog& catalog, const OptimizerEntry& outer, const Comp
 
 std::optional<Real> allowed(const Knob& knob, Real value) {
   value = knob.is_whole ? std::round(value) : three_digits(value);
-  return contains(knob.range, value) ? std::optional(value) : std::nullopt;
+  return value > 0 && contains(knob.range, value) ? std::optional(value) : std::nullopt;
 }
 
 Real measured_cauchy_step(const Problem& problem) {

@@ -139,7 +139,7 @@ std::string standings_html(const Comparison& c) {
       "<thead><tr><th scope=col>#<th scope=col>optimizer<th scope=col>score"
       "<th scope=col>{}s solved<th scope=col>best on<th scope=col>× least {}"
       "<th scope=col>runs<th scope=col>failed<tbody>\n",
-      tau_name(c), setting_noun(c), name_of(c.yardstick.by));
+      tau_name(c), common_noun(c), name_of(c.yardstick.by));
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += standing_row(c, s);
   return html + "</table>";
 }

@@ -42,7 +42,7 @@ std::string field_text(const Comparison& c, const Lead& lead) {
 
 std::string deeds_text(const Comparison& c, const Scored& scored) {
   return fmt::format("solves {} of {} to {}, {} of them with the least {}", scored.solved,
-                     counted(scored.problems, setting_noun(c)), tau_name(c), scored.wins,
+                     counted(scored.problems, common_noun(c)), tau_name(c), scored.wins,
                      counted_name(c));
 }
 

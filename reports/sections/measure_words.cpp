@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "reports/read/grounds.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -37,6 +38,10 @@ std::string_view time_mark(const Comparison& c, const Cell& cell) {
 
 std::string_view setting_noun(const Comparison& c) {
   return c.problems.size() > c.names ? "setting" : "problem";
+}
+
+std::string_view common_noun(const Comparison& c) {
+  return names_of(c, c.order) == c.order.settings.size() ? "problem" : "setting";
 }
 
 std::string n_column(const Comparison& c) { return fmt::format("n {}s", setting_noun(c)); }

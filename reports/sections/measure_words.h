@@ -24,6 +24,7 @@ std::string_view time_mark(const Comparison& comparison, const Cell& cell);
 
 // A row of a study is a setting where some problem has several: "problem" or "setting".
 std::string_view setting_noun(const Comparison& comparison);
+std::string_view common_noun(const Comparison& comparison);  // of the settings of the common order
 std::string n_column(const Comparison& comparison);  // "n settings", the heading of their number
 std::string counted_settings(const Comparison& comparison, std::size_t count);  // "22 settings"
 

@@ -38,7 +38,7 @@ std::string prices_text(const Comparison& c) {
                                  measured = first_by(c, Measure::cost);
   if (declared.empty() && measured.empty()) return "";
   const std::string where = fmt::format("measured prices (told on {} of {}, declared elsewhere)",
-                                        priced, counted_settings(c, c.order.settings.size()));
+                                        priced, counted(c.order.settings.size(), common_noun(c)));
   if (declared == measured)
     return fmt::format("At declared prices and at {} the first are the same: {}.", where,
                        joined(declared));

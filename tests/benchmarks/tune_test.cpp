@@ -101,6 +101,7 @@ TEST(TuningGrids, EndWhereTheOptionDoes) {
   const std::vector<Real> values = grid_of(knob, 100);
   EXPECT_EQ(values, (std::vector<Real>{1, 3, 10, 32, 100, 316, 1000}));
   EXPECT_FALSE(value_beyond(knob, values, true).has_value());
+  EXPECT_FALSE(value_beyond(knob, values, false).has_value());  // 0 would mean something else
   EXPECT_EQ(value_beyond({.standard = 1, .range = above(0)}, {0.1, 1}, false), 0.0316);
 }
 

@@ -35,7 +35,8 @@ TEST(Schemas, AreWhatTheFieldsSay) {
 Record least() {
   Record record{.cell = std::string(16, '0'), .build = std::string(16, '1')};
   record.status = Status::budget;
-  for (const auto& [name, tau] : kVerified) record.verified[name] = std::nullopt;
+  for (const auto& [name, tau] : kVerified)
+    record.verified[name] = record.found[name] = std::nullopt;
   Build build{.version = "0",
               .commit = "abc",
               .is_dirty = false,

@@ -156,14 +156,14 @@ TEST(Draw, StartsKeepTheScaleOfEachUnknownWhereItIsTheProblemsOwn) {
   const Eigen::Vector2d standard(1e-4, 1000);
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
     const Draw draw(seed, "two-scales");
-    const Vector start = draw.start(standard, StartScale::own);
+    const Vector start = draw.start(standard, StartScale::own).drawn;
     EXPECT_LT((start.cwiseQuotient(standard) - Vector::Ones(2)).cwiseAbs().maxCoeff(), 0.5) << seed;
     EXPECT_NE(start[0], standard[0]);
-    const Vector wide = draw.start(standard);
+    const Vector wide = draw.start(standard).drawn;
     EXPECT_EQ(wide[1], start[1]) << "the same numbers, the same scale of 1000";
     EXPECT_GT(std::abs(wide[0] - standard[0]), 1e-4) << seed;
   }
-  EXPECT_EQ(Draw(0, "two-scales").start(standard, StartScale::own), standard);
+  EXPECT_EQ(Draw(0, "two-scales").start(standard, StartScale::own).drawn, standard);
 }
 
 }  // namespace
