@@ -34,7 +34,8 @@ Real Problem::x_error(BatchRef x, const Batch& batch) const {
 Real Problem::loss_scale(const Batch& batch) const {
   constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
   if (parts_.scale) return *parts_.scale;
-  const Real least = parts_.minimum.value_or(0);
+  // What is best known of a learning problem is no residual of its data, and moves when renewed.
+  const Real least = is_learned() ? 0 : parts_.minimum.value_or(0);
   const bool has_signal = !batch.target.isZero(0);
   if (has_signal) {
     const Real silent = parts_.loss->value(Matrix::Zero(outputs(), batch.samples()), batch.target);

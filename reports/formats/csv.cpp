@@ -24,55 +24,58 @@ void add_reached(std::vector<Column>& columns, const Yardstick& yardstick, const
                        [by, t](const Run& run) { return exact_figure(run.taken[by][t]); }});
 }
 
-void add_figures(std::vector<Column>& columns, const Yardstick& yardstick) {
-  const auto figure_of = [&](const char* name, Real Summary::*value) {
-    columns.push_back(
-        {name, [value](const Run& run) { return exact_figure(run.record->summary.*value); }});
-  };
-  const auto count_of = [&](const char* name, std::int64_t Summary::*value) {
-    columns.push_back(
-        {name, [value](const Run& run) { return std::to_string(run.record->summary.*value); }});
-  };
-  count_of("iterations", &Summary::iterations);
-  count_of("work", &Summary::work);
-  figure_of("start_loss", &Summary::start_loss);
-  figure_of("loss", &Summary::loss);
-  figure_of("best_loss", &Summary::best_loss);
-  figure_of("x_error", &Summary::x_error);
+using Columns = std::vector<Column>;
+
+void add(Columns& columns, const char* name, Real Summary::*value) {
+  columns.push_back(
+      {name, [value](const Run& run) { return exact_figure(run.record->summary.*value); }});
+}
+void add(Columns& columns, const char* name, std::int64_t Summary::*value) {
+  columns.push_back(
+      {name, [value](const Run& run) { return std::to_string(run.record->summary.*value); }});
+}
+void add(Columns& columns, const char* name, std::string (*text)(const Record&)) {
+  columns.push_back({name, [text](const Run& run) { return csv_field(text(*run.record)); }});
+}
+
+std::string count_of(const Run& run, std::size_t kind) {
+  return std::to_string(run.record->counts[kind]);
+}
+std::string is_timed_alone(const Run& run) { return run.is_timed_alone ? "true" : "false"; }
+
+void add_figures(Columns& columns, const Yardstick& yardstick) {
+  add(columns, "iterations", &Summary::iterations);
+  add(columns, "work", &Summary::work);
+  add(columns, "start_loss", &Summary::start_loss);
+  add(columns, "loss", &Summary::loss);
+  add(columns, "best_loss", &Summary::best_loss);
+  add(columns, "x_error", &Summary::x_error);
   add_reached(columns, yardstick, "work", Measure::work);
   add_reached(columns, yardstick, "cost", Measure::cost);
   add_reached(columns, yardstick, "seconds", Measure::time);
   add_reached(columns, yardstick, "iterations", Measure::iterations);
   columns.push_back({"cost", [](const Run& run) { return exact_figure(run.spent); }});
   for (std::size_t kind = 0; kind < kOracles; ++kind)
-    columns.push_back({std::string(kOracleNames[kind]), [kind](const Run& run) {
-                         return std::to_string(run.record->counts[kind]);
-                       }});
-  figure_of("wall_seconds", &Summary::wall_seconds);
-  columns.push_back({"timed_alone", [](const Run& run) -> std::string {
-                       return run.is_timed_alone ? "true" : "false";
-                     }});
-  count_of("peak_memory_bytes", &Summary::peak_memory_bytes);
+    columns.push_back(
+        {std::string(kOracleNames[kind]), [kind](const Run& run) { return count_of(run, kind); }});
+  add(columns, "wall_seconds", &Summary::wall_seconds);
+  columns.push_back({"timed_alone", is_timed_alone});
+  add(columns, "peak_memory_bytes", &Summary::peak_memory_bytes);
 }
 
-std::vector<Column> columns_of_runs(const Yardstick& yardstick) {
-  const auto words = [](auto text) {
-    return [text](const Run& run) { return csv_field(text(*run.record)); };
-  };
-  std::vector<Column> columns = {
-      {"problem", words([](const Record& record) { return record.request.problem.spec; })},
-      {"optimizer", words([](const Record& record) { return record.request.optimizer.spec; })},
-      {"seed", [](const Run& run) { return std::to_string(run.record->request.seed); }},
-      {"status", words([](const Record& record) { return name_of(record.status); })}};
+Columns columns_of_runs(const Yardstick& yardstick) {
+  Columns columns;
+  add(columns, "problem", [](const Record& record) { return record.request.problem.spec; });
+  add(columns, "optimizer", [](const Record& record) { return record.request.optimizer.spec; });
+  add(columns, "seed", [](const Record& record) { return std::to_string(record.request.seed); });
+  add(columns, "status", [](const Record& record) { return std::string(name_of(record.status)); });
   add_figures(columns, yardstick);
-  for (Column column : std::initializer_list<Column>{
-           {"privileges", words([](const Record& r) { return joined(r.privileges, "; "); })},
-           {"message", words([](const Record& r) { return r.message; })},
-           {"claimed", words([](const Record& r) { return r.claimed; })},
-           {"cell", words([](const Record& r) { return r.cell; })},
-           {"build", words([](const Record& r) { return r.build; })},
-           {"command", words([](const Record& r) { return rerun_command(r.request); })}})
-    columns.push_back(std::move(column));
+  add(columns, "privileges", [](const Record& record) { return joined(record.privileges, "; "); });
+  add(columns, "message", [](const Record& record) { return record.message; });
+  add(columns, "claimed", [](const Record& record) { return record.claimed; });
+  add(columns, "cell", [](const Record& record) { return record.cell; });
+  add(columns, "build", [](const Record& record) { return record.build; });
+  add(columns, "command", [](const Record& record) { return rerun_command(record.request); });
   return columns;
 }
 

@@ -9,6 +9,7 @@
 
 #include "reports/page/contour.h"
 #include "reports/page/page.h"
+#include "reports/page/target_codes.h"
 #include "reports/read/curves.h"
 #include "reports/read/reached.h"
 #include "reports/sections/measure_words.h"
@@ -61,53 +62,6 @@ std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
   return text + "]";
 }
 
-std::string alphanumeric(std::uint64_t value) {
-  constexpr std::string_view kDigits = "0123456789abcdefghijklmnopqrstuvwxyz";
-  std::string text;
-  for (; value > 0 || text.empty(); value /= kDigits.size())
-    text.insert(text.begin(), kDigits[value % kDigits.size()]);
-  return text;
-}
-
-// Twice a median of whole numbers is whole.
-std::string work_code(Real work) {
-  return alphanumeric(static_cast<std::uint64_t>(std::llround(2 * work)));
-}
-
-// The very digits that the tables print, as a whole number, and a capital for the power of ten: J
-// is 0, I is −1. "0.0931" is 931 and F.
-std::string digits_code(const std::string& text) {
-  const std::size_t e = std::min(text.find('e'), text.size());
-  int power = e < text.size() ? std::stoi(text.substr(e + 1)) : 0;
-  std::string digits = text.substr(0, e);
-  if (const std::size_t point = digits.find('.'); point != std::string::npos) {
-    power -= static_cast<int>(digits.size() - point) - 1;
-    digits.erase(point, 1);
-  }
-  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return "";
-  return alphanumeric(std::stoull(digits)) + static_cast<char>('J' + std::clamp(power, -9, 9));
-}
-std::string time_code(Real seconds) { return digits_code(milliseconds(seconds)); }
-
-// Of costs, which are no whole numbers and no less than one.
-std::string cost_code(Real cost) { return digits_code(fmt::format("{:.9g}", cost)); }
-
-auto code_of(Measure by) {
-  return by == Measure::time ? time_code : by == Measure::cost ? cost_code : work_code;
-}
-
-// Medians to the 51 targets, comma-separated; nothing stands for the same as before.
-std::string targets_text(const std::vector<Real>& medians, std::string (*code)(Real)) {
-  std::string text, last;
-  for (std::size_t j = 0; j < medians.size(); ++j) {
-    const std::string one = code(medians[j]);
-    if (j > 0) text += ',';
-    if (one != last) text += one;
-    last = one;
-  }
-  return text;
-}
-
 // [optimizer, targets reached by each run, work, time, runs failed, runs missing]: tables and
 // profiles of the page are made of it. The optimizer alone where the pair makes no sense.
 std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
@@ -117,8 +71,8 @@ std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const std::size_t missing = cell.planned - cell.runs.size();
   return fmt::format("[{},{},\"{}\",\"{}\"{}]", s,
                      list(medians.reached, [](std::size_t n) { return std::to_string(n); }),
-                     targets_text(medians.counted, code_of(c.yardstick.by)),
-                     targets_text(medians.seconds, time_code),
+                     target_codes(medians.counted, c.yardstick.by),
+                     target_codes(medians.seconds, Measure::time),
                      cell.failed + missing > 0 ? fmt::format(",{},{}", cell.failed, missing) : "");
 }
 
@@ -246,9 +200,11 @@ std::string claims_about(const Document& document) {
 std::string page_data(const Document& document) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
-      "{{\"by\":\"{}\",\"unit\":\"{}\",\"counted\":\"{}\",\"rungs\":{},\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
+      "{{\"by\":\"{}\",\"unit\":\"{}\",\"counted\":\"{}\",\"mark\":\"{}\",\"rungs\":{},"
+      "\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
       "\"order\":{},\"figures\":{},\"problems\":[",
       name_of(c.yardstick.by), unit_name(c), counted_name(c),
+      c.yardstick.by == Measure::time && c.is_any_timed_together ? "≈" : "",
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       list(c.optimizers,

@@ -124,7 +124,7 @@ std::string place_text(const Comparison& c, std::size_t s) {
   });
   return fmt::format("{} of {} on the {} that all ranked methods were given",
                      ordinal(1 + static_cast<std::size_t>(before)), c.order.methods.size(),
-                     counted_settings(c, c.order.settings.size()));
+                     counted(c.order.settings.size(), common_noun(c)));
 }
 
 // What its figures amount to.

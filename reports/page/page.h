@@ -1,5 +1,5 @@
-// The HTML page and its parts. An element with data-s or data-p, the index of an optimizer or problem,
-// is hidden where the reader filters that one out; with both, where either is.
+// The HTML page and its parts. An element with data-s or data-p, the index of an optimizer or
+// problem, is hidden where the reader filters that one out; with both, where either is.
 #pragma once
 
 #include <string>

@@ -139,16 +139,16 @@ std::string standings_html(const Comparison& c) {
       "<thead><tr><th scope=col>#<th scope=col>optimizer<th scope=col>score"
       "<th scope=col>{}s solved<th scope=col>best on<th scope=col>× least {}"
       "<th scope=col>runs<th scope=col>failed<tbody>\n",
-      tau_name(c), setting_noun(c), name_of(c.yardstick.by));
+      tau_name(c), common_noun(c), name_of(c.yardstick.by));
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += standing_row(c, s);
   return html + "</table>";
 }
 
 std::string matrix_html(const Comparison& c) {
   std::string html = fmt::format(
-      "<table class=matrix id=matrix><caption>Median {} to {}, in {}</caption>"
+      "<table class=matrix id=matrix><caption>Median {}</caption>"
       "<thead><tr><th scope=col>optimizer<th scope=col>solved",
-      counted_name(c), tau_name(c), unit_name(c));
+      counted_to_tau(c));
   std::vector<Real> least;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     html += fmt::format("<th scope=col data-p={0}><a href=\"#problem-{0}\"><span>{1}</span></a>", p,

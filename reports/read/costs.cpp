@@ -29,7 +29,7 @@ Real between(const std::vector<std::int64_t>& x, const std::vector<Real>& y, Rea
 
 bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price) {
   const Real unit = prices.forward_seconds;
-  return unit >= kShortestCall && price.price * unit >= kShortestCall;
+  return price.resolved && unit >= kShortestCall && price.price * unit >= kShortestCall;
 }
 
 Prices::Prices(const Sheet* sheet) {

@@ -98,7 +98,7 @@ struct PriceSummary {
     return text + fmt::format(
                       "Of {} measured prices {} are not used but the declared ones: there a call, "
                       "or the forward solve that is their unit, takes less than a microsecond, "
-                      "which is mostly the overhead of any call.",
+                      "which is mostly the overhead of any call, or the rounds disagree.",
                       measured, untold);
   }
 };
@@ -153,8 +153,9 @@ Table prices_table(const Comparison& c) {
       .caption =
           "What the first call of an oracle at a fresh point takes, in forward solves: declared : "
           "measured [middle 80 % of the rounds], in processor time, before the runs. Declared is "
-          "used: the call, or the forward solve, takes less than a microsecond. Empty: not offered, "
-          "or left out because it takes too long, and counted at its declared price.",
+          "used: the call, or the forward solve, takes less than a microsecond, or the rounds "
+          "disagree. Empty: not offered, or left out because it takes too long, and counted at its "
+          "declared price.",
       .columns = {"problem", "forward, µs"},
       .rows = {}};
   std::vector<std::string_view> oracles;

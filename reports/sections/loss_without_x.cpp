@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
@@ -12,6 +13,9 @@
 
 namespace isoline::reports {
 namespace {
+
+constexpr const char* kNeitherTold =
+    "No result tells both kinds of success: the loss that can be reached, and the x sought.";
 
 // What the median run of a pair came to.
 struct Outcome {
@@ -161,7 +165,7 @@ Table loss_without_x_table(const Comparison& c) {
   }
   table.reading =
       all.n == 0
-          ? "No result tells both kinds of success: the loss that can be reached, and the x sought."
+          ? kNeitherTold
           : fmt::format(
                 "Of {} pairs of a method and a setting, {} reach the loss to {} and {} find x to "
                 "it; {} reach the loss and not x, {} of these not even to {}.",
@@ -170,57 +174,70 @@ Table loss_without_x_table(const Comparison& c) {
   return table;
 }
 
+namespace {
+
+// All methods on one setting.
+struct SettingTally : Tally {
+  std::vector<Real> errors;  // of those that reach the loss
+  std::size_t failed = 0, runs = 0;
+};
+
+SettingTally tally_of(const Comparison& c, std::size_t p) {
+  SettingTally all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const std::optional<Outcome> outcome = outcome_of(c, p, s);
+    if (!outcome) continue;
+    all.add(*outcome);
+    if (outcome->is_loss_reached) all.errors.push_back(outcome->error);
+    all.failed += c.cell(p, s).failed;
+    all.runs += c.cell(p, s).runs.size();
+  }
+  return all;
+}
+
+std::vector<TableCell> row_of(const ProblemAxis& problem, const SettingTally& tally) {
+  const bool is_known = problem.sheet != nullptr;
+  std::vector<TableCell> row = {
+      shown_spec(problem.spec),
+      is_known ? count_cell(static_cast<std::size_t>(problem.sheet->unknowns)) : TableCell(""),
+      condition_cell(problem)};
+  add_tally(row, tally);
+  const Real error = median_of(tally.errors);
+  row.push_back(tally.errors.empty() ? TableCell("")
+                                     : TableCell(figure(error), {{"error", error}}));
+  row.push_back({fmt::format("{}/{}", tally.failed, tally.runs),
+                 {{"failed", Real(tally.failed)}, {"runs", Real(tally.runs)}}});
+  return row;
+}
+
+}  // namespace
+
 Table condition_table(const Comparison& c) {
   Table table{.id = "condition",
               .title = "Solved in loss, not in x, setting by setting",
               .caption = caption_of(c) +
-                         " Error: of x, of the methods that reach the loss, as a "
-                         "share of the solution's norm, their median.",
+                         " Error: of x, of the methods that reach the loss, as a share of the "
+                         "solution's norm, their median.",
               .columns = {"problem", "unknowns", "condition", "n methods", "loss", "x",
                           "loss, not x", "nor near", "error in x", "failed"}};
-  std::size_t most = 0, worst = 0;
-  std::vector<std::size_t> order;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) order.push_back(p);
+  std::vector<std::size_t> order(c.problems.size());
+  std::iota(order.begin(), order.end(), 0);
   std::ranges::stable_sort(order, std::ranges::greater{},
                            [&](std::size_t p) { return condition_of(c.problems[p]).value_or(0); });
-  Tally of_worst;
+  std::size_t most = 0;
+  table.reading = "On no setting does a method reach the loss without x.";
   for (const std::size_t p : order) {
-    Tally own;
-    std::vector<Real> errors;
-    std::size_t failed = 0, runs = 0;
-    for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-      const std::optional<Outcome> outcome = outcome_of(c, p, s);
-      if (!outcome) continue;
-      own.add(*outcome);
-      if (outcome->is_loss_reached) errors.push_back(outcome->error);
-      failed += c.cell(p, s).failed;
-      runs += c.cell(p, s).runs.size();
-    }
-    if (own.n == 0) continue;
-    const ProblemAxis& problem = c.problems[p];
-    std::vector<TableCell> row = {
-        shown_spec(problem.spec),
-        problem.sheet == nullptr ? TableCell("")
-                                 : count_cell(static_cast<std::size_t>(problem.sheet->unknowns)),
-        condition_cell(problem)};
-    add_tally(row, own);
-    const Real error = median_of(errors);
-    row.push_back(errors.empty() ? TableCell("") : TableCell(figure(error), {{"error", error}}));
-    row.push_back(
-        {fmt::format("{}/{}", failed, runs), {{"failed", Real(failed)}, {"runs", Real(runs)}}});
-    table.rows.push_back(std::move(row));
+    const SettingTally tally = tally_of(c, p);
+    if (tally.n == 0) continue;
+    table.rows.push_back(row_of(c.problems[p], tally));
     table.row_topics.push_back({.problem = p});
-    if (own.without <= most) continue;
-    most = own.without;
-    worst = p;
-    of_worst = own;
+    if (tally.without <= most) continue;
+    most = tally.without;
+    table.reading =
+        fmt::format("Most often on {}: {} of the {} methods that reach its loss do not find its x.",
+                    with_condition(c.problems[p]), most, tally.reached);
   }
-  table.reading = most == 0
-                      ? "On no setting does a method reach the loss without x."
-                      : fmt::format(
-                            "Most often on {}: {} of the {} methods that reach its loss do not "
-                            "find its x.",
-                            with_condition(c.problems[worst]), most, of_worst.reached);
+  if (table.rows.empty()) table.reading = kNeitherTold;
   return table;
 }
 

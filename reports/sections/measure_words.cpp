@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "reports/read/grounds.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -26,6 +27,11 @@ std::string_view unit_name(Measure by) {
 }
 std::string_view unit_name(const Comparison& c) { return unit_name(c.yardstick.by); }
 
+std::string counted_to_tau(const Comparison& c) {
+  const std::string text = fmt::format("{} to {}", counted_name(c), tau_name(c));
+  return counted_name(c) == unit_name(c) ? text : fmt::format("{}, in {}", text, unit_name(c));
+}
+
 std::string amount(Measure by, Real value) {
   return by == Measure::time ? milliseconds(value) : reached_figure(value);
 }
@@ -37,6 +43,10 @@ std::string_view time_mark(const Comparison& c, const Cell& cell) {
 
 std::string_view setting_noun(const Comparison& c) {
   return c.problems.size() > c.names ? "setting" : "problem";
+}
+
+std::string_view common_noun(const Comparison& c) {
+  return names_of(c, c.order) == c.order.settings.size() ? "problem" : "setting";
 }
 
 std::string n_column(const Comparison& c) { return fmt::format("n {}s", setting_noun(c)); }

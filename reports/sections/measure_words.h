@@ -16,6 +16,9 @@ std::string_view counted_name(const Comparison& comparison);
 std::string_view unit_name(Measure by);  // "forward solves", …, "ms"
 std::string_view unit_name(const Comparison& comparison);
 
+// "declared work to 1e-6, in forward solves", "iterations to 1e-6".
+std::string counted_to_tau(const Comparison& comparison);
+
 // An amount as tables write it, ✗ where infinite: times are given in seconds and told in ms.
 std::string amount(Measure by, Real value);
 std::string amount(const Comparison& comparison, Real value);
@@ -24,6 +27,7 @@ std::string_view time_mark(const Comparison& comparison, const Cell& cell);
 
 // A row of a study is a setting where some problem has several: "problem" or "setting".
 std::string_view setting_noun(const Comparison& comparison);
+std::string_view common_noun(const Comparison& comparison);  // of the settings of the common order
 std::string n_column(const Comparison& comparison);  // "n settings", the heading of their number
 std::string counted_settings(const Comparison& comparison, std::size_t count);  // "22 settings"
 

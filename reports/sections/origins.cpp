@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/spec.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -17,13 +18,11 @@ const Request* request_of(const Comparison& c, std::size_t p, std::size_t s) {
 
 // "3.8e-5" of gd[rate=3.8e-5], "rate=1, momentum=0.9" where there are several, "default" of gd.
 std::string values_text(const Request& request) {
-  const std::string spec = shown_spec(request.optimizer.spec);
-  const std::size_t open = spec.find('[');
-  if (open == std::string::npos || spec.back() != ']') return "default";
-  const std::string inner = spec.substr(open + 1, spec.size() - open - 2);
-  const std::size_t sign = inner.find('=');
-  const bool is_one = inner.find(',') == std::string::npos && sign != std::string::npos;
-  return is_one ? inner.substr(sign + 1) : inner;
+  const Spec spec = parse_spec(request.optimizer.spec);
+  std::vector<std::string> shown;  // long numbers cut
+  for (const auto& [name, value] : spec.options) shown.push_back(shown_spec(name + "=" + value));
+  if (shown.empty()) return "default";
+  return shown.size() > 1 ? joined(shown) : shown[0].substr(spec.options[0].first.size() + 1);
 }
 
 }  // namespace

@@ -38,6 +38,35 @@ std::size_t returned(const Comparison& c, std::size_t s, std::size_t tolerance) 
   return count;
 }
 
+// Those whose median run met it at the best point seen.
+std::size_t seen(const Comparison& c, std::size_t s, std::size_t tolerance) {
+  return static_cast<std::size_t>(std::ranges::count_if(c.cells, [&](const auto& row) {
+    return row[s].is_measured() && row[s].headline[tolerance].is_solved();
+  }));
+}
+
+// Methods that do not return what they have seen.
+struct Losing {
+  std::size_t methods = 0, most = 0;
+  std::string worst;
+
+  void add(std::size_t lost, const std::string& method) {
+    ++methods;
+    if (lost <= most) return;
+    most = lost;
+    worst = method;
+  }
+  std::string reading(const Comparison& c) const {
+    const std::string tau = tau_name(c);
+    if (methods == 0)
+      return fmt::format("Every method shown returns to {} what it has seen to {}.", tau, tau);
+    return fmt::format(
+        "On some {} {} {} seen a point within {} and not returned it; on most, {}: {}.",
+        setting_noun(c), counted(methods, "method"), methods == 1 ? "has" : "have", tau, most,
+        worst);
+  }
+};
+
 TableCell area_cell(Real area) { return {fmt::format("{:.3f}", area), {{"area", area}}}; }
 
 TableCell interval_cell(Real low, Real high) {
@@ -106,20 +135,15 @@ Table returned_table(const Comparison& c) {
   for (const std::string& column :
        std::vector<std::string>{"digits seen", "digits returned", n_column(c), "failed"})
     table.columns.push_back(column);
-  std::size_t losing = 0, most = 0;
-  std::string worst;
+  Losing losing;
   for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};
     const std::size_t n = c.optimizers[s].planned;
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-      const std::size_t seen = c.optimizers[s].standings[t].solved, kept = returned(c, s, t);
-      row.push_back(share_cell(seen, n));
+      const std::size_t met = seen(c, s, t), kept = returned(c, s, t);
+      row.push_back(share_cell(met, n));
       row.push_back(share_cell(kept, n));
-      if (t != kTightest || kept >= seen) continue;
-      ++losing;
-      if (seen - kept <= most) continue;
-      most = seen - kept;
-      worst = optimizer_text(c, s);
+      if (t == kTightest && kept < met) losing.add(met - kept, optimizer_text(c, s));
     }
     row.push_back(digits_cell(-median_of(lacking_digits(c, s, &Summary::best_loss))));
     row.push_back(digits_cell(-median_of(lacking_digits(c, s, &Summary::loss))));
@@ -128,12 +152,7 @@ Table returned_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  const std::string tau = tau_name(c);
-  table.reading =
-      losing == 0
-          ? fmt::format("Every method shown returns to {} what it has seen to {}.", tau, tau)
-          : fmt::format("{} with a point within {} seen and not returned on some {}; most, {}: {}.",
-                        counted(losing, "method"), tau, setting_noun(c), most, worst);
+  table.reading = losing.reading(c);
   return table;
 }
 

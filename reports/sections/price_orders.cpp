@@ -27,6 +27,9 @@ std::vector<std::string> first_by(const Comparison& c, Measure by) {
 }  // namespace
 
 std::string prices_text(const Comparison& c) {
+  if (c.yardstick.by == Measure::time && c.is_any_timed_together)
+    return "Some of these times were taken while other runs shared the machine, and are marked ≈: an "
+           "order by them is no evidence. Runs with --exclusive are timed alone.";
   const bool is_by_calls = c.yardstick.by == Measure::work || c.yardstick.by == Measure::cost;
   if (!is_by_calls || !has_order(c)) return "";
   const auto priced = static_cast<std::size_t>(std::ranges::count_if(
@@ -38,7 +41,7 @@ std::string prices_text(const Comparison& c) {
                                  measured = first_by(c, Measure::cost);
   if (declared.empty() && measured.empty()) return "";
   const std::string where = fmt::format("measured prices (told on {} of {}, declared elsewhere)",
-                                        priced, counted_settings(c, c.order.settings.size()));
+                                        priced, counted(c.order.settings.size(), common_noun(c)));
   if (declared == measured)
     return fmt::format("At declared prices and at {} the first are the same: {}.", where,
                        joined(declared));

@@ -38,7 +38,7 @@ Table standings_table(const Comparison& c) {
           "methods. × least: the middle of its {} over the least, in logarithms; ✗ if it solves "
           "fewer than half. Runs: that get there. Failed: errors, crashes, time or memory limits, "
           "on all that it was given. †: sees what others do not.",
-          counted(c.order.settings.size(), setting_noun(c)), setting_noun(c), counted_name(c),
+          counted(c.order.settings.size(), common_noun(c)), common_noun(c), counted_name(c),
           counted_name(c)),
       .columns = {"", "optimizer", "solved", "best on", "× least", "runs", "failed"},
       .align = "rlrrrrrrr",

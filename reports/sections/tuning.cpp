@@ -164,6 +164,14 @@ std::string edges_text(const std::vector<Rates>& all) {
       edges, counted(rows, "tuned rate"), never);
 }
 
+// Methods whose sheets tell that they have no option to tune; older sheets do not tell.
+std::size_t untunable(const Comparison& c, const std::set<std::string>& methods) {
+  std::set<std::string> tunable;
+  for (const OptimizerAxis& axis : c.optimizers)
+    if (axis.sheet != nullptr && !axis.sheet->tunable.empty()) tunable.insert(axis.method);
+  return tunable.empty() ? 0 : methods.size() - tunable.size();
+}
+
 std::vector<Rates> all_rates(const Comparison& c) {
   std::vector<Rates> all;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.push_back(rates_of(c, s));
@@ -185,11 +193,13 @@ std::string rates_text(const Comparison& c) {
   }
   if (tuned.empty() && published.empty()) return "";
   for (const std::string& method : tuned) published.erase(method);
+  const std::size_t fixed = untunable(c, methods);
   return fmt::format(
       "Of {} methods {} {} rates tuned on the very {}s that judge, on other seeds{}; the others run "
-      "as asked or at their defaults.",
+      "as asked or at their defaults{}.",
       methods.size(), tuned.size(), tuned.size() == 1 ? "has" : "have", setting_noun(c),
-      published.empty() ? "" : fmt::format(", and {} published ones", published.size()));
+      published.empty() ? "" : fmt::format(", and {} published ones", published.size()),
+      fixed == 0 ? "" : fmt::format(", {} with nothing to tune", fixed));
 }
 
 Section tuning_section(const Comparison& c) {
