@@ -136,8 +136,9 @@ std::vector<Real> grid_of(const Knob& knob, Real unit) {
 }
 
 std::optional<Real> value_beyond(const Knob& knob, const std::vector<Real>& values, bool upward) {
-  const Real factor = knob.tunable.factor;
-  const Real value = upward ? values.back() * factor : values.front() / factor;
+  const Real two = std::pow(knob.tunable.factor, 2);  // from the last but one: less is rounded
+  const std::size_t next = values.size() > 1 ? 1 : 0;
+  const Real value = upward ? values[values.size() - 1 - next] * two : values[next] / two;
   const auto each = allowed(knob, value);
   return each && *each != values.front() && *each != values.back() ? each : std::nullopt;
 }

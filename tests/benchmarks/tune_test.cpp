@@ -102,7 +102,8 @@ TEST(TuningGrids, EndWhereTheOptionDoes) {
   EXPECT_EQ(values, (std::vector<Real>{1, 3, 10, 32, 100, 316, 1000}));
   EXPECT_FALSE(value_beyond(knob, values, true).has_value());
   EXPECT_FALSE(value_beyond(knob, values, false).has_value());  // 0 would mean something else
-  EXPECT_EQ(value_beyond({.standard = 1, .range = above(0)}, {0.1, 1}, false), 0.0316);
+  EXPECT_EQ(value_beyond({.standard = 1, .range = above(0)}, {0.0316, 0.1}, false), 0.01);
+  EXPECT_EQ(value_beyond({.standard = 1, .range = above(0)}, {0.1, 0.316}, true), 1);
 }
 
 // --- which is best
