@@ -4,12 +4,10 @@
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
-#include "core/json.h"
 #include "reports/compare/gate.h"
 
 namespace isoline::benchmarks {
 
-using reports::allowed_from_json;
 using reports::compare_results;
 using reports::gate_json;
 using reports::gate_markdown;
@@ -17,6 +15,7 @@ using reports::gate_terminal;
 using reports::GateOptions;
 using reports::GateResult;
 using reports::kMostTimed;
+using reports::read_allowed;
 
 int compare_verb(const CompareArguments& given, Session&) {
   require(given.timed.size() <= kMostTimed, [&] {
@@ -26,7 +25,7 @@ int compare_verb(const CompareArguments& given, Session&) {
   GateOptions options{.timed = given.timed, .is_common_only = given.is_common_only};
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   if (given.noise >= 0) options.least_noise = given.noise;
-  if (!given.allowed.empty()) options.allowed = allowed_from_json(read_json(given.allowed));
+  if (!given.allowed.empty()) options.allowed = read_allowed(given.allowed);
   if (!given.trend.empty()) options.earlier = given.trend;
   options.listener = on_terminal("reading records");
   const GateResult result = compare_results(given.before, given.after, options);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/json.h"
 
 namespace isoline::reports {
 namespace {
@@ -55,6 +56,10 @@ AllowedList allowed_from_json(const Json& json) {
   } catch (const Json::exception& error) {
     throw UsageError(fmt::format("no {}: {}", kAllowedSchema, error.what()));
   }
+}
+
+AllowedList read_allowed(const std::filesystem::path& file) {
+  return allowed_from_json(read_json(file));
 }
 
 AllowedList::const_iterator entry_for(const AllowedList& list, const Subject& subject) {

@@ -1,6 +1,7 @@
 // Cells that NEW may lack: a list that stands in the tree, each entry with its reason.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,7 @@ struct AllowedCells {
 using AllowedList = std::vector<AllowedCells>;
 
 AllowedList allowed_from_json(const Json& json);  // UsageError where it is no such list
+AllowedList read_allowed(const std::filesystem::path& file);
 
 // The first entry that names the subject; the list's end where none does.
 AllowedList::const_iterator entry_for(const AllowedList& list, const Subject& subject);

@@ -88,7 +88,8 @@ function makePick(pick) {
   });
   document.addEventListener('pointerdown', (event) => { if (!pick.contains(event.target)) pick.open = false; });
   FOLLOWERS.push(() => {
-    pick.querySelector('output').textContent = `${shownOf(kind).length}/${KINDS[kind].names.length}`;
+    const count = shownOf(kind).length, all = KINDS[kind].names.length;
+    pick.querySelector('output').textContent = count === all ? 'all' : `${count}/${all}`;
     pick.classList.toggle('active', view.hidden[kind].size > 0);
     for (const box of panel.querySelectorAll('input[type=checkbox]')) box.checked = isShown(kind, Number(box.dataset.choice));
   });

@@ -20,6 +20,11 @@ const Rival& nearest(const Lead& lead) {
   return open == lead.rivals.end() ? lead.rivals.front() : *open;
 }
 
+bool solves_none(const Comparison& c, const Placed& placed) {
+  const Standing& standing = c.optimizers[placed.optimizer].tightest();
+  return standing.solved == 0 && standing.settings > 0;
+}
+
 std::string given_text(const OptimizerAxis& axis) {
   return axis.label == axis.whole ? "where nothing more is given to it"
                                   : "where it is " + axis.label.substr(axis.whole.size() + 2);
@@ -93,10 +98,10 @@ std::string power_text(const Comparison& c, const Lead& lead) {
   if (lead.rivals.empty()) return "";
   const Rival& rival = nearest(lead);
   const Real factor = detectable_factor(rival.pairing);
-  std::string text =
-      fmt::format("After Holm over all of them, {} of the {} others {} told from {}.", lead.told(),
-                  lead.rivals.size(), lead.told() == 1 ? "is" : "are",
-                  optimizer_text(c, lead.ranked[0].optimizer));
+  std::string text = fmt::format(
+      "After Holm, {} of the {} others that apply to at least half of these problems {} told from {}.",
+      lead.told(), lead.rivals.size(), lead.told() == 1 ? "is" : "are",
+      optimizer_text(c, lead.ranked[0].optimizer));
   if (factor < kNever && factor > 1)
     text += fmt::format(
         " With the spread there is against {} over {}, a true factor of {} would be found in 80 % "
@@ -109,6 +114,9 @@ std::string power_text(const Comparison& c, const Lead& lead) {
 std::string placed_text(const Comparison& c, const Placed& placed) {
   const OptimizerAxis& axis = c.optimizers[placed.optimizer];
   const std::string settings = counted(placed.among.settings.size(), setting_noun(c));
+  if (solves_none(c, placed))
+    return fmt::format("solves none of the {}{}", settings,
+                       axis.is_meaning ? " " + given_text(axis) : " it was given");
   if (placed.among.methods.size() < 2)
     return fmt::format("alone on {}", counted(placed.among.settings.size(), setting_noun(c)));
   return fmt::format("{} of {} on the {}{}", ordinal(placed.place), placed.among.methods.size(),
@@ -126,7 +134,8 @@ std::string apart_sentence(const Comparison& c) {
   for (const Placed& placed : c.apart) {
     const std::string name = shown_spec(c.optimizers[placed.optimizer].label);
     if (c.optimizers[placed.optimizer].is_meaning)
-      meanings.push_back(fmt::format("{} is {}", name, placed_text(c, placed)));
+      meanings.push_back(fmt::format("{} {}{}", name, solves_none(c, placed) ? "" : "is ",
+                                     placed_text(c, placed)));
     else
       others.push_back(fmt::format("{} ({})", name, apart_text(c, placed)));
   }

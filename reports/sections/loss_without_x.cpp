@@ -14,6 +14,9 @@
 namespace isoline::reports {
 namespace {
 
+constexpr const char* kNeitherTold =
+    "No result tells both kinds of success: the loss that can be reached, and the x sought.";
+
 // What the median run of a pair came to.
 struct Outcome {
   bool is_loss_reached = false, is_x_found = false;
@@ -162,7 +165,7 @@ Table loss_without_x_table(const Comparison& c) {
   }
   table.reading =
       all.n == 0
-          ? "No result tells both kinds of success: the loss that can be reached, and the x sought."
+          ? kNeitherTold
           : fmt::format(
                 "Of {} pairs of a method and a setting, {} reach the loss to {} and {} find x to "
                 "it; {} reach the loss and not x, {} of these not even to {}.",
@@ -234,6 +237,7 @@ Table condition_table(const Comparison& c) {
         fmt::format("Most often on {}: {} of the {} methods that reach its loss do not find its x.",
                     with_condition(c.problems[p]), most, tally.reached);
   }
+  if (table.rows.empty()) table.reading = kNeitherTold;
   return table;
 }
 

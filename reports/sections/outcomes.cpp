@@ -60,8 +60,10 @@ struct Losing {
     const std::string tau = tau_name(c);
     if (methods == 0)
       return fmt::format("Every method shown returns to {} what it has seen to {}.", tau, tau);
-    return fmt::format("{} with a point within {} seen and not returned on some {}; most, {}: {}.",
-                       counted(methods, "method"), tau, setting_noun(c), most, worst);
+    return fmt::format(
+        "On some {} {} {} seen a point within {} and not returned it; on most, {}: {}.",
+        setting_noun(c), counted(methods, "method"), methods == 1 ? "has" : "have", tau, most,
+        worst);
   }
 };
 

@@ -150,7 +150,7 @@ Table data_profile_table(const Comparison& c) {
     table.rows.push_back(std::move(row));
   }
   rows_are_optimizers(table);
-  table.reading = fmt::format("The largest share within 1000 {}: {} ({}).", cost_unit(c),
+  table.reading = fmt::format("The largest share within 1000 {}: {} ({}).", unit_name(by),
                               first.names(), percent(first.value));
   return table;
 }

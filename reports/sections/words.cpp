@@ -86,8 +86,9 @@ std::string shown_spec(std::string_view spec) {
     const std::size_t end = std::min(spec.find_first_not_of("0123456789.e-", i), spec.size());
     const std::string word(spec.substr(i, end - i));
     const bool is_value = i > 0 && spec[i - 1] == '=';
+    const bool is_long = word.size() > kLong || word.find("e-0") != std::string::npos;
     char* rest = nullptr;
-    const Real value = is_value && word.size() > kLong ? std::strtod(word.c_str(), &rest) : 0;
+    const Real value = is_value && is_long ? std::strtod(word.c_str(), &rest) : 0;
     out += rest != nullptr && *rest == 0 ? figure(value) : word;
     if (end < spec.size()) out += spec[end];
     i = end + 1;

@@ -75,6 +75,7 @@ TEST_F(PlantedFault, InADefaultFailsTheGate) {
     record.request.optimizer.options.set("epsilon", 1e-2);  // from 1e-8
     record.summary.loss *= 1.5;
     record.build_parts["optimizer"] = "0123456789abcdef";
+    record.build = "fedcba9876543210";
   });
   expect_fault(kWorse, "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); adam in all 2");
   EXPECT_TRUE(contains(gate().out, "another source of the optimizers adam: 2 cells"));

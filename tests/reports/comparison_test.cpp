@@ -139,7 +139,8 @@ TEST(Comparison, ThePrivilegedLeadOnlyAmongAll) {
   EXPECT_EQ(c.optimizers[c.lead->ranked[0].optimizer].label, "seer");
   EXPECT_EQ(c.optimizers[c.open_lead->ranked[0].optimizer].label, "fair");
   EXPECT_EQ(c.open_lead->stays_first, 1);  // on every problem, so in every draw
-  EXPECT_EQ(verdict(c).size(), 3U);  // the lead, what the data tell of it, the lead of the others
+  // The lead, what the data tell of it, the lead of the others, and the order at both prices.
+  EXPECT_EQ(verdict(c).size(), 4U);
 }
 
 // From f₀ = 1 with f_L = 0.5 declared, the curve 10^(−j/5) has half of its descent left at 0.75.

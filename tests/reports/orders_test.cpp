@@ -212,7 +212,8 @@ TEST(Orders, OneAlgorithmTwiceIsTiedOnTheFirstScreen) {
   const std::string text = all_of(verdict(c));
   EXPECT_TRUE(has(text, "gd and gd-again are tied")) << text;
   EXPECT_FALSE(has(text, "Its lead is settled")) << text;
-  const Table& table = standings_section(c).tables[0];
+  const Section section = standings_section(c);
+  const Table& table = section.tables[0];
   EXPECT_EQ(table.rows[0][0].text, "1");
   EXPECT_EQ(table.rows[1][0].text, "1");
   EXPECT_EQ(table.rows[2][0].text, "3");

@@ -37,7 +37,7 @@ TEST(Targets, AgreeWithTheTablesAtEachTolerance) {
     const TargetMedians medians = target_medians(c, c.cell(0, 0));
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {
       const Spread& work = c.cell(0, 0).headline[t];
-      const std::size_t hit = kTolerances[t].hit;
+      const std::size_t hit = kTolerances[t].rung;
       EXPECT_EQ(medians.counted.at(hit), work.median);
       const auto reached =
           std::ranges::count_if(medians.reached, [hit](std::size_t count) { return count > hit; });

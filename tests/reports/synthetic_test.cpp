@@ -80,7 +80,7 @@ TEST(Report, OfThousandsOfRecordsCountsEachOnceAndKeepsFailuresInEveryDenominato
       all.planned += cell.planned;
       EXPECT_EQ(cell.runs.size(), kSize.seeds);
       if (!cell.is_measured()) continue;
-      for (const Spread& work : cell.work) EXPECT_EQ(work.n, kSize.seeds);
+      for (const Spread& work : cell.headline) EXPECT_EQ(work.n, kSize.seeds);
       EXPECT_EQ(cell.loss.n, kSize.seeds);
     }
   EXPECT_EQ(all.runs, kSize.records());

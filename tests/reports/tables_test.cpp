@@ -120,7 +120,7 @@ TEST(Tables, ProfilesAreRightForNegativeLosses) {
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(at(data_profile_table(c), "a", "≤ 100"), "100 %");
   EXPECT_EQ(at(data_profile_table(c), "a", "≤ 10"), "0 %");
-  EXPECT_EQ(at(accuracy_table(c), "a", "≥ 15"), "100 %");
+  EXPECT_EQ(at(accuracy_table(c), "a", "≥ 10"), "100 %");
 }
 
 // One of two seeds gets there, after 60 of 102 spent in all by each... the other spends its 20.
@@ -162,8 +162,10 @@ TEST(Tables, NobodyHasTheLargestAreaWhereAllAreZero) {
   const Comparison c = compare_optimizers(study);
   EXPECT_TRUE(has(anytime_table(c).reading, "all areas are 0")) << anytime_table(c).reading;
   EXPECT_TRUE(has(profile_table(c).reading, "No method solves any")) << profile_table(c).reading;
-  for (const Plot& plot : document_of(compare_optimizers(study)).section("statistics").plots)
-    EXPECT_FALSE(has(plot.reading, "a and 1 more")) << plot.id << ": " << plot.reading;
+  const Document document = document_of(compare_optimizers(study));
+  for (const Plot& plot : document.section("statistics").plots)
+    if (plot.id != "plot-runtime")  // whose first target is the start, which all meet
+      EXPECT_FALSE(has(plot.reading, "a and 1 more")) << plot.id << ": " << plot.reading;
 }
 
 TEST(Tables, RestartsSayThatTheyDrawOtherInstances) {
