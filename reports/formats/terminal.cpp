@@ -80,8 +80,7 @@ std::string best_of_each(const Comparison& c) {
     longest = std::max(longest, width_of(lines.back()));
   }
   const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
-  std::string text =
-      fmt::format("\nLeast median {} to {}, in {}\n", counted_name(c), tau_name(c), unit_name(c));
+  std::string text = fmt::format("\nLeast median {}\n", counted_to_tau(c));
   for (std::size_t i = 0; i < half; ++i) {
     const bool is_pair = half < lines.size() && i + half < lines.size();
     text += (is_pair ? left(lines[i], longest + 2) + lines[i + half] : lines[i]) + "\n";

@@ -52,6 +52,9 @@ function figure(value) {
   return value.toExponential(3).replace(/\.?0*e\+?/, 'e');
 }
 
+// ≈ marks times of which some were taken while other runs shared the machine.
+const amount = (value) => (value === Infinity ? figure(value) : figure(value) + DATA.mark);
+
 // Work over the least of the same problem; below one forward solve, or a microsecond, counts as one.
 const LEAST_UNIT = DATA.by === 'time' ? 1e-3 : 1;
 const ratioOf = (work, low) => (work === Infinity ? Infinity : Math.max(work, LEAST_UNIT) / Math.max(low, LEAST_UNIT));

@@ -200,9 +200,11 @@ std::string claims_about(const Document& document) {
 std::string page_data(const Document& document) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
-      "{{\"by\":\"{}\",\"unit\":\"{}\",\"counted\":\"{}\",\"rungs\":{},\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
+      "{{\"by\":\"{}\",\"unit\":\"{}\",\"counted\":\"{}\",\"mark\":\"{}\",\"rungs\":{},"
+      "\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
       "\"order\":{},\"figures\":{},\"problems\":[",
       name_of(c.yardstick.by), unit_name(c), counted_name(c),
+      c.yardstick.by == Measure::time && c.is_any_timed_together ? "≈" : "",
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       list(c.optimizers,

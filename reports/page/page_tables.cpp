@@ -146,9 +146,9 @@ std::string standings_html(const Comparison& c) {
 
 std::string matrix_html(const Comparison& c) {
   std::string html = fmt::format(
-      "<table class=matrix id=matrix><caption>Median {} to {}, in {}</caption>"
+      "<table class=matrix id=matrix><caption>Median {}</caption>"
       "<thead><tr><th scope=col>optimizer<th scope=col>solved",
-      counted_name(c), tau_name(c), unit_name(c));
+      counted_to_tau(c));
   std::vector<Real> least;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     html += fmt::format("<th scope=col data-p={0}><a href=\"#problem-{0}\"><span>{1}</span></a>", p,

@@ -16,7 +16,7 @@ function reachedRow(cell, low, most) {
   const name = element('th', {scope: 'row'}, swatch(cell.s, false), DATA.optimizers[cell.s], ...originOf(cell));
   const taken = element('td', {className: 'taken'});
   if (work === Infinity) taken.append(element('span', {className: 'cross'}, '✗'));
-  else taken.append(workBar(...[work, low, most].map((one) => Math.max(one, LEAST_UNIT))), figure(work));
+  else taken.append(workBar(...[work, low, most].map((one) => Math.max(one, LEAST_UNIT))), amount(work));
   const row = element('tr', {}, name, taken, element('td', {}, time === Infinity ? '' : String(time)),
       element('td', {}, `${reachedOf(cell, view.target)}/${cell.reached.length}`));
   row.dataset.s = cell.s;
@@ -57,6 +57,6 @@ function curveReading(problem) {
   if (solved === 0) return `None of the ${ranked.length} shown reaches ${tau}.`;
   const isTied = solved > 1 && works[1] === works[0];
   const next = isTied ? `, tied with ${DATA.optimizers[ranked[1].s]}` : solved > 1 ? `; next ${DATA.optimizers[ranked[1].s]}, ${multiple(ratioOf(works[1], works[0]))} as much` : '';
-  return `Least median ${DATA.counted} to ${tau} among the shown: ${DATA.optimizers[ranked[0].s]}, ${figure(works[0])} ${DATA.unit}${next}. ` +
+  return `Least median ${DATA.counted} to ${tau} among the shown: ${DATA.optimizers[ranked[0].s]}, ${amount(works[0])} ${DATA.unit}${next}. ` +
       (solved === ranked.length ? `All ${solved} get there.` : `${ranked.length - solved} of ${ranked.length} do not get there.`);
 }

@@ -39,13 +39,13 @@ function drawCell(place, cell, low) {
   const isTold = (reached > 0 && reached < all) || failed > 0 || missing > 0;
   const told = `${reached}/${all}${failed > 0 ? `, ${failed} failed` : ''}${missing > 0 ? `, ${missing} missing` : ''}`;
   place.className = work === Infinity ? 'no' : work === low ? 'h0 best' : heatOf(work, low);
-  setText(place, figure(work), isTold ? told : '');
+  setText(place, amount(work), isTold ? told : '');
 }
 
 function drawMatrix(table) {
   const rows = new Map([...table.tBodies[0].rows].map((row) => [Number(row.dataset.s), row]));
   const standings = standingsOf(view.target);
-  table.caption.textContent = `Median ${DATA.counted} to ${tauName(view.target)}, in ${DATA.unit}`;
+  table.caption.textContent = `Median ${DATA.counted} to ${tauName(view.target)}${DATA.unit === DATA.counted ? '' : `, in ${DATA.unit}`}`;
   for (const p of shownOf('p')) {
     const cells = shownCells(DATA.problems[p]), low = leastWork(cells, view.target);
     for (const cell of cells) drawCell(rows.get(cell.s).cells[p + 2], cell, low);

@@ -29,7 +29,7 @@ std::string apart_text(const Comparison& comparison, const Placed& placed);
 std::string apart_sentence(const Comparison& comparison);
 
 // A sentence: whether the first three are the same at declared and at measured prices; empty where
-// calls are not what is counted.
+// calls are not what is counted; of times whether they were taken alone.
 std::string prices_text(const Comparison& comparison);
 
 }  // namespace isoline::reports

@@ -25,10 +25,10 @@ Section problems_section(const Comparison& c) {
   Table table{.id = "matrix",
               .title = "Every problem and optimizer",
               .caption = fmt::format(
-                  "Median {} to {}, in {}. Bold: the least of its problem. ✗: not reached by "
-                  "half of the runs. (k/n): k of n runs reached it. n/a: the pair makes no "
-                  "sense. Empty: never planned.",
-                  counted_name(c), tau_name(c), unit_name(c)),
+                  "Median {}. Bold: the least of its problem. ✗: not reached by half of the "
+                  "runs. (k/n): k of n runs reached it. n/a: the pair makes no sense. Empty: "
+                  "never planned.",
+                  counted_to_tau(c)),
               .columns = {"optimizer"},
               .is_folded = c.problems.size() > kMostColumns,
               .most_columns = kMostColumns};

@@ -16,6 +16,9 @@ std::string_view counted_name(const Comparison& comparison);
 std::string_view unit_name(Measure by);  // "forward solves", …, "ms"
 std::string_view unit_name(const Comparison& comparison);
 
+// "declared work to 1e-6, in forward solves", "iterations to 1e-6".
+std::string counted_to_tau(const Comparison& comparison);
+
 // An amount as tables write it, ✗ where infinite: times are given in seconds and told in ms.
 std::string amount(Measure by, Real value);
 std::string amount(const Comparison& comparison, Real value);

@@ -27,6 +27,9 @@ std::vector<std::string> first_by(const Comparison& c, Measure by) {
 }  // namespace
 
 std::string prices_text(const Comparison& c) {
+  if (c.yardstick.by == Measure::time && c.is_any_timed_together)
+    return "Some of these times were taken while other runs shared the machine, and are marked ≈: an "
+           "order by them is no evidence. Runs with --exclusive are timed alone.";
   const bool is_by_calls = c.yardstick.by == Measure::work || c.yardstick.by == Measure::cost;
   if (!is_by_calls || !has_order(c)) return "";
   const auto priced = static_cast<std::size_t>(std::ranges::count_if(
