@@ -1,6 +1,7 @@
 // The multilayer perceptron: what its name promises, and its Jacobian against the one by pullbacks.
 #include <gtest/gtest.h>
 
+#include "networks/activation.h"
 #include "networks/network.h"
 
 namespace isoline::networks {
@@ -147,6 +148,27 @@ TEST(Perceptron, StartsAsPyTorchOrKerasDo) {
   EXPECT_NEAR(glorot.head(40'000).cwiseAbs().maxCoeff(), std::sqrt(6.0 / 500), 1e-4);
   EXPECT_EQ(glorot.segment(40'000, 400).norm(), 0);
   EXPECT_EQ(glorot[glorot.size() - 1], 0);
+}
+
+// Against the C library in extended precision, over the seam at 0.625 and both ends.
+TEST(Activations, TheHyperbolicTangentInDoubleIsExactToTwoUnitsOfTheLastPlace) {
+  constexpr Index kNumbers = 4000;
+  const Real kUnit = std::numeric_limits<Real>::epsilon();
+  Flat<double> z(kNumbers), a(kNumbers);
+  for (Index i = 0; i < kNumbers; ++i)  // 1e-8 to 1e2, both signs
+    z[i] = (i % 2 == 0 ? 1 : -1) * std::pow(10.0, -8 + 10.0 * Real(i) / kNumbers);
+  activate<double>(Activation::tanh, z, a);
+  for (Index i = 0; i < kNumbers; ++i) {
+    const long double exact = std::tanh(static_cast<long double>(z[i]));
+    EXPECT_LE(std::abs(static_cast<Real>(a[i] / exact - 1)), 2 * kUnit) << z[i];
+  }
+  constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+  z.head(4) << std::nan(""), kInfinity, -kInfinity, 0;
+  activate<double>(Activation::tanh, z, a);
+  EXPECT_TRUE(std::isnan(a[0]));
+  EXPECT_EQ(a[1], 1);
+  EXPECT_EQ(a[2], -1);
+  EXPECT_EQ(a[3], 0);
 }
 
 }  // namespace
