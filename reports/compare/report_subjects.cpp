@@ -47,9 +47,8 @@ Subject subject_of_pair(const Json& cell) {
   add_median(subject, "loss", "loss", figures.at("loss"));
   if (figures.contains("x_error"))
     add_median(subject, "error in x", "error in x", figures.at("x_error"));
-  for (const Tolerance& tolerance : kTolerances)
-    add_median(subject, "work", "work to " + figure(tolerance.tau),
-               figures.at("work").at(std::string(tolerance.name)));
+  for (const auto& [tau, median] : figures.at("work").items())  // of the report's own yardstick
+    add_median(subject, "work", "work to " + figure(std::stod(tau)), median);
   return subject;
 }
 

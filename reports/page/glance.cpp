@@ -104,7 +104,7 @@ std::string glance_html(const Comparison& c) {
     html += card(c, c.lead, "all",
                  fmt::format("Of the {} methods that are ranked", c.order.methods.size())) +
             card(c, c.open_lead, "open",
-                 fmt::format("Of the {} of them that see no more than they are given", plain));
+                 fmt::format("Of the {} that see no more than they are given", plain));
   return html +
          fmt::format(
              "<article class=\"card ground\"><h3>On what</h3>{}{}{}{}<h3>What cannot be concluded</h3>"

@@ -5,6 +5,7 @@
 
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
+#include "reports/statistics/resampling.h"
 
 namespace isoline::reports {
 namespace {
@@ -34,6 +35,13 @@ std::string interval_text(const Judgement& judgement) {
   return fmt::format("{}–{}", figure(measured->low), figure(measured->high));
 }
 
+// "10–30 (range of 3)": so few seeds have no interval.
+std::string over_seeds(const Judgement& judgement) {
+  const std::string text = interval_text(judgement);
+  if (text == kNothing || judgement.measured->n >= kFewestForInterval) return text;
+  return fmt::format("{} ({})", text, interval_name(judgement.measured->n));
+}
+
 std::string_view mark_of(Verdict verdict) {
   constexpr std::array<std::string_view, 4> kMarks = {"✓", "≈", "✗", "·"};
   return kMarks[static_cast<std::size_t>(verdict)];
@@ -49,7 +57,7 @@ std::vector<TableCell> row_of(const Judgement& judgement) {
           verdict,
           judgement.published,
           value_text(judgement),
-          interval_text(judgement),
+          over_seeds(judgement),
           judgement.measured ? std::to_string(judgement.measured->n) : kNothing,
           remarks_of(judgement)};
 }
@@ -77,11 +85,14 @@ Section claims_section(const std::vector<Judgement>& judgements) {
                   .title = "Claims of the papers",
                   .otherwise = "No published claim is decided by the runs of this report."};
   if (judgements.empty()) return section;
-  section.lead = "Measured are medians over seeds, with 95 % of the bootstrap over seeds.";
+  section.lead =
+      "Measured are medians over seeds, with 95 % of the bootstrap over seeds, or the range of fewer "
+      "than six.";
   section.readings = {{"", claims_reading(judgements)}};
-  Table table{.id = "claims-table",
-              .columns = {"claim", "verdict", "published", "measured", "95 %", "seeds", "remarks"},
-              .align = "plrrrrp"};
+  Table table{
+      .id = "claims-table",
+      .columns = {"claim", "verdict", "published", "measured", "over seeds", "seeds", "remarks"},
+      .align = "plrrrrp"};
   for (const Judgement& judgement : judgements) {
     table.rows.push_back(row_of(judgement));
     table.row_topics.push_back({.id = "claim-" + judgement.id});

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "reports/read/grounds.h"
 #include "reports/sections/measure_words.h"
@@ -18,6 +20,12 @@ const Rival& nearest(const Lead& lead) {
     return rival.p > kSignificant || rival.pairing.doublings.size() < kLeastNames;
   });
   return open == lead.rivals.end() ? lead.rivals.front() : *open;
+}
+
+// log2 of the other's cost over the first's, the mean over problems.
+Real mean_doublings(const Pairing& pairing) {
+  const auto& all = pairing.doublings;
+  return -std::accumulate(all.begin(), all.end(), 0.0) / std::max(Real(all.size()), 1.0);
 }
 
 bool solves_none(const Comparison& c, const Placed& placed) {
@@ -60,13 +68,10 @@ std::string first_text(const Comparison& c, const Lead& lead) {
   return joined(names, " and ");
 }
 
-std::string pairing_text(const Comparison& c, const Pairing& pairing) {
-  std::string text = fmt::format(
-      "typically takes {} its {}: {} win{} to {} loss{} over {}", multiple(pairing.typical()),
-      counted_name(c), pairing.wins, pairing.wins == 1 ? "" : "s", pairing.losses,
-      pairing.losses == 1 ? "" : "es", counted(pairing.doublings.size(), "problem"));
-  if (pairing.ties > 0) text += fmt::format(", {} tied", pairing.ties);
-  return text;
+std::string pairing_text(const Comparison& c, const Pairing& pairing, std::size_t first) {
+  return fmt::format("typically takes {} the {} of {}, which needs less on {} of {} and more on {}",
+                     multiple(pairing.typical()), counted_name(c), optimizer_text(c, first),
+                     pairing.wins, counted(pairing.doublings.size(), "problem"), pairing.losses);
 }
 
 std::string settled_text(const Comparison& c, const Lead& lead) {
@@ -74,24 +79,27 @@ std::string settled_text(const Comparison& c, const Lead& lead) {
     return fmt::format("{} are tied: the scores are equal, and nobody leads.", first_text(c, lead));
   if (lead.rivals.empty()) return "There is no other method to compare it with.";
   const Rival& rival = nearest(lead);
+  const std::string name = optimizer_text(c, rival.optimizer);
+  const std::string pairing = pairing_text(c, rival.pairing, lead.ranked[0].optimizer);
   if (lead.is_settled)
     return fmt::format(
         "Its lead is settled for problems like these: each of the {} others is behind at 0.05 by a "
         "paired sign-flip test over problems; the next, {}, {}.",
-        lead.rivals.size(), optimizer_text(c, rival.optimizer), pairing_text(c, rival.pairing));
-  const std::string name = optimizer_text(c, rival.optimizer);
+        lead.rivals.size(), name, pairing);
   if (rival.pairing.doublings.size() < kLeastNames)
     return fmt::format(
         "Its lead is not settled: against {} there are {} to compare, and the test asks for {}; {} "
         "{}.",
-        name, counted(rival.pairing.doublings.size(), "problem"), kLeastNames, name,
-        pairing_text(c, rival.pairing));
+        name, counted(rival.pairing.doublings.size(), "problem"), kLeastNames, name, pairing);
   if (rival.p <= kSignificant)
     return "Its lead is not settled: the ranks of all methods together could be chance.";
+  const Real mean = mean_doublings(rival.pairing);
+  const std::string favoured =
+      mean > 0 ? optimizer_text(c, lead.ranked[0].optimizer) : optimizer_text(c, rival.optimizer);
   return fmt::format(
-      "Its lead is not settled: {} cannot be told from it (p = {:.2g} by a paired sign-flip test); "
-      "it {}.",
-      name, rival.p, pairing_text(c, rival.pairing));
+      "Its lead is not settled: {} cannot be told from it, since the mean over problems is {:.2g} "
+      "doublings in favour of {} (p = {:.2g} by a paired sign-flip test); {} {}.",
+      name, std::abs(mean), favoured, rival.p, name, pairing);
 }
 
 std::string power_text(const Comparison& c, const Lead& lead) {

@@ -14,8 +14,9 @@ std::string field_text(const Comparison& comparison, const Lead& lead);
 std::string deeds_text(const Comparison& comparison, const Scored& scored);
 // "adam and gd", who share the first place.
 std::string first_text(const Comparison& comparison, const Lead& lead);
-// "typically takes 1.1× its declared work: 7 wins to 6 losses over 15 problems, 2 ties"
-std::string pairing_text(const Comparison& comparison, const Pairing& pairing);
+// Of the other: "typically takes 1.1× the declared work of adam, which needs less on 7 of 15
+// problems and more on 6". The pairing is of the first.
+std::string pairing_text(const Comparison& comparison, const Pairing& pairing, std::size_t first);
 // A sentence: whether the lead is settled, and if not against whom first.
 std::string settled_text(const Comparison& comparison, const Lead& lead);
 // A sentence: how many others can be told from the first, and which factor would have been found.

@@ -125,8 +125,9 @@ std::string caption_of(const Comparison& c) {
       "Medians over seeds, where both the least loss and the solution are known. Loss: no more "
       "than {} of its scale is left. x: the error is at most {} of the solution's norm, or the "
       "floor that the data set. Near: at most {}, the square root, which is what a loss at {} "
-      "leaves of x where J is well conditioned. In brackets the condition number of J, the ratio "
-      "of its extreme singular values, at the solution or else at the start.",
+      "leaves of x where J is well conditioned: a run whose problem wants a loss stops at its "
+      "target in loss, which may be short of x, but not of that. In brackets the condition number "
+      "of J, the ratio of its extreme singular values, at the solution or else at the start.",
       tau, tau, near_name(c), tau);
 }
 
@@ -142,7 +143,8 @@ Table loss_without_x_table(const Comparison& c) {
                            "settings whose loss is reached", "settings whose x is found",
                            "settings whose loss is reached and whose x is not found",
                            "those of them on which x is not even near",
-                           "those of them with the worst condition numbers", ""},
+                           "those of them with the worst condition numbers",
+                           "runs that went wrong, of all"},
               .align = "lrrrrrlr"};
   Tally all;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {

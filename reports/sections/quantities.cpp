@@ -190,6 +190,22 @@ std::optional<Real> neutral_of(const std::string& kind) {
   return std::nullopt;
 }
 
+namespace {
+
+// Too few seeds for an interval: what each of them alone gives, from the least to the greatest.
+Measurement with_range(Measurement out, const std::string& kind, const std::vector<Term>& terms) {
+  std::vector<Real> values;
+  for (std::size_t seed = 0; seed < out.n; ++seed)
+    if (const Real value = quantity_over(kind, terms, {seed}); !std::isnan(value))
+      values.push_back(value);
+  if (values.empty()) return out;
+  out.low = std::ranges::min(values);
+  out.high = std::ranges::max(values);
+  return out;
+}
+
+}  // namespace
+
 Measurement measure(const std::string& kind, const std::vector<Term>& terms,
                     const std::string& stream) {
   Measurement out{.low = kAbsent, .high = kAbsent, .n = terms.at(0).figures.at(0).size()};
@@ -197,6 +213,7 @@ Measurement measure(const std::string& kind, const std::vector<Term>& terms,
   std::iota(seeds.begin(), seeds.end(), 0);
   out.value = quantity_over(kind, terms, seeds);
   if (out.n < 2) return out;
+  if (out.n < kFewestForInterval) return with_range(out, kind, terms);
   std::vector<Real> draws;
   resample(out.n, {.component = "claims", .purpose = stream, .is_for_all = true},
            [&](const Places& drawn) {

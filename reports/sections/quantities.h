@@ -42,7 +42,7 @@ struct Term {
 
 struct Measurement {
   Real value = 0;
-  Real low = 0, high = 0;  // 95 % of the bootstrap over seeds; not-a-number with one seed
+  Real low = 0, high = 0;  // 95 % of the bootstrap over seeds, of few their range; nan of one
   std::size_t n = 0;       // seeds
 };
 

@@ -77,7 +77,7 @@ Plots log_ratio_plot(const Comparison& c) {
             .id = "plot-log-ratio",
             .title = fmt::format("{} against {}, problem by problem", first, second),
             .reading = fmt::format("{} {}.", second,
-                                   pairing_text(c, pairing_of(costs, groups_of(c), 0, 1))),
+                                   pairing_text(c, pairing_of(costs, groups_of(c), 0, 1), 0)),
             .caption = fmt::format(
                 "log2 of the ratio of median {} to {}, sorted, of several settings the median: "
                 "below 0 {} needs less, above 0 {}; at ±{:.0f} at least {:.0f} times, or the other "

@@ -86,8 +86,9 @@ TEST(PerturbedRuns, AnswerTheSameCellsFromAnotherStart) {
 TEST(PerturbedRuns, LeaveTheRecordsOfTheFolderAsTheyWere) {
   const FinishedMatrix matrix = small_matrix();
   perturbed(matrix.records);
-  for (const Record& record : matrix.records) {
-    const auto kept = matrix.store.find(record.request);
+  for (std::size_t i = 0; i < matrix.records.size(); ++i) {
+    const Record& record = matrix.records[i];
+    const auto kept = matrix.store.find(matrix.requests[i]);
     ASSERT_TRUE(kept.has_value());
     EXPECT_EQ(kept->summary.start_loss, record.summary.start_loss);
     EXPECT_EQ(kept->repeat_wall_seconds, record.repeat_wall_seconds);

@@ -1,4 +1,4 @@
-// The suites and rates of the tree: what they promise of themselves.
+// The suites of the tree: what they promise of themselves.
 #include "benchmarks/plan/suite.h"
 
 #include <gtest/gtest.h>
@@ -10,9 +10,7 @@
 
 #include "benchmarks/plan/filter.h"
 #include "benchmarks/plan/resources.h"
-#include "benchmarks/run/tuning_grid.h"
 #include "core/json.h"
-#include "core/option_json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
 
@@ -198,98 +196,6 @@ TEST(Filters, ThatLeaveNothingOrNameWhatIsUnknownAreErrors) {
   EXPECT_THROW(left_by("heat", ""), UsageError);
   EXPECT_THROW(left_by("", "adm"), UsageError);
   EXPECT_THROW(left_by("sine[xii=1]", ""), UsageError);
-}
-
-// --- rates
-
-// What a value within another says of modes is no mode of the problem.
-TEST(Rates, AreForTheDefaultModeWhateverNestedOptionsSay) {
-  const Rates rates = Rates::from_json(
-      {{"rows",
-        {{{"problem", "sine"}, {"optimizer", "gd"}, {"options", {{"rate", 0.5}}}},
-         {{"problem", "sine[mode=learn]"}, {"optimizer", "gd"}, {"options", {{"rate", 0.25}}}}}}},
-      "here");
-  const auto rate = [&](const std::string& spec) {
-    const Rates::Row* row = rates.find(complete_problem(catalog(), parse_spec(spec)), "gd");
-    return row ? row->options.number("rate", 0) : 0;
-  };
-  EXPECT_EQ(rate("sine"), 0.5);
-  EXPECT_EQ(rate("sine[xi=3]"), 0.5);
-  EXPECT_EQ(rate("sine[mode=learn]"), 0.25);
-  EXPECT_EQ(rate("sine[network=mine[mode=odd]]"), 0.5);  // of a network that direct never makes
-}
-
-void expect_row_is_sound(const Json& row) {
-  const std::string text =
-      row.at("problem").get<std::string>() + " × " + row.at("optimizer").get<std::string>();
-  const Spec problem = parse_spec(row.at("problem").get<std::string>());
-  EXPECT_NO_THROW(complete_problem(catalog(), problem)) << text;
-  EXPECT_NO_THROW(
-      complete_optimizer(catalog(), row.at("optimizer"), option_values_from(row.at("options"))))
-      << text;
-  const Json& source = row.at("source");
-  EXPECT_TRUE(source.contains("paper") || source.contains("grid")) << text;
-  if (!source.contains("grid")) return;
-  for (const auto& [option, values] : source.at("grid").items()) {
-    EXPECT_GE(values.size(), 5U) << text;
-    EXPECT_EQ(source.at("score").size(), values.size()) << text;
-    if (!row.at("options").contains(option)) continue;  // it is the rate of a nested optimizer
-    EXPECT_NE(std::ranges::find(values, row.at("options").at(option)), values.end()) << text;
-  }
-}
-
-TEST(Rates, OfTheTreeNameWhatExistsWithinItsRangesAndSaysWhereEachValueIsFrom) {
-  for (const auto& [name, text] : builtin_rates()) {
-    const Json table = parse_json(std::string(text), name);
-    EXPECT_EQ(schema_violations(table, schema("rates")), std::vector<std::string>{}) << name;
-    if (table.contains("grid")) {
-      EXPECT_EQ(table.at("grid").at("seeds"), "100..102");  // apart from those that judge
-    }
-    for (const Json& row : table.at("rows")) expect_row_is_sound(row);
-  }
-}
-
-// Equal tuning: every method that has something to tune was, on every problem that it can treat.
-TEST(Rates, CoverEveryTunableMethodOnEveryProblemOfQuick) {
-  std::set<std::string> seen;
-  for (const Request& cell : cells_of("quick")) {
-    const OptimizerEntry& entry = catalog().optimizers.at(cell.optimizer.name);
-    const std::string text = cell.problem.spec + " × " + entry.name;
-    const bool is_published = cell.problem.spec.find("mode=learn") != std::string::npos;
-    if (entry.tunable.option.empty() || is_published || !seen.insert(text).second) continue;
-    const Problem problem = make_problem(catalog(), cell.problem, 0);
-    if (why_inapplicable(entry, cell.optimizer.options, problem).empty())
-      EXPECT_EQ(cell.rates, "direct.json") << text;
-  }
-  EXPECT_GT(seen.size(), 400U);
-}
-
-TEST(Rates, OfQuickWereEachChosenFromSevenValuesOfTheMethodsOwnOptionAndAFewBeyondAnEdge) {
-  const Json table = parse_json(std::string(builtin_rates().at("direct")), "direct");
-  EXPECT_EQ(table["grid"]["points"], kGridValues);
-  for (const Json& row : table["rows"]) {
-    const std::string text =
-        row["problem"].get<std::string>() + " × " + row["optimizer"].get<std::string>();
-    const Component problem =
-        complete_problem(catalog(), parse_spec(row["problem"].get<std::string>()));
-    const auto knob = knob_of(catalog(), row["optimizer"], problem, {});
-    ASSERT_TRUE(knob.has_value()) << text;
-    ASSERT_TRUE(row["source"]["grid"].contains(knob->option)) << text;
-    const std::size_t values = row["source"]["grid"][knob->option].size();
-    EXPECT_GE(values, std::size_t{kGridValues}) << text;
-    EXPECT_LE(values, std::size_t{kGridValues + 2 * kMostExtensions}) << text;
-    EXPECT_EQ(row["source"]["best_of"].size(), values) << text;
-  }
-}
-
-TEST(Rates, GiveWayToExplicitOptions) {
-  const Suite suite{.name = "mine",
-                    .title = "",
-                    .blocks = {{.problems = {"beale"}, .optimizers = {"gd", "gd[lr=0.5]"}}}};
-  const std::vector<Request> cells = expand(catalog(), suite, Rates::builtin());
-  ASSERT_EQ(cells.size(), 2U);
-  EXPECT_NE(cells[0].optimizer.options.at("rate"), OptionValue(0.5));
-  EXPECT_EQ(cells[1].optimizer.options.at("rate"), OptionValue(0.5));
 }
 
 }  // namespace

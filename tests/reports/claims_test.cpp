@@ -219,7 +219,8 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
   const Document document = document_of(compare_optimizers(study), judgements);
   for (const std::string& text :
        {section_html(section), markdown_report(document), terminal_section(section)}) {
-    for (const char* part : {"reproduced", "One is ahead of the other.", "10–30", "±5 %"})
+    for (const char* part :
+         {"reproduced", "One is ahead of the other.", "10–30 (range of 3)", "±5 %"})
       EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
     EXPECT_NE(text.find("Of 1 claims 1 are reproduced, 0 partly, 0 not; 0 cannot be compared."),
               std::string::npos)

@@ -197,7 +197,8 @@ Record synthetic_record(const SyntheticSize& size, std::size_t index) {
   record.cell = cell_digest(record.request);
   record.build = "a55c84ea1e197cc0";
   record.provenance = provenance_of(index);
-  for (const auto& [name, tau] : kVerified) record.verified[name] = std::nullopt;
+  for (const auto& [name, tau] : kVerified)
+    record.verified[name] = record.found[name] = std::nullopt;
   if (is_inapplicable(at)) {
     record.status = Status::inapplicable;
     record.message = "a simplex of so many unknowns";

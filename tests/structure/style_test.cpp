@@ -20,8 +20,8 @@ const std::map<std::string, std::string> kLongFiles = {
     {"benchmarks/cli/command_line.cpp",
      "every verb's arguments, in the one file that parses CLI11"},
     {"optimizers/nlopt.cpp", "one library: its call, its checks and the list of its algorithms"},
-    {"reports/formats/terminal.cpp", "one format"},
     {"reports/page/svg.cpp", "one drawing of every kind of plot"},
+    {"tests/benchmarks/merge_test.cpp", "one law of unions a test, over the same folders"},
     {"tests/cli/run_test.cpp", "one verb as a user meets it"},
     {"tests/optimizers/training_test.cpp", "one law a method, over the same small network"}};
 
