@@ -118,7 +118,7 @@ Json number_of(Real value) {
   return std::isfinite(value) ? Json(three_digits(value)) : json_number(value);
 }
 
-Json row_of(const Candidate& candidate) {
+Json row_of(const Candidate& candidate, const Budget& usual) {
   Json values = Json::array(), scores = Json::array(), expected = Json::array();
   std::vector<Real> left;
   for (const Trial& trial : candidate.trials) {
@@ -132,6 +132,8 @@ Json row_of(const Candidate& candidate) {
   Json source{
       {"grid", {{candidate.knob.option, values}}}, {"score", scores}, {"best_of", expected}};
   if (candidate.is_at_edge()) source["edge"] = true;
+  const Budget& budget = candidate.pair.budget;
+  if (budget.work != usual.work) source["work"] = budget.work;
   return {{"problem", candidate.pair.problem.spec},
           {"optimizer", candidate.pair.optimizer},
           {"options", to_json(options_at(candidate, chosen))},
@@ -158,7 +160,7 @@ TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
   }
   Json rows = Json::array();
   for (const Candidate& candidate : candidates)
-    if (!candidate.is_inapplicable) rows.push_back(row_of(candidate));
+    if (!candidate.is_inapplicable) rows.push_back(row_of(candidate, plan.pairs[0].budget));
   result.rows = std::make_shared<const Json>(std::move(rows));
   return result;
 }

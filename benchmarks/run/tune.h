@@ -37,8 +37,9 @@ struct TuningResult {
 };
 
 // A row tells the values, their scores, the expected least loss (or error in x) of the best of b of
-// them drawn at random, for b = 1 to all, and whether the best still stands at an edge. Pairs that
-// are inapplicable have none; where every value failed the one nearest to the default stays.
+// them drawn at random, for b = 1 to all, whether the best still stands at an edge, and the budget
+// of work where it is not that of the first pair. Pairs that are inapplicable have none; where
+// every value failed the one nearest to the default stays.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options);
 
