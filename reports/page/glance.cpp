@@ -17,7 +17,7 @@
 namespace isoline::reports {
 namespace {
 
-constexpr std::size_t kPodium = 6;
+constexpr std::size_t kPodium = 5;
 
 std::string name_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& optimizer = c.optimizers[s];

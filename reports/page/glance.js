@@ -7,7 +7,7 @@ function optimizerLink(s) {
 }
 
 function podiumOf(standings) {
-  return element('ol', {className: 'podium'}, ...standings.slice(0, 6).map(({s, score}) => {
+  return element('ol', {className: 'podium'}, ...standings.slice(0, 5).map(({s, score}) => {
     const bar = element('i');
     bar.style.setProperty('--w', 100 * score);
     return element('li', {}, element('span', {}, optimizerLink(s)), bar, element('b', {}, score.toFixed(3)));
