@@ -4,9 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
-
-#include "core/json.h"
 
 namespace isoline::benchmarks {
 namespace {

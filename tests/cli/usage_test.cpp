@@ -14,8 +14,8 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run", "report", "compare", "baseline", "merge", "best", "claims", "list", "describe", "check",
-        "audit", "validate", "tune", "train", "infer", "completion"}) {
+       {"run", "report", "compare", "baseline", "merge", "best", "claims", "list", "describe",
+        "check", "audit", "validate", "tune", "train", "infer", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;

@@ -122,7 +122,7 @@ TEST(AuditFile, IsReadWithTheStudyAndReportsDoWithoutIt) {
   EXPECT_FALSE(has(markdown_report(document_of(compare_optimizers(bare))), "Properties, measured"));
   EXPECT_TRUE(has(html_report(document_of(compare_optimizers(bare))), "hold no audit"));
   ASSERT_EQ(bad.unreadable.size(), 1U);
-  EXPECT_EQ(bad.unreadable[0].file.filename(), "audit.json");
+  EXPECT_TRUE(bad.unreadable[0].file.ends_with("/audit.json"));
 }
 
 }  // namespace
