@@ -88,8 +88,10 @@ TEST(Quick, GivesEveryMethodTheSmallestGridsAndEachTheLargestThatItCanTreat) {
     for (const auto& [name, entry] : catalog().optimizers) {
       const std::set<Index>& asked = sides[std::string(problem) + " " + name];
       EXPECT_TRUE(asked.contains(8)) << name;
-      EXPECT_EQ(asked.size(), is_selected(entry, "@derivative-free") ? 1U : 2U) << name;
-      EXPECT_EQ(asked.contains(16), is_selected(entry, "@factorizing")) << name;
+      const bool is_too_slow = name == "nlopt-slsqp";  // a fifth of the whole suite at 16 × 16
+      const bool has_larger = !is_selected(entry, "@derivative-free") && !is_too_slow;
+      EXPECT_EQ(asked.size(), has_larger ? 2U : 1U) << name;
+      EXPECT_EQ(asked.contains(16), is_selected(entry, "@factorizing") && !is_too_slow) << name;
       EXPECT_EQ(asked.contains(64), is_selected(entry, "@matrix-free")) << name;
     }
 }
