@@ -12,7 +12,7 @@ TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {
   const Shell shell;
   const std::string run =
       "./isoline run --problem 'brown-dennis[m=10],rosenbrock' --optimizer gd,levenberg-marquardt "
-      "--work 500 --seeds 2 --quiet --no-report --out out";
+      "--rates none --work 500 --seeds 2 --quiet --no-report --out out";
   ASSERT_EQ(shell(run).exit_code, 0);
   ASSERT_EQ(shell("./isoline best out --out best.json").exit_code, 0);
   const Json table = read_json(shell.folder() / "best.json");
