@@ -122,9 +122,12 @@ std::string power_text(const Comparison& c, const Lead& lead) {
 std::string placed_text(const Comparison& c, const Placed& placed) {
   const OptimizerAxis& axis = c.optimizers[placed.optimizer];
   const std::string settings = counted(placed.among.settings.size(), setting_noun(c));
-  if (solves_none(c, placed))
-    return fmt::format("solves none of the {}{}", settings,
-                       axis.is_meaning ? " " + given_text(axis) : " it was given");
+  if (solves_none(c, placed)) {
+    const std::string those = placed.among.settings.size() == 1
+                                  ? "does not solve the one " + std::string(setting_noun(c))
+                                  : "solves none of the " + settings;
+    return those + (axis.is_meaning ? " " + given_text(axis) : " it was given");
+  }
   if (placed.among.methods.size() < 2)
     return fmt::format("alone on {}", counted(placed.among.settings.size(), setting_noun(c)));
   return fmt::format("{} of {} on the {}{}", ordinal(placed.place), placed.among.methods.size(),
