@@ -14,24 +14,12 @@
 #include "core/option_json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
+#include "tests/benchmarks/builtin.h"
 
 namespace isoline::benchmarks {
 
 using optimizers::OptimizerEntry;
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
-
-std::vector<Request> cells_of(const std::string& suite) {
-  return expand(catalog(), read_suite(suite), Rates::builtin());
-}
-
-Json schema(const std::string& name) {
-  return parse_json(std::string(builtin_schemas().at(name)), name);
-}
 
 // What a value within another says of modes is no mode of the problem.
 TEST(Rates, AreForTheDefaultModeWhateverNestedOptionsSay) {

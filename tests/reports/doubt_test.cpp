@@ -7,23 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/compare/gate.h"
-#include "tests/reports/fixture.h"
+#include "tests/reports/changed_cell.h"
 
 namespace isoline::reports {
 namespace {
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
-}
-
-// Twelve cells, of which cell 5 is what `change` makes of it.
-void fill(const ResultFolder& folder, const std::function<void(Record&)>& change) {
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    Record record = record_of({.seed = seed, .hits = 20 + seed, .status = Status::budget});
-    record.repeat_wall_seconds = {0.1, 0.2};
-    if (seed == 5) change(record);
-    folder.add(record);
-  }
 }
 
 GateResult compared(const std::function<void(Record&)>& change) {

@@ -1,0 +1,28 @@
+// What is built into the program, for tests of suites and of rates: its catalog, the cells of a
+// suite at its own rates, its schemas.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/suite.h"
+#include "core/json.h"
+
+namespace isoline::benchmarks {
+
+inline const Catalog& catalog() {
+  static const Catalog all = builtin_catalog();
+  return all;
+}
+
+inline std::vector<Request> cells_of(const std::string& suite) {
+  return expand(catalog(), read_suite(suite), Rates::builtin());
+}
+
+inline Json schema(const std::string& name) {
+  return parse_json(std::string(builtin_schemas().at(name)), name);
+}
+
+}  // namespace isoline::benchmarks
