@@ -29,7 +29,7 @@ Real real_of(const Json& value) {
   if (text == "nan") return std::nan("");
   if (text == "inf") return INFINITY;
   if (text == "-inf") return -INFINITY;
-  throw UsageError(fmt::format("expected a number, got {}", value.dump()));
+  throw UsageError(fmt::format("expected a number, got {}", json_text(value)));
 }
 
 std::vector<Real> reals_of(const Json& list) {
@@ -39,7 +39,9 @@ std::vector<Real> reals_of(const Json& list) {
   return values;
 }
 
-std::string json_text(const Json& value, int indent) { return value.dump(indent); }
+std::string json_text(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 Json parse_json(const std::string& text, const std::string& origin) {
   try {
@@ -54,7 +56,7 @@ Json read_json(const std::filesystem::path& path) {
 }
 
 void write_json(const std::filesystem::path& path, const Json& value) {
-  write_text(path, value.dump(1) + "\n");
+  write_text(path, json_text(value, 1) + "\n");
 }
 
 }  // namespace isoline

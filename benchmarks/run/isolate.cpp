@@ -59,22 +59,48 @@ void confine(pid_t parent, [[maybe_unused]] std::int64_t memory_bytes) {
   std::set_new_handler([] { throw std::bad_alloc(); });
 }
 
+void* shared_memory(std::size_t size) {
+  void* shared = mmap(nullptr, size, PROT_READ | PROT_WRITE,
+                      MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (shared == MAP_FAILED) throw std::bad_alloc();
+  return shared;
+}
+
+// Whatever the child wrote there is taken for a size only where it can be one.
+std::int64_t size_of(const Returned& returned) {
+  const std::int64_t size = returned.size;
+  return size > 0 && size <= Returned::kMost ? size : 0;
+}
+
+// For the next child; the memory of a large θ is given back.
+void clear(Returned& returned) {
+  constexpr std::int64_t kLarge = 1 << 17;  // numbers: a MiB
+  if (size_of(returned) > kLarge) madvise(&returned, sizeof(Returned), MADV_REMOVE);
+  returned.size = 0;
+}
+
 }  // namespace
 
-Worker::Worker() {
-  void* shared =
-      mmap(nullptr, sizeof(Trace), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) throw std::bad_alloc();
-  trace_ = new (shared) Trace;
-}
+Worker::Worker()
+    : trace_(new (shared_memory(sizeof(Trace))) Trace),
+      returned_(new (shared_memory(sizeof(Returned))) Returned) {}
 
 Worker::~Worker() {
   if (is_running()) interrupt();
   munmap(trace_, sizeof(Trace));
+  munmap(returned_, sizeof(Returned));
+}
+
+Index Worker::returned_size() const { return size_of(*returned_); }
+
+void Worker::dispute(const std::string& message) {
+  trace_->status = Status::failed;
+  set_text(trace_->message, message);
 }
 
 void Worker::start(const std::function<void(Trace&)>& work, const Limits& limits, int threads) {
   trace_ = new (trace_) Trace;
+  clear(*returned_);
   limits_ = limits;
   verdict_.reset();
   started_ = monotonic_nanoseconds();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "benchmarks/run/returned.h"
 #include "core/trace.h"
 
 namespace isoline::benchmarks {
@@ -31,7 +32,13 @@ class Worker {
   // Ends the child where it is over a limit, collects it where it has ended. True once it has.
   bool poll();
   void interrupt();  // ends it at once, as `interrupted`
+  void dispute(const std::string& message);  // of a child that has ended: it failed after all
   const Trace& trace() const { return *trace_; }
+  // What the child said that it returned, to be judged by another process, which inherits the
+  // memory where it is started after this worker was made.
+  void keep_returned(VectorRef theta) { returned_->keep(theta); }  // called by the child
+  const double* returned() const { return returned_->theta; }
+  Index returned_size() const;  // 0: nothing
   int descriptor() const { return descriptor_; }  // readable when the child has ended
 
  private:
@@ -40,6 +47,7 @@ class Worker {
   void enforce();
 
   Trace* trace_;
+  Returned* returned_;
   Limits limits_;
   pid_t pid_ = 0;
   int descriptor_ = -1;
