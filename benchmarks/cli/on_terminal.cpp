@@ -28,6 +28,11 @@ void print_outcome(const Outcome& outcome, bool quiet) {
     fmt::print(stderr, "… and {} more\n", outcome.failures.size() - kMost);
   for (const std::string& name : outcome.conflicts)
     fmt::print(stderr, "{}: its repetition gave another result\n", name);
+  if (!outcome.missing.empty())
+    fmt::print(stderr,
+               "the records of {} of {} cells have vanished while the run went on, as that of {}; "
+               "the same command runs these cells again\n",
+               outcome.missing.size(), outcome.planned, outcome.missing.front());
   if (outcome.reused_from_other_builds > 0)
     fmt::print(stderr, "{} of the reused cells were run by another build\n",
                outcome.reused_from_other_builds);
@@ -44,7 +49,8 @@ int exit_code_of(const Outcome& outcome) {
     fmt::print(stderr, "interrupted; the same command goes on where it stopped\n");
     return kInterrupted;
   }
-  return outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
+  const bool is_whole = outcome.missing.empty();
+  return is_whole && outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
 }
 
 }  // namespace isoline::benchmarks

@@ -75,7 +75,9 @@ class Chamber {
     try {
       set_library_threads(asked.threads);
       const Worker& worker = workers_[asked.slot];
-      reply.judged = instance(asked.seed).judged(worker.returned());
+      reply.judged =
+          instance(asked.seed)
+              .judged(Eigen::Map<const Vector>(worker.returned(), worker.returned_size()));
       reply.is_judged = true;
     } catch (const std::exception& error) {
       set_text(reply.failure, error.what());
@@ -90,8 +92,7 @@ class Chamber {
     constexpr std::size_t kMost = 8;
     if (const auto found = instances_.find(seed); found != instances_.end()) return *found->second;
     if (instances_.size() >= kMost) instances_.clear();
-    return *(instances_[seed] =
-                 std::make_unique<Instance>(make_problem(catalog_, problem_, seed)));
+    return *(instances_[seed] = std::make_unique<Instance>(make_problem(catalog_, problem_, seed)));
   }
 
   const Catalog& catalog_;
@@ -99,6 +100,13 @@ class Chamber {
   const std::vector<Worker>& workers_;
   std::map<std::uint64_t, std::unique_ptr<Instance>> instances_;
 };
+
+std::string how_it_ended(int wait_status) {
+  if (!WIFSIGNALED(wait_status))
+    return fmt::format("its process left with exit code {}", WEXITSTATUS(wait_status));
+  const int signal = WTERMSIG(wait_status);
+  return fmt::format("it was ended by signal {} ({})", signal, strsignal(signal));
+}
 
 // As near as two evaluations of one point by one build can be told to be; `size` is what numbers of
 // this kind are measured against.
@@ -196,16 +204,20 @@ std::string Judges::end(Judge& judge) {
   return how_it_ended(status);
 }
 
-// The question it died of is answered so; the others go to a new judge.
+// All that it was asked goes to a new judge; but a point that two have died of, or that was waited
+// for too long, is answered so.
 void Judges::lose(Judge& judge, std::string reason, std::vector<Verdict>& verdicts) {
   const std::string ended = end(judge);
-  const Question fatal = judge.open.front();
-  verdicts.push_back({fatal.slot, {}, reason.empty() ? ended : reason});
-  std::deque<Question> rest;
-  rest.swap(judge.open);
-  rest.pop_front();
-  start(judge, fatal.request->problem);
-  for (Question& question : rest) {
+  std::deque<Question> open;
+  open.swap(judge.open);
+  start(judge, open.front().request->problem);
+  if (open.front().is_asked_again || !reason.empty()) {
+    verdicts.push_back({open.front().slot, {}, reason.empty() ? ended : reason});
+    open.pop_front();
+  } else {
+    open.front().is_asked_again = true;
+  }
+  for (Question& question : open) {
     question.asked = monotonic_nanoseconds();
     send(judge, question);
   }
@@ -214,28 +226,29 @@ void Judges::lose(Judge& judge, std::string reason, std::vector<Verdict>& verdic
 std::vector<Verdict> Judges::collect() {
   std::vector<Verdict> verdicts;
   for (Judge& judge : judges_) {
-    Reply reply;
-    while (!judge.open.empty()) {
-      const ssize_t got = recv(judge.socket, &reply, sizeof reply, MSG_DONTWAIT);
-      if (got < 0 && (errno == EAGAIN || errno == EINTR)) break;
-      const bool is_answer = got == sizeof reply && reply.slot == judge.open.front().slot;
-      if (!is_answer) {
-        lose(judge, "", verdicts);
-        continue;
-      }
-      judge.open.pop_front();
-      reply.failure[Trace::kText - 1] = '\0';
-      verdicts.push_back({reply.slot,
-                          reply.is_judged ? std::optional(reply.judged) : std::nullopt,
-                          reply.failure});
-    }
+    collect(judge, verdicts);
     if (judge.open.empty()) continue;
-    const double waited =
-        1e-9 * static_cast<double>(monotonic_nanoseconds() - judge.open.front().asked);
-    if (waited > patience_seconds_)
+    const std::int64_t waited = monotonic_nanoseconds() - judge.open.front().asked;
+    if (1e-9 * static_cast<double>(waited) > patience_seconds_)
       lose(judge, fmt::format("it took more than {} s", patience_seconds_), verdicts);
   }
   return verdicts;
+}
+
+void Judges::collect(Judge& judge, std::vector<Verdict>& verdicts) {
+  Reply reply;
+  while (!judge.open.empty()) {
+    const ssize_t got = recv(judge.socket, &reply, sizeof reply, MSG_DONTWAIT);
+    if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    if (got != sizeof reply || reply.slot != judge.open.front().slot) {
+      lose(judge, "", verdicts);
+      continue;
+    }
+    judge.open.pop_front();
+    reply.failure[Trace::kText - 1] = '\0';
+    verdicts.push_back(
+        {reply.slot, reply.is_judged ? std::optional(reply.judged) : std::nullopt, reply.failure});
+  }
 }
 
 void Judges::add_to(std::vector<pollfd>& waiting) const {

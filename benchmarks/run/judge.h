@@ -53,7 +53,8 @@ class Judges {
   struct Question {
     std::size_t slot;
     const Request* request;
-    std::int64_t asked;  // monotonic nanoseconds
+    std::int64_t asked;           // monotonic nanoseconds
+    bool is_asked_again = false;  // a judge has died of it, or was killed over it
   };
   struct Judge {
     std::string problem;  // its specification
@@ -64,8 +65,9 @@ class Judges {
   Judge& judge_of(const Component& problem);
   void start(Judge& judge, const Component& problem);
   void send(Judge& judge, const Question& question);
-  std::string end(Judge& judge, bool by_force);  // how it ended
-  void lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts);
+  std::string end(Judge& judge);  // how it ended
+  void lose(Judge& judge, std::string reason, std::vector<Verdict>& verdicts);
+  void collect(Judge& judge, std::vector<Verdict>& verdicts);
 
   const Catalog& catalog_;
   const std::vector<Worker>& workers_;

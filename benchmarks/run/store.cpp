@@ -26,10 +26,6 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
   return folder / "runs" / file_name;
 }
 
-std::string file_name_of(const Request& request) {
-  return record_file_name(request.cell, build_digest(request));
-}
-
 // A file half written by a process that was killed: its name ends in ".PID.tmp".
 bool is_abandoned(const fs::path& path) {
   if (path.extension() != ".tmp") return false;
@@ -56,6 +52,21 @@ class FolderLock {
 }  // namespace
 
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
+  make_folders();
+  for (const auto& entry : fs::recursive_directory_iterator(folder_))
+    if (is_abandoned(entry.path())) fs::remove(entry.path());
+}
+
+std::string Store::name_of(const Request& request) {
+  return record_file_name(request.cell, build_digest(request));
+}
+
+bool Store::has(const Request& request) const {
+  std::error_code unreadable;
+  return fs::exists(run_path(folder_, name_of(request)), unreadable);
+}
+
+void Store::make_folders() const {
   for (const char* part : {"runs", "components", "checkpoints"}) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
@@ -63,8 +74,6 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) {
       return fmt::format("cannot create {}: {}", (folder_ / part).string(), error.message());
     });
   }
-  for (const auto& entry : fs::recursive_directory_iterator(folder_))
-    if (is_abandoned(entry.path())) fs::remove(entry.path());
 }
 
 void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells) {
@@ -81,7 +90,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
 }
 
 std::optional<Record> Store::find_in(const fs::path& folder, const Request& request) {
-  const fs::path path = run_path(folder, file_name_of(request));
+  const fs::path path = run_path(folder, name_of(request));
   if (!fs::exists(path)) return std::nullopt;
   try {
     Record record = read_record(path);
@@ -125,6 +134,17 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
+  try {
+    write_files(record);
+  } catch (const std::exception&) {
+    std::error_code unknown;
+    if (fs::is_directory(folder_ / "runs", unknown)) throw;
+    make_folders();  // they were removed while the run goes on
+    write_files(record);
+  }
+}
+
+void Store::write_files(const Record& record) const {
   const fs::path path = run_path(folder_, record.file_name());
   if (record.exhibit && record.exhibit->is_picture())
     write_pictures(*record.exhibit, fs::path(path).replace_extension(".npy"));
@@ -132,7 +152,7 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
 }
 
 fs::path Store::checkpoint_path(const Request& request) const {
-  return folder_ / "checkpoints" / fs::path(file_name_of(request)).replace_extension(".state");
+  return folder_ / "checkpoints" / fs::path(name_of(request)).replace_extension(".state");
 }
 
 void Store::remove_checkpoint(const Request& request) const {

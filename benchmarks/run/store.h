@@ -16,7 +16,6 @@ namespace isoline::benchmarks {
 
 class Store {
  public:
-  // Creates the folder where it is missing; UsageError where it cannot be.
   explicit Store(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -29,6 +28,13 @@ class Store {
   std::optional<Record> find(const Request& request) const { return find_in(folder_, request); }
   static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
 
+  // What this build calls its record of the request, and whether there is one, of whatever kind.
+  static std::string name_of(const Request& request);
+  bool has(const Request& request) const;
+
+  // Creates the folder and its rooms where they are missing; UsageError where they cannot be.
+  void make_folders() const;
+
   // Writes the record whole; times of an earlier record of the same cell and build join its own.
   void write(Record record, const std::optional<Record>& earlier);
   void write(const Sheet& sheet);
@@ -38,6 +44,8 @@ class Store {
   void remove_checkpoint(const Request& request) const;
 
  private:
+  void write_files(const Record& record) const;
+
   std::filesystem::path folder_;
 };
 

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/run/store.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/option_json.h"
@@ -49,7 +48,6 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests,
   if (rows.empty()) return;
   Json all = Json::array();
   for (const auto& [pair, row] : rows) all.push_back(row);
-  const Store made(folder);  // or a UsageError that says why it cannot be
   write_text(file, Json{{"schema", "isoline.rates/1"}, {"rows", all}}.dump() + "\n");
 }
 
