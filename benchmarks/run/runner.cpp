@@ -7,41 +7,15 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "benchmarks/run/execute.h"
+#include "benchmarks/run/interrupt_guard.h"
 #include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-
-// While it lives, Ctrl-C and a polite kill only raise a flag; a second one ends us at once.
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    interrupt_requested = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupt_requested = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
-  }
-  ~InterruptGuard() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  struct sigaction old_int_ {
-  }, old_term_{};
-};
 
 std::string title_of(const Request& request) {
   return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
@@ -65,14 +39,14 @@ class Runner {
     const auto repetitions = static_cast<std::int64_t>(pending.size());
     Progress progress(options_.progress, "cells", outcome_.reused + repetitions, outcome_.reused);
     std::size_t next = 0;
-    while (!interrupt_requested) {
+    while (!guard.is_asked()) {
       next = start_some(pending, next, progress);
       if (next == pending.size() && idle()) break;
       wait();
       collect(progress);
       progress.show();
     }
-    if (interrupt_requested) stop();
+    if (guard.is_asked()) stop();
     progress.show(outcome_.run > 0);
     return outcome_;
   }
@@ -165,23 +139,27 @@ class Runner {
   void collect(Progress& progress) {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       if (!workers_[i].is_running() || !workers_[i].poll()) continue;
-      keep(tasks_[i], workers_[i].trace());
+      keep(tasks_[i], workers_[i]);
       progress.finished();
     }
   }
 
   void stop() {
     outcome_.is_interrupted = true;
+    for (Worker& worker : workers_) worker.ask_to_stop();
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       if (!workers_[i].is_running()) continue;
       workers_[i].interrupt();
-      keep(tasks_[i], workers_[i].trace());
+      keep(tasks_[i], workers_[i]);
     }
   }
 
-  void keep(Task& task, const Trace& trace) {
-    Record record = record_of(*task.request, trace);
+  void keep(Task& task, const Worker& worker) {
+    Record record = record_of(*task.request, worker.trace());
     record.provenance.run = task.run;
+    if (options_.keeps_output) record.output = worker.output().text();
+    if (record.status == Status::crashed && record.output.empty())
+      record.output = worker.output().last_words();
     std::optional<Record> earlier = store_.find(record.request);
     if (options_.force && !repeated(record)) earlier.reset();
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
@@ -208,6 +186,7 @@ class Runner {
     if (is_failure(record.status))
       outcome_.failures.push_back(fmt::format("{}: {}: {}", title_of(record.request),
                                               name_of(record.status), record.message));
+    if (record.status == Status::interrupted) ++outcome_.interrupted;
   }
 
   const Catalog& catalog_;
@@ -223,13 +202,6 @@ class Runner {
 }  // namespace
 
 int one_a_core() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
-
-Limits limits_of(const Request& request, const Limits& standard) {
-  Limits limits = standard;
-  if (request.hard_seconds > 0) limits.hard_seconds = request.hard_seconds;
-  if (std::isfinite(request.budget.seconds)) limits.hard_seconds = 2 * request.budget.seconds;
-  return limits;
-}
 
 Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                 const RunOptions& options) {

@@ -22,7 +22,8 @@ struct RunOptions {
   double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
-  std::string command;  // for the record
+  bool keeps_output = false;  // of cells, in their records
+  std::string command;        // for the record
 };
 
 struct Outcome {
@@ -31,7 +32,8 @@ struct Outcome {
   std::vector<std::string> failures;        // "problem × optimizer, seed 0: crashed: …"
   std::vector<std::string> conflicts;       // cells whose repetition gave another result
   std::int64_t reused_from_other_builds = 0;
-  bool is_interrupted = false;
+  std::int64_t interrupted = 0;  // cells that somebody killed: the same run runs them again
+  bool is_interrupted = false;   // asked to end
 };
 
 // Runs the requests that the store has no record of, and no more.
@@ -39,8 +41,5 @@ Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, St
                 const RunOptions& options);
 
 int one_a_core();  // how many cells at a time a machine is meant for
-
-// The limits of one request: its soft time limit, doubled, is its hard one.
-Limits limits_of(const Request& request, const Limits& standard);
 
 }  // namespace isoline::benchmarks
