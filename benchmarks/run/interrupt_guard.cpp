@@ -10,15 +10,17 @@
 namespace isoline::benchmarks {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;
+constexpr std::sig_atomic_t kFinish = 1, kStop = 2;
 
-void hear(int, siginfo_t* sent, void*) {
+volatile std::sig_atomic_t heard = 0;
+
+void hear(int signal, siginfo_t* sent, void*) {
   if (sent->si_code <= 0 && is_of_a_group(sent->si_pid)) return;  // by a process, and one of ours
-  if (asked != 0) {
+  if (heard == kStop) {
     signal_all_groups(SIGKILL);
     _exit(kInterrupted);
   }
-  asked = 1;
+  heard = signal == SIGINT && heard < kFinish ? kFinish : kStop;
 }
 
 void stop_with_cells(int) {
@@ -36,7 +38,7 @@ void handle(int signal, const struct sigaction& action, struct sigaction& old) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
-  asked = 0;
+  heard = 0;
   struct sigaction hearing {};
   hearing.sa_sigaction = hear;
   hearing.sa_flags = SA_SIGINFO;
@@ -56,6 +58,9 @@ InterruptGuard::~InterruptGuard() {
   sigaction(SIGTSTP, &old_stop_, nullptr);
 }
 
-bool InterruptGuard::is_asked() const { return asked != 0; }
+Asked InterruptGuard::asked() const {
+  if (heard == kStop) return Asked::stop;
+  return heard == kFinish ? Asked::finish : Asked::nothing;
+}
 
 }  // namespace isoline::benchmarks

@@ -1,11 +1,13 @@
-// While it lives, who asks this process to end is heard in order: Ctrl-C, a polite kill or a closed
-// terminal raise a flag; the second of them ends this process and all its cells at once. Ctrl-Z
-// stops the cells too, until they all go on.
+// While it lives, who asks this process to end is heard in order. Ctrl-C asks to finish what runs;
+// a second one, a polite kill (of a scheduler, say) or a closed terminal ask to stop it; one more
+// ends this process and all its cells at once. Ctrl-Z stops the cells too, until they all go on.
 #pragma once
 
 #include <csignal>
 
 namespace isoline::benchmarks {
+
+enum class Asked { nothing, finish, stop };
 
 class InterruptGuard {
  public:
@@ -14,7 +16,7 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  bool is_asked() const;  // whether somebody asked; a cell that asks its parent is not heard
+  Asked asked() const;  // so far; a cell that asks its parent is not heard
 
  private:
   struct sigaction old_int_ {

@@ -18,7 +18,6 @@
 
 #include "benchmarks/run/captured_output.h"
 #include "benchmarks/run/child_process.h"
-#include "benchmarks/run/limits.h"
 #include "benchmarks/run/process_group.h"
 #include "benchmarks/run/shared_memory.h"
 #include "core/clock.h"
@@ -90,10 +89,13 @@ std::string end_of(int wait_status) {
 
 class Question {
  public:
-  explicit Question(double seconds)
+  Question(double seconds, std::int64_t memory_bytes)
       : seconds_(seconds),
-        watch_({.startup_seconds = seconds, .hard_seconds = seconds, .idle_seconds = seconds}, 1,
-               monotonic_nanoseconds()) {}
+        watch_({.startup_seconds = seconds,
+                .hard_seconds = seconds,
+                .idle_seconds = seconds,
+                .memory_bytes = memory_bytes},
+               1, monotonic_nanoseconds()) {}
   ~Question() {
     for (const int end : {read_end_, write_end_})
       if (end >= 0) close(end);
@@ -172,9 +174,10 @@ class Question {
 
 }  // namespace
 
-IsolatedText isolated_text(const std::function<std::string()>& work, double seconds) {
+IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
+                           std::int64_t memory_bytes) {
   try {
-    Question question(seconds);
+    Question question(seconds, memory_bytes);
     question.ask(work);
     return question.wait();
   } catch (const std::runtime_error& error) {  // of the system, out of processes or of files

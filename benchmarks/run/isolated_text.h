@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "benchmarks/run/limits.h"
+
 namespace isoline::benchmarks {
 
 // What work in a child process came to: its text, or why there is none.
@@ -14,6 +16,7 @@ struct IsolatedText {
 };
 
 // Ended after so many seconds of processor time, or of idleness, or five times as many in all.
-IsolatedText isolated_text(const std::function<std::string()>& work, double seconds);
+IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
+                           std::int64_t memory_bytes = Limits{}.memory_bytes);
 
 }  // namespace isoline::benchmarks

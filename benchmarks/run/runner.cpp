@@ -12,6 +12,7 @@
 
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/interrupt_guard.h"
+#include "benchmarks/run/prediction.h"
 #include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
@@ -30,7 +31,8 @@ class Runner {
         options_(options),
         jobs_(options.exclusive ? 1 : options.jobs),
         workers_(static_cast<std::size_t>(jobs_)),
-        tasks_(workers_.size()) {}
+        tasks_(workers_.size()),
+        predictions_(catalog, store.folder()) {}
 
   Outcome run(const std::vector<Request>& requests) {
     const InterruptGuard guard;
@@ -39,14 +41,14 @@ class Runner {
     const auto repetitions = static_cast<std::int64_t>(pending.size());
     Progress progress(options_.progress, "cells", outcome_.reused + repetitions, outcome_.reused);
     std::size_t next = 0;
-    while (!guard.is_asked()) {
+    while (guard.asked() == Asked::nothing) {
       next = start_some(pending, next, progress);
       if (next == pending.size() && idle()) break;
       wait();
       collect(progress);
       progress.show();
     }
-    if (guard.is_asked()) stop();
+    if (guard.asked() != Asked::nothing) stop();
     progress.show(outcome_.run > 0);
     return outcome_;
   }
@@ -106,7 +108,7 @@ class Runner {
             execute(catalog_, request, trace, checkpoint_of(request), nullptr,
                     options_.perturbation);
           },
-          limits_of(request, options_.limits), request.threads);
+          limits_of(request, options_.limits, predictions_.of(request)), request.threads);
     }
     return next;
   }
@@ -195,6 +197,7 @@ class Runner {
   int jobs_;
   std::vector<Worker> workers_;
   std::vector<Task> tasks_;
+  Predictions predictions_;
   std::set<std::string> seen_;
   Outcome outcome_;
 };
