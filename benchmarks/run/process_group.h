@@ -2,8 +2,8 @@
 // and reaped together. What descends cannot get away by a session of its own or by outliving its
 // parent: this process is a subreaper, and every descendant carries the mark of its group.
 //
-// A process that kills itself free by the same user's rights is out of reach: one that ends this
-// process by SIGKILL ends the run. docs/isolation.md says what holds and what does not.
+// What has its user's rights can still end this process by SIGKILL; docs/running-a-matrix.md says
+// what holds and what does not.
 #pragma once
 
 #include <sys/types.h>
