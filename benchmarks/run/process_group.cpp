@@ -97,14 +97,21 @@ void ProcessGroup::start(const std::function<void()>& work) {
   descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
 }
 
-// Descendants whose parents have ended became children of this process.
-std::vector<pid_t> ProcessGroup::strays() const {
+// Descendants whose parents have ended became children of this process. Those that have ended too
+// are reaped at once.
+std::vector<pid_t> ProcessGroup::strays() {
   std::vector<pid_t> children = children_of(getpid());
-  std::erase_if(children, [&](pid_t child) { return is_leader(child) || mark_of(child) != mark_; });
+  std::erase_if(children, [&](pid_t child) {
+    if (is_leader(child) || mark_of(child) != mark_) return true;
+    rusage used{};
+    if (wait4(child, nullptr, WNOHANG, &used) <= 0) return false;
+    reaped_seconds_ += seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
+    return true;
+  });
   return children;
 }
 
-std::vector<pid_t> ProcessGroup::members() const {
+std::vector<pid_t> ProcessGroup::members() {
   std::vector<pid_t> all = strays();
   if (is_running()) all.push_back(leader_);
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -122,6 +129,7 @@ ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
     usage.processor_seconds += figures->processor_seconds;
     usage.resident_bytes += figures->resident_bytes;
   }
+  if (all.size() > 1 && !control_) gather(all);
   if (all.size() > 1 && usage.resident_bytes > exact_above_bytes) {  // what they share counts once
     std::int64_t exact = 0;
     for (const pid_t process : all) exact += proportional_bytes(process);
@@ -131,14 +139,22 @@ ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
   return usage;
 }
 
+// A cell of one process, as nearly all are, is not worth the time that this takes.
+void ProcessGroup::gather(const std::vector<pid_t>& members) {
+  control_ = ControlGroup::make(mark_);
+  if (!control_) return;
+  for (const pid_t process : members) control_->take(process);
+}
+
 void ProcessGroup::ask_to_end() const {
   ::kill(leader_, SIGTERM);
   ::kill(leader_, SIGCONT);  // a stopped one would not hear
 }
 
-void ProcessGroup::kill() const {
+void ProcessGroup::kill() {
   ::kill(-leader_, SIGKILL);
   ::kill(leader_, SIGKILL);  // it may have moved to another group
+  if (control_) control_->kill();
   for (const pid_t stray : strays()) ::kill(stray, SIGKILL);
 }
 
@@ -152,7 +168,9 @@ std::optional<ProcessGroup::End> ProcessGroup::collect() {
   rusage used{};
   wait4(leader_, &end.wait_status, 0, &used);
   leave_table();
+  if (control_) control_->kill();
   reap_strays();
+  control_.reset();
   end.peak_memory_bytes = std::max(std::int64_t{used.ru_maxrss} * 1024, peak_bytes_);
   return end;
 }
@@ -168,19 +186,12 @@ void ProcessGroup::leave_table() {
 // kernel cannot end, as one that waits for a dead network disk, is left to it after a while.
 void ProcessGroup::reap_strays() {
   constexpr std::int64_t kMostNanoseconds = 5'000'000'000;
-  constexpr useconds_t kMicroseconds = 500;
+  constexpr useconds_t kMicroseconds = 200;
   const std::int64_t begin = monotonic_nanoseconds();
   for (std::vector<pid_t> left = strays(); !left.empty(); left = strays()) {
     for (const pid_t stray : left) ::kill(stray, SIGKILL);
-    bool has_reaped = false;
-    for (const pid_t stray : left) {
-      rusage used{};
-      if (wait4(stray, nullptr, WNOHANG, &used) <= 0) continue;
-      has_reaped = true;
-      reaped_seconds_ += seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
-    }
     if (monotonic_nanoseconds() - begin > kMostNanoseconds) return;
-    if (!has_reaped) usleep(kMicroseconds);
+    usleep(kMicroseconds);
   }
 }
 

@@ -10,8 +10,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
+
+#include "benchmarks/run/control_group.h"
 
 namespace isoline::benchmarks {
 
@@ -41,13 +44,14 @@ class ProcessGroup {
 
   Usage usage(std::int64_t exact_above_bytes);  // memory is shared out exactly where it is more
   void ask_to_end() const;                      // the child alone: the others end with it
-  void kill() const;                            // all, at once; to be collected as any that ended
+  void kill();                                  // all, at once; to be collected as any that ended
   // How the child ended, once it has and all that it left behind is killed and reaped.
   std::optional<End> collect();
 
  private:
-  std::vector<pid_t> strays() const;
-  std::vector<pid_t> members() const;
+  std::vector<pid_t> strays();
+  std::vector<pid_t> members();
+  void gather(const std::vector<pid_t>& members);
   void reap_strays();
   void leave_table();
 
@@ -55,6 +59,7 @@ class ProcessGroup {
   int descriptor_ = -1;
   std::size_t slot_ = 0;
   std::uint64_t mark_ = 0;
+  std::unique_ptr<ControlGroup> control_;  // once they are many
   double reaped_seconds_ = 0;
   std::int64_t peak_bytes_ = 0;
 };

@@ -88,6 +88,31 @@ TEST_F(Descendants, OfDescendantsEndToo) {
   EXPECT_TRUE(children_of(getpid()).empty());
 }
 
+// A comet: every process starts the next in a session of its own, and ends.
+TEST_F(Descendants, ThatNeverStandStillEndToo) {
+  Worker worker;
+  worker.start(
+      [](Trace& trace) {
+        if (fork() == 0) {
+          setsid();
+          for (;;) {
+            if (fork() != 0) _exit(0);
+            setsid();
+            ++told();
+          }
+        }
+        while (told() < 100) usleep(1000);
+        trace.status = Status::budget;
+      },
+      {}, 1);
+  while (!worker.poll()) usleep(1000);
+  EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
+  const int last = told();
+  usleep(100'000);
+  EXPECT_EQ(told(), last) << "it flies on";
+  EXPECT_TRUE(children_of(getpid()).empty());
+}
+
 TEST_F(Descendants, SpendTheProcessorTimeOfTheirCell) {
   Worker worker;
   worker.start(
