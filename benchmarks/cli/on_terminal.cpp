@@ -49,6 +49,11 @@ int exit_code_of(const Outcome& outcome) {
     fmt::print(stderr, "interrupted; the same command goes on where it stopped\n");
     return kInterrupted;
   }
+  if (outcome.interrupted > 0) {
+    fmt::print(stderr, "{} of the cells were killed by others; the same command runs them again\n",
+               outcome.interrupted);
+    return kInterrupted;
+  }
   const bool is_whole = outcome.missing.empty();
   return is_whole && outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
 }

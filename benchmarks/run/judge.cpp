@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -61,6 +60,9 @@ class Chamber {
       : catalog_(catalog), problem_(problem), workers_(workers) {}
 
   [[noreturn]] void serve(int socket) {
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // what a problem prints here
+    if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0)
+      _exit(1);
     Asked asked;
     while (recv(socket, &asked, sizeof asked, 0) == sizeof asked) {
       const Reply reply = reply_to(asked);
@@ -164,8 +166,7 @@ Judges::Judge& Judges::judge_of(const Component& problem) {
     end(*idle);
     judges_.erase(std::next(idle).base());
   }
-  judges_.push_front({.problem = problem.spec});
-  start(judges_.front(), problem);
+  start(judges_.emplace_front(problem.spec), problem);
   return judges_.front();
 }
 
@@ -173,16 +174,10 @@ void Judges::start(Judge& judge, const Component& problem) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::runtime_error(fmt::format("no socket to a judge: {}", std::strerror(errno)));
-  const pid_t parent = getpid();
-  judge.pid = fork();
-  if (judge.pid < 0)
-    throw std::runtime_error(fmt::format("cannot start a process: {}", std::strerror(errno)));
-  if (judge.pid == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);
+  judge.group.start([&] {
     close(ends[0]);
     Chamber(catalog_, problem, workers_).serve(ends[1]);
-  }
+  });
   close(ends[1]);
   judge.socket = ends[0];
 }
@@ -196,12 +191,12 @@ void Judges::send(Judge& judge, const Question& question) {
 
 // A judge holds nothing that could be lost.
 std::string Judges::end(Judge& judge) {
-  kill(judge.pid, SIGKILL);
-  int status = 0;
-  while (waitpid(judge.pid, &status, 0) < 0 && errno == EINTR) {
-  }
+  judge.group.kill();
+  std::optional<ProcessGroup::End> end;
+  for (pollfd ending{judge.group.descriptor(), POLLIN, 0}; !end; end = judge.group.collect())
+    poll(&ending, 1, -1);
   close(judge.socket);
-  return how_it_ended(status);
+  return how_it_ended(end->wait_status);
 }
 
 // All that it was asked goes to a new judge; but a point that two have died of, or that was waited

@@ -13,6 +13,7 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
+#include "benchmarks/run/process_group.h"
 
 namespace isoline::benchmarks {
 
@@ -58,7 +59,7 @@ class Judges {
   };
   struct Judge {
     std::string problem;  // its specification
-    pid_t pid = 0;
+    ProcessGroup group = {};
     int socket = -1;
     std::deque<Question> open = {};
   };

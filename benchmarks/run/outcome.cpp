@@ -10,6 +10,7 @@ void Outcome::count(const Record& record) {
   if (is_failure(record.status))
     failures.push_back(fmt::format("{}: {}: {}", title_of(record.request), name_of(record.status),
                                    record.message));
+  if (record.status == Status::interrupted) ++interrupted;
 }
 
 std::string title_of(const Request& request) {

@@ -17,7 +17,8 @@ struct Outcome {
   std::vector<std::string> conflicts;       // cells whose repetition gave another result
   std::vector<std::string> missing;         // cells that were done and whose record is gone
   std::int64_t reused_from_other_builds = 0;
-  bool is_interrupted = false;
+  std::int64_t interrupted = 0;  // cells that somebody killed: the same run runs them again
+  bool is_interrupted = false;   // asked to end
 
   void count(const Record& record);
 };

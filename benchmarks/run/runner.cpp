@@ -7,44 +7,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "benchmarks/run/execute.h"
+#include "benchmarks/run/interrupt_guard.h"
 #include "benchmarks/run/judge.h"
 #include "benchmarks/run/pending.h"
+#include "benchmarks/run/prediction.h"
 #include "core/clock.h"
 #include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-volatile std::sig_atomic_t interrupt_requested = 0;
-enum class Asked { nothing, finish, stop };
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    interrupt_requested = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupt_requested = interrupt_requested + 1; };
-    sigaction(SIGINT, &action, &old_int_);
-    action.sa_handler = [](int) { interrupt_requested = 2; };
-    sigaction(SIGTERM, &action, &old_term_);
-  }
-  Asked asked() const { return static_cast<Asked>(std::min(2, static_cast<int>(interrupt_requested))); }
-  ~InterruptGuard() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  struct sigaction old_int_ {
-  }, old_term_{};
-};
 
 constexpr double kJudgeSeconds = 300;  // that a point may take, its problem made afresh
 
@@ -57,7 +32,8 @@ class Runner {
         jobs_(options.exclusive ? 1 : options.jobs),
         workers_(static_cast<std::size_t>(jobs_)),
         tasks_(workers_.size()),
-        judges_(catalog, workers_, kJudgeSeconds) {}
+        judges_(catalog, workers_, kJudgeSeconds),
+        predictions_(catalog, store.folder()) {}
 
   Outcome run(const std::vector<Request>& requests) {
     const InterruptGuard guard;
@@ -103,7 +79,7 @@ class Runner {
                     options_.perturbation);
             workers_[i].keep_returned(returned);
           },
-          limits_of(*request, options_.limits), request->threads);
+          limits_of(*request, options_.limits, predictions_.of(*request)), request->threads);
     }
   }
 
@@ -175,8 +151,9 @@ class Runner {
   void stop() {
     constexpr std::int64_t kGrace = 3'000'000'000;  // nanoseconds
     outcome_.is_interrupted = true;
-    for (std::size_t i = 0; i < workers_.size(); ++i)
-      if (workers_[i].is_running()) workers_[i].interrupt();
+    for (Worker& worker : workers_) worker.ask_to_stop();
+    for (Worker& worker : workers_)
+      if (worker.is_running()) worker.interrupt();
     Progress silent(Progress::Style::silent, "", 0, 0);
     const std::int64_t last = monotonic_nanoseconds() + kGrace;
     for (collect(silent); !is_idle() && monotonic_nanoseconds() < last; collect(silent)) wait();
@@ -184,15 +161,18 @@ class Runner {
 
   void keep(std::size_t slot, Progress& progress) {
     const Request& request = *tasks_[slot].request;
-    keep(tasks_[slot], workers_[slot].trace());
+    keep(tasks_[slot], workers_[slot]);
     pending_->release(request);
     tasks_[slot] = {};
     progress.finished();
   }
 
-  void keep(Task& task, const Trace& trace) {
-    Record record = record_of(*task.request, trace);
+  void keep(Task& task, const Worker& worker) {
+    Record record = record_of(*task.request, worker.trace());
     record.provenance.run = task.run;
+    if (options_.keeps_output) record.output = worker.output().text();
+    if (record.status == Status::crashed && record.output.empty())
+      record.output = worker.output().last_words();
     std::optional<Record> earlier = store_.find(record.request);
     const bool is_redone = options_.force || (earlier && options_.retry.contains(earlier->status));
     if (is_redone && !repeated(record)) earlier.reset();
@@ -223,6 +203,7 @@ class Runner {
   std::vector<Task> tasks_;
   Judges judges_;
   Pending* pending_ = nullptr;  // of the plan that is run
+  Predictions predictions_;
   std::set<std::string> seen_;
   bool has_told_ = false;  // that it is finishing
   Outcome outcome_;
@@ -231,13 +212,6 @@ class Runner {
 }  // namespace
 
 int one_a_core() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
-
-Limits limits_of(const Request& request, const Limits& standard) {
-  Limits limits = standard;
-  if (request.hard_seconds > 0) limits.hard_seconds = request.hard_seconds;
-  if (std::isfinite(request.budget.seconds)) limits.hard_seconds = 2 * request.budget.seconds;
-  return limits;
-}
 
 Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                 const RunOptions& options) {

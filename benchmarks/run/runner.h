@@ -24,7 +24,8 @@ struct RunOptions {
   double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
-  std::string command;  // for the record
+  bool keeps_output = false;  // of cells, in their records
+  std::string command;        // for the record
 };
 
 // Runs the requests that the store has no record of, and no more. Several processes may run into
@@ -33,8 +34,5 @@ Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, St
                 const RunOptions& options);
 
 int one_a_core();  // how many cells at a time a machine is meant for
-
-// The limits of one request: its soft time limit, doubled, is its hard one.
-Limits limits_of(const Request& request, const Limits& standard);
 
 }  // namespace isoline::benchmarks
