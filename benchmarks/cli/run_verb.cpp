@@ -17,6 +17,7 @@
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/used_rates.h"
 #include "core/spec.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 
@@ -136,7 +137,8 @@ int run_verb(const RunArguments& given, Session& session) {
     return kGood;
   }
   require_sound(catalog, all.requests);
-  write_used_rates(all.rates, all.requests, all.folder);
+  for (const std::string& remark : write_used_rates(all.rates, all.requests, all.folder))
+    say(stderr, remark + "\n");
   const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options);
   print_outcome(outcome, given.quiet);
   if (!given.no_report) report_on(all.folder, given.quiet, session);

@@ -44,7 +44,9 @@ Outcome run_plan(const Catalog& catalog, const std::string& name,
   Store store(folder);
   store.plan(name, planned_cells(requests));
   write_sheets(catalog, requests, store);
-  return run_all(catalog, requests, store, options);
+  Outcome outcome = run_all(catalog, requests, store, options);
+  outcome.remarks = store.remarks();
+  return outcome;
 }
 
 std::string folder_name_of(const std::vector<Request>& requests, const std::string& title) {

@@ -30,6 +30,7 @@ struct Outcome {
   std::map<Status, std::int64_t> statuses;  // of all planned cells that have a record
   std::vector<std::string> failures;        // "problem × optimizer, seed 0: crashed: …"
   std::vector<std::string> conflicts;       // cells whose repetition gave another result
+  std::vector<std::string> remarks;         // damaged files, sheets that could not be made
   std::int64_t reused_from_other_builds = 0;
   bool is_interrupted = false;
 };
