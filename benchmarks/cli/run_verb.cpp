@@ -16,6 +16,7 @@
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/soundness.h"
 #include "core/spec.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 

@@ -45,13 +45,14 @@ Outcome run_plan(const Catalog& catalog, const std::string& name,
   require_sound(catalog, requests);
   Store store(folder);
   store.plan(name, planned_cells(requests));
-  write_used_rates(rates, requests, folder);
+  write_used_rates(rates, requests, store);
   write_sheets(catalog, requests, store);
   Outcome outcome = run_all(catalog, requests, store, options);
   if (!outcome.missing.empty()) {
     store.make_folders();
     store.plan(name, planned_cells(requests));
   }
+  outcome.remarks = store.remarks();
   return outcome;
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/digest.h"
+#include "core/json.h"
 #include "core/option_json.h"
 #include "core/records/request_fields.h"
 
@@ -21,7 +22,7 @@ std::string cell_digest(const Request& request) {
                    {"seed", request.seed},
                    {"budget", std::move(budget)},
                    {"threads", request.threads}};
-  return digest(asked.dump());
+  return digest(json_text(asked));
 }
 
 Request named(Request request) {
@@ -38,7 +39,7 @@ Json to_json(const Request& request) {
 Request request_from_json(const Json& json) {
   JsonReader reader;
   Request request;
-  Form<Request>::read(reader.parse(json.dump(), "a request"), request);
+  Form<Request>::read(reader.parse(json_text(json), "a request"), request);
   return named(std::move(request));
 }
 

@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "core/files.h"
-#include "core/json.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {
@@ -54,13 +52,6 @@ TEST(Text, EscapeSequencesAndTurnedDirectionsAreMadeVisible) {
     EXPECT_EQ(printable(text), text);
 }
 
-TEST(Text, JsonThatIsShownIsTheSameJson) {
-  const Json json = {{"message", "\x1b[2J \u009b \x7f \u202e \n \" \\ θ"}};
-  const std::string shown = printable(json_text(json));
-  EXPECT_EQ(Json::parse(shown), json);
-  EXPECT_EQ(shown.find('\x7f'), std::string::npos);
-}
-
 TEST(Text, IsSaidPrintable) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "said";
@@ -76,12 +67,6 @@ TEST(Text, ThatCannotBeWrittenIsAnError) {
   std::setvbuf(full, nullptr, _IONBF, 0);
   EXPECT_THROW(say(full, "text"), std::exception);
   std::fclose(full);
-}
-
-// Whatever a component says or a path is made of, JSON is written of it.
-TEST(Json, IsWrittenOfTextThatIsNoUtf8) {
-  EXPECT_EQ(json_text(Json{{"message", "x\xff"}}), "{\"message\":\"x\uFFFD\"}");
-  EXPECT_EQ(json_text(Json(std::string("cut \xCE"))), "\"cut \uFFFD\"");
 }
 
 }  // namespace
