@@ -221,14 +221,15 @@ IsolatedText judged(int wait_status, std::string text) {
 
 }  // namespace
 
-IsolatedText isolated_text(const std::function<std::string()>& work, double seconds) {
+IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
+                           std::int64_t memory_bytes) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     return {{}, fmt::format("no pipe to it could be made: {}", strerror(errno))};
   std::fflush(nullptr);
   const pid_t parent = getpid(), child = fork();
   if (child == 0) {
-    confine(parent, Limits{}.memory_bytes);
+    confine(parent, memory_bytes);
     close(ends[0]);
     write_and_exit(work, ends[1]);
   }

@@ -53,6 +53,7 @@ struct IsolatedText {
   std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
 };
 
-IsolatedText isolated_text(const std::function<std::string()>& work, double seconds);
+IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
+                           std::int64_t memory_bytes = Limits{}.memory_bytes);
 
 }  // namespace isoline::benchmarks

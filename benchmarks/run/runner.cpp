@@ -9,10 +9,10 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "benchmarks/run/execute.h"
+#include "benchmarks/run/same_result.h"
 #include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
@@ -91,7 +91,7 @@ class Runner {
     for (const Request& request : requests) {
       if (earlier && is_reused(request, *earlier)) continue;
       std::optional<Record> done = store_.find(request);
-      if (options_.force) done.reset();
+      if (is_repeated_anyway(done)) done.reset();
       const std::size_t have = done ? done->repeat_wall_seconds.size() : 0;
       const bool is_timed = !done || done->status != Status::inapplicable;
       const auto wanted = static_cast<std::size_t>(is_timed ? options_.repeat : 1);
@@ -109,10 +109,15 @@ class Runner {
     return pending;
   }
 
+  // Whether the record that is there stands in nobody's way.
+  bool is_repeated_anyway(const std::optional<Record>& done) const {
+    return options_.force || (done && options_.retry.contains(done->status));
+  }
+
   bool is_reused(const Request& request, const RecordsOfAnyBuild& earlier) {
     if (store_.find(request)) return false;  // by this build
     const std::optional<Record> done = earlier.find(request);
-    if (!done) return false;
+    if (!done || is_repeated_anyway(done)) return false;
     ++outcome_.reused;
     ++outcome_.reused_from_other_builds;
     count(*done);
@@ -183,7 +188,7 @@ class Runner {
     Record record = record_of(*task.request, trace);
     record.provenance.run = task.run;
     std::optional<Record> earlier = store_.find(record.request);
-    if (options_.force && !repeated(record)) earlier.reset();
+    if (is_repeated_anyway(earlier) && !repeated(record)) earlier.reset();
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
         !same_result(*earlier, record))
       outcome_.conflicts.push_back(title_of(*task.request));
@@ -195,13 +200,6 @@ class Runner {
 
   // Whether an earlier repetition of this cell ran within this very call.
   bool repeated(const Record& record) { return !seen_.insert(record.cell).second; }
-
-  static bool same_result(const Record& a, const Record& b) {
-    Json left = without_timings(to_json(a)), right = without_timings(to_json(b));
-    left.erase("provenance");
-    right.erase("provenance");
-    return left == right;
-  }
 
   void count(const Record& record) {
     ++outcome_.statuses[record.status];
