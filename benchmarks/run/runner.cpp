@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "benchmarks/run/execute.h"
@@ -15,8 +14,10 @@
 #include "benchmarks/run/judge.h"
 #include "benchmarks/run/pending.h"
 #include "benchmarks/run/prediction.h"
+#include "benchmarks/run/same_result.h"
 #include "core/clock.h"
 #include "core/records/provenance.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -89,7 +90,8 @@ class Runner {
       return;
     const auto running =
         std::ranges::count_if(tasks_, [](const Task& task) { return task.request; });
-    fmt::print(stderr, "\nfinishing {} running cells; Ctrl-C again stops them now\n", running);
+    say(stderr,
+        fmt::format("\nfinishing {} running cells; Ctrl-C again stops them now\n", running));
   }
 
   Checkpoint checkpoint_of(const Request& request) const {
@@ -187,13 +189,6 @@ class Runner {
 
   // Whether an earlier repetition of this cell ran within this very call.
   bool repeated(const Record& record) { return !seen_.insert(record.cell).second; }
-
-  static bool same_result(const Record& a, const Record& b) {
-    Json left = without_timings(to_json(a)), right = without_timings(to_json(b));
-    left.erase("provenance");
-    right.erase("provenance");
-    return left == right;
-  }
 
   const Catalog& catalog_;
   Store& store_;

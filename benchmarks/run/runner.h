@@ -17,9 +17,9 @@ struct RunOptions {
   int jobs = 1;
   bool force = false;           // repeat cells that are done
   bool reuse = false;           // a cell that another build has done counts as done
+  std::set<Status> retry = {};  // cells that ended so are repeated
   bool exclusive = false;       // one at a time, for tables of wall time
   int repeat = 1;               // timings wanted of each cell
-  std::set<Status> retry = {};  // cells that ended so are repeated
   Limits limits;
   double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results

@@ -114,9 +114,7 @@ class KilledRuns : public testing::Test {
                                   .budget = {.iterations = 20}}}};
     requests = expand(catalog, suite, {});
   }
-  Outcome run(const fs::path& out) {
-    return run_plan(catalog, "test", requests, out, {.jobs = 2});
-  }
+  Outcome run(const fs::path& out) { return run_plan(catalog, "test", requests, out, {.jobs = 2}); }
   pid_t run_apart() {
     const pid_t child = fork();
     if (child == 0) {
