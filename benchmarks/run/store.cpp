@@ -24,8 +24,6 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
   return folder / "runs" / file_name;
 }
 
-}
-
 // Held while the plan is read and written: two runs may share a folder.
 class FolderLock {
  public:
