@@ -135,18 +135,7 @@ TEST_F(LimitsOfCells, LetNeighboursBeAsManyAsTheyLike) {
   }
 }
 
-// A run in a process of its own, so that a cell may stop or end that.
-class Parents : public HostileCells {
- protected:
-  pid_t run_apart(const std::vector<Request>& requests) {
-    const pid_t child = fork();
-    if (child == 0) {
-      run_all(catalog, requests, store, options);
-      _exit(0);
-    }
-    return child;
-  }
-};
+class Parents : public HostileCells {};
 
 TEST_F(Parents, ThatAreStoppedByACellGoOnWhenContinued) {
   options.jobs = 2;
