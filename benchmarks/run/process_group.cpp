@@ -147,11 +147,13 @@ void ProcessGroup::gather(const std::vector<pid_t>& members) {
 }
 
 void ProcessGroup::ask_to_end() const {
+  if (!is_running()) return;
   ::kill(leader_, SIGTERM);
   ::kill(leader_, SIGCONT);  // a stopped one would not hear
 }
 
 void ProcessGroup::kill() {
+  if (!is_running()) return;  // 0 would mean the group that this process is in
   ::kill(-leader_, SIGKILL);
   ::kill(leader_, SIGKILL);  // it may have moved to another group
   if (control_) control_->kill();

@@ -104,11 +104,19 @@ struct Hostile {
     if (misdeed == "nan") theta.setConstant(std::nan(""));
     if (misdeed == "overask") s.at.jacobian();
     if (misdeed == "crowd") crowd(3, 300);
-    if (misdeed == "sleep")
+    if (misdeed == "sleep") {
+      told() = 1;
       for (;;) pause();
-    if (misdeed == "spin")
+    }
+    if (misdeed == "spin") {
+      told() = 1;
       for (volatile bool go_on = true; go_on;) {
       }
+    }
+    if (misdeed == "linger") {
+      told() = 1;
+      usleep(20'000);
+    }
     if (misdeed == "hoard")
       for (;;) {
         constexpr std::size_t kPiece = std::size_t{64} << 20;
@@ -120,9 +128,9 @@ struct Hostile {
 inline void fields(Hostile& o, auto& field) {
   field(
       "misdeed", o.misdeed,
-      Choices{"throw",  "throw-int", "segfault", "abort",       "complain",   "exit",  "kill",
-              "nan",    "overask",   "crowd",    "sleep",       "spin",       "hoard", "terminate",
-              "resize", "daemon",    "chatter",  "stop-parent", "end-parent", "none"},
+      Choices{"throw",  "throw-int", "segfault", "abort",       "complain",   "exit",   "kill",
+              "nan",    "overask",   "crowd",    "sleep",       "spin",       "hoard",  "terminate",
+              "resize", "daemon",    "chatter",  "stop-parent", "end-parent", "linger", "none"},
       "what it does after two good steps");
 }
 

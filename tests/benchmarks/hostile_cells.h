@@ -21,6 +21,15 @@ class HostileCells : public testing::Test {
     ran = run_all(catalog, {request}, store, options);
     return record_of(request);
   }
+  // In a process of its own, which a test may interrupt, or a cell stop.
+  pid_t run_apart(const std::vector<Request>& requests) {
+    const pid_t runner = fork();
+    if (runner == 0) {
+      run_all(catalog, requests, store, options);
+      _exit(0);
+    }
+    return runner;
+  }
   // Also of a run that is to be run again.
   Record record_of(const Request& request) const {
     for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "runs"))
