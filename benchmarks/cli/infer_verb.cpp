@@ -3,7 +3,7 @@
 
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/trained.h"
 #include "core/errors.h"
 #include "core/records/number_file.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/prices.h"
 #include "benchmarks/run/sheets.h"
 #include "core/errors.h"
