@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
@@ -25,9 +26,10 @@ struct Side {
 };
 
 Side side_of(const fs::path& path) {
-  require(fs::exists(path),
+  require(is_there(path),
           [&] { return fmt::format("no result folder, baseline or report: {}", path.string()); });
-  return {path, fs::is_directory(path) ? Json() : read_json(path)};
+  std::error_code unknown;
+  return {path, fs::is_directory(path, unknown) ? Json() : read_json(path)};
 }
 
 void remark_on(const Study& study, const std::filesystem::path& path,
@@ -44,15 +46,11 @@ void remark_on(const Study& study, const std::filesystem::path& path,
 
 // Of the baselines in a folder, ordered by name; what is none is left out.
 std::vector<Headline> headlines_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".json") files.push_back(entry.path());
-  std::ranges::sort(files);
   std::vector<Headline> all;
-  for (const fs::path& file : files) try {
-      Baseline baseline = baseline_from_json(read_json(file));
-      baseline.headline.label = file.stem().string();
+  for (const fs::path name : names_in(folder)) try {
+      if (name.extension() != ".json") continue;
+      Baseline baseline = baseline_from_json(read_json(folder / name));
+      baseline.headline.label = name.stem().string();
       all.push_back(std::move(baseline.headline));
     } catch (const UsageError&) {  // of a time before this schema
     }

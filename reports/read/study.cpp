@@ -20,34 +20,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> json_files(const fs::path& folder) {
+// Which stand there under such a name, whatever they are; where that cannot be told, why.
+std::vector<fs::path> json_files(const fs::path& folder, std::vector<Unreadable>& unreadable) {
   std::vector<fs::path> files;
-  if (!fs::is_directory(folder)) return files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  try {
+    for (const std::string& name : names_in(folder))
+      if (name.ends_with(".json")) files.push_back(folder / name);
+  } catch (const UsageError& error) {
+    unreadable.push_back({folder, error.what()});
+  }
   return files;
-}
-
-void require_equal_columns(const Record& record) {
-  const Curve& curve = record.curve;
-  const std::size_t points = curve.iteration.size();
-  for (const std::size_t size :
-       {curve.work.size(), curve.wall_seconds.size(), curve.processor_seconds.size(),
-        curve.loss.size(), curve.x_error.size(), curve.gradient_norm.size(),
-        curve.step_norm.size()})
-    require(size == points, "the columns of its curve differ in length");
-  if (!record.hits) return;
-  const Hits& hits = *record.hits;
-  for (const std::size_t size : {hits.work.size(), hits.target.size(), hits.wall_seconds.size()})
-    require(size == hits.iteration.size(), "the columns of its hits differ in length");
 }
 
 // The record, or why it is none.
 std::string read_into(Record& record, const fs::path& file) {
   try {
     record = read_record(file);
-    require_equal_columns(record);
     return "";
   } catch (const std::exception& error) {
     return error.what();
@@ -82,8 +70,9 @@ void keep_newest(Study& study, Places& place, std::size_t index) {
 
 void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener) {
   std::vector<fs::path> files;
-  for (const fs::path& folder : folders)
-    for (fs::path& file : json_files(folder / "runs")) files.push_back(std::move(file));
+  for (const fs::path folder : folders)
+    for (fs::path& file : json_files(folder / "runs", study.unreadable))
+      files.push_back(std::move(file));
   std::vector<std::string> reasons(files.size());
   study.runs.resize(files.size());
   share(
@@ -104,7 +93,7 @@ void read_runs(Study& study, const std::vector<std::string>& folders, const List
 }
 
 void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& known) {
-  for (const fs::path& file : json_files(folder / "components")) try {
+  for (const fs::path& file : json_files(folder / "components", study.unreadable)) try {
       Sheet sheet = sheet_from_text(read_text(file), file.string());
       if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
     } catch (const std::exception& error) {
@@ -114,7 +103,7 @@ void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& kn
 
 void read_plan(Study& study, const fs::path& folder, std::set<std::string>& known) {
   const fs::path file = folder / "plan.json";
-  if (fs::exists(file)) try {
+  if (is_there(file)) try {
       Plan plan = plan_from_text(read_text(file), file.string());
       for (std::string& suite : plan.suites)
         if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
@@ -128,7 +117,7 @@ void read_plan(Study& study, const fs::path& folder, std::set<std::string>& know
 
 void read_audit(Study& study, const fs::path& folder) {
   const fs::path file = folder / "audit.json";
-  if (fs::exists(file)) try {
+  if (is_there(file)) try {
       for (AuditedOptimizer& audited : audit_from_json(read_json(file)))
         if (std::ranges::find(study.audits, audited.name, &AuditedOptimizer::name) ==
             study.audits.end())
@@ -150,12 +139,12 @@ void read_rates_of(Study& study, const fs::path& folder) {
 
 std::optional<Exhibit> Study::pictures_of(const Record& record) const {
   Exhibit exhibit = *record.exhibit;
-  for (const fs::path& folder : folders) {
+  for (const fs::path folder : folders) {
     const fs::path file = (folder / "runs" / record.file_name()).replace_extension(".npy");
-    if (fs::exists(file)) try {
+    if (is_there(file)) try {
         read_pictures(exhibit, file);
         return exhibit;
-      } catch (const UsageError&) {
+      } catch (const std::exception&) {
         return std::nullopt;
       }
   }
@@ -163,12 +152,14 @@ std::optional<Exhibit> Study::pictures_of(const Record& record) const {
 }
 
 Study read_study(const std::vector<std::string>& folders, const Listener& listener) {
-  for (const fs::path& folder : folders)
-    require(fs::is_directory(folder), [&] { return "no result folder " + folder.string(); });
+  std::error_code unknown;
+  for (const fs::path folder : folders)
+    require(fs::is_directory(folder, unknown),
+            [&] { return "no result folder " + folder.string(); });
   Study study;
   study.folders = folders;
   std::set<std::string> cells, sheets;
-  for (const fs::path& folder : folders) {
+  for (const fs::path folder : folders) {
     read_plan(study, folder, cells);
     read_sheets(study, folder, sheets);
     read_audit(study, folder);
