@@ -26,7 +26,8 @@ OptionValue option_from(const std::string& name, const Json& json) {
   if (json.is_number_integer()) return json.get<Index>();
   if (json.is_number()) return json.get<Real>();
   require(json.is_string(), [&] {
-    return fmt::format("the option {} is neither number, truth nor text: {}", name, json_text(json));
+    return fmt::format("the option {} is neither number, truth nor text: {}", name,
+                       json_text(json));
   });
   return json.get<std::string>();
 }

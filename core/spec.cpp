@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/count.h"
 #include "core/errors.h"
 #include "core/json.h"
 
@@ -53,33 +55,79 @@ std::string unquoted(const std::string& value) {
   return parse_json(value, "the value " + value).get<std::string>();
 }
 
-// All specs that `name` makes with one more option, a value each.
-std::vector<Spec> crossed(const std::vector<Spec>& specs, const std::string& key,
-                          const std::vector<std::string>& values) {
-  std::vector<Spec> all;
-  for (const Spec& spec : specs)
-    for (const std::string& value : values) {
-      all.push_back(spec);
-      all.back().options.emplace_back(key, unquoted(trim(value)));
-    }
-  return all;
-}
+// A name and its options, each with all of its values.
+struct Sweep {
+  std::string name;
+  std::vector<std::pair<std::string, std::vector<std::string>>> options;
+};
 
-std::vector<Spec> expand(const std::string& text) {
+Sweep sweep_of(const std::string& text) {
   const auto open = text.find('[');
-  std::vector<Spec> specs{{.name = trim(text.substr(0, open)), .options = {}}};
-  require(!specs[0].name.empty(), [&] { return fmt::format("'{}' names nothing", text); });
-  if (open == std::string::npos) return specs;
+  Sweep sweep{.name = trim(text.substr(0, open)), .options = {}};
+  require(!sweep.name.empty(), [&] { return fmt::format("'{}' names nothing", text); });
+  if (open == std::string::npos) return sweep;
   require(text.ends_with(']'), [&] { return fmt::format("'{}' does not end with ]", text); });
   const std::string inner = text.substr(open + 1, text.size() - open - 2);
-  if (trim(inner).empty()) return specs;
+  if (trim(inner).empty()) return sweep;
   for (const std::string& option : split(inner, ',')) {
     const auto equals = option.find('=');
     require(equals != std::string::npos,
             [&] { return fmt::format("'{}' in '{}' is no key=value", option, text); });
-    specs = crossed(specs, trim(option.substr(0, equals)), split(option.substr(equals + 1), '|'));
+    std::vector<std::string> values = split(option.substr(equals + 1), '|');
+    for (std::string& value : values) value = unquoted(trim(value));
+    sweep.options.emplace_back(trim(option.substr(0, equals)), std::move(values));
   }
-  return specs;
+  return sweep;
+}
+
+std::vector<Sweep> sweeps_of(std::string_view text) {
+  std::vector<Sweep> sweeps;
+  for (const std::string& part : split(text, ',')) sweeps.push_back(sweep_of(trim(part)));
+  return sweeps;
+}
+
+std::uint64_t settings_of(const Sweep& sweep) {
+  std::uint64_t count = 1;
+  for (const auto& [key, values] : sweep.options) count = product_of(count, values.size());
+  return count;
+}
+
+// "1,000 of xi × 1,000 of phi"
+std::string factors_of(const Sweep& sweep) {
+  std::string text;
+  for (const auto& [key, values] : sweep.options)
+    if (values.size() > 1)
+      text += fmt::format("{}{} of {}", text.empty() ? "" : " × ", count_text(values.size()), key);
+  return text;
+}
+
+void require_few(const std::vector<Sweep>& sweeps, std::uint64_t most) {
+  std::uint64_t count = 0;
+  const Sweep* largest = nullptr;
+  for (const Sweep& sweep : sweeps) {
+    count = sum_of(count, settings_of(sweep));
+    if (!largest || settings_of(sweep) > settings_of(*largest)) largest = &sweep;
+  }
+  require(count <= most, [&] {
+    return fmt::format("{} settings are more than {}: {} alone has {} ({})", count_text(count),
+                       count_text(most), largest->name, count_text(settings_of(*largest)),
+                       factors_of(*largest));
+  });
+}
+
+// Every setting; the values of the last option change fastest.
+void expand(const Sweep& sweep, std::vector<Spec>& specs) {
+  const std::size_t first = specs.size();
+  specs.push_back({.name = sweep.name, .options = {}});
+  for (const auto& [key, values] : sweep.options) {
+    std::vector<Spec> crossed;
+    crossed.reserve((specs.size() - first) * values.size());
+    for (std::size_t i = first; i < specs.size(); ++i)
+      for (const std::string& value : values)
+        crossed.emplace_back(specs[i]).options.emplace_back(key, value);
+    specs.resize(first);
+    std::ranges::move(crossed, std::back_inserter(specs));
+  }
 }
 
 template <class T>
@@ -91,12 +139,42 @@ T parse_number(std::string_view text, std::string_view whole, const char* expect
   return value;
 }
 
+struct SeedSpan {
+  std::uint64_t first, last;
+};
+
+SeedSpan span_of(std::string_view part, std::string_view whole) {
+  const auto number = [&](std::string_view digits) {
+    return parse_number<std::uint64_t>(digits, whole, "seeds such as 5 (0 to 4), 0..9 or =5");
+  };
+  if (part.starts_with('=')) {
+    const std::uint64_t seed = number(part.substr(1));
+    return {seed, seed};
+  }
+  const auto dots = part.find("..");
+  if (dots == std::string_view::npos) {
+    const std::uint64_t count = number(part);
+    require(count > 0, "the number of seeds must be positive, got 0");
+    return {0, count - 1};
+  }
+  const SeedSpan span{number(part.substr(0, dots)), number(part.substr(dots + 2))};
+  require(span.first <= span.last, [&] { return fmt::format("seeds must rise, got '{}'", whole); });
+  return span;
+}
+
 }  // namespace
 
-std::vector<Spec> parse_specs(std::string_view text) {
+std::vector<SweepSize> sweep_sizes(std::string_view text) {
+  std::vector<SweepSize> sizes;
+  for (const Sweep& sweep : sweeps_of(text)) sizes.push_back({sweep.name, settings_of(sweep)});
+  return sizes;
+}
+
+std::vector<Spec> parse_specs(std::string_view text, std::uint64_t most) {
+  const std::vector<Sweep> sweeps = sweeps_of(text);
+  require_few(sweeps, most);
   std::vector<Spec> all;
-  for (const std::string& part : split(text, ','))
-    for (Spec& spec : expand(trim(part))) all.push_back(std::move(spec));
+  for (const Sweep& sweep : sweeps) expand(sweep, all);
   return all;
 }
 
@@ -130,31 +208,21 @@ std::string name_of_spec(std::string_view spec) {
   return std::string(spec.substr(0, spec.find('[')));
 }
 
-std::vector<std::uint64_t> parse_seeds(std::string_view text) {
-  constexpr const char* kExpected = "seeds such as 5 (0 to 4), 0..9 or =5";
-  constexpr std::uint64_t kMost = 1'000'000;
-  std::vector<std::uint64_t> seeds;
-  const auto number = [&](std::string_view part) {
-    return parse_number<std::uint64_t>(part, text, kExpected);
-  };
+std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most) {
+  std::vector<SeedSpan> spans;
+  std::uint64_t count = 0;
   for (const std::string& part : split(text, ',')) {
-    const auto dots = part.find("..");
-    std::uint64_t first = 0, last = 0;
-    if (part.starts_with('=')) {
-      first = last = number(std::string_view(part).substr(1));
-    } else if (dots != std::string::npos) {
-      first = number(std::string_view(part).substr(0, dots));
-      last = number(std::string_view(part).substr(dots + 2));
-    } else {
-      const std::uint64_t count = number(part);
-      require(count > 0, "the number of seeds must be positive, got 0");
-      last = count - 1;
-    }
-    require(first <= last && last - first < kMost, [&] {
-      return fmt::format("seeds must rise and be at most a million, got '{}'", text);
-    });
-    for (std::uint64_t seed = first; seed <= last; ++seed) seeds.push_back(seed);
+    spans.push_back(span_of(part, text));
+    count = sum_of(count, sum_of(spans.back().last - spans.back().first, 1));
   }
+  require(count <= most, [&] {
+    return fmt::format("'{}' are {} seeds, at most {} can be given", text, count_text(count),
+                       count_text(most));
+  });
+  std::vector<std::uint64_t> seeds;
+  seeds.reserve(count);
+  for (const auto& [first, last] : spans)
+    for (std::uint64_t i = 0; i <= last - first; ++i) seeds.push_back(first + i);
   return seeds;
 }
 
@@ -170,8 +238,9 @@ double parse_duration(std::string_view text) {
       break;
     }
   const double seconds = unit * parse_number<double>(amount, text, "a time such as 10s, 2m or 1h");
-  require(seconds > 0 && std::isfinite(seconds),
-          [&] { return fmt::format("a time must be positive, got '{}'", text); });
+  require(seconds > 0 && seconds <= kMostSeconds, [&] {
+    return fmt::format("a time must be above 0 and at most {} s, got '{}'", kMostSeconds, text);
+  });
   return seconds;
 }
 

@@ -18,8 +18,19 @@ struct Spec {
   std::vector<std::pair<std::string, std::string>> options;
 };
 
-// "a[x=1|2],b" -> a[x=1], a[x=2], b.
-std::vector<Spec> parse_specs(std::string_view text);
+// A sweep by name, and how many specs it makes.
+struct SweepSize {
+  std::string name;
+  std::uint64_t settings;
+};
+std::vector<SweepSize> sweep_sizes(std::string_view text);  // counted, not expanded
+
+inline constexpr std::uint64_t kMostSettings = 1'000'000, kMostSeeds = 1'000'000;
+inline constexpr std::uint64_t kMostWhereLarge = 1'000'000'000;  // of either, where many are meant
+
+// "a[x=1|2],b" -> a[x=1], a[x=2], b. UsageError, before they are made, where they are more than
+// `most`.
+std::vector<Spec> parse_specs(std::string_view text, std::uint64_t most = kMostSettings);
 Spec parse_spec(std::string_view text);  // UsageError unless it is exactly one
 
 // A text as the value of a spec, in double quotes where it would not come back the same without.
@@ -31,8 +42,11 @@ OptionValues options_of(const Spec& spec);  // as texts; UsageError where a name
 // and sheets carry their names.
 std::string name_of_spec(std::string_view spec);
 
-// "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; commas join.
-std::vector<std::uint64_t> parse_seeds(std::string_view text);
+// "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; commas join. UsageError, before they are listed,
+// where they are more than `most`.
+std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most = kMostSeeds);
+
+inline constexpr double kMostSeconds = 1e9;  // some thirty years: in nanoseconds it still fits
 
 // "10s", "2m", "1.5h", "250ms" or plain seconds.
 double parse_duration(std::string_view text);

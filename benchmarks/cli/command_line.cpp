@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "benchmarks/cli/notes.h"
+#include "benchmarks/cli/numbers.h"
 #include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
@@ -16,24 +17,52 @@
 namespace isoline::benchmarks {
 namespace {
 
-const CLI::Range kJobs(1, 1024), kThreads(1, 256);
+constexpr WholeLaw kJobs{1, 1024}, kThreads{1, 256};
 
-// "2GB" to a number of bytes, or what is wrong with it.
-std::string to_bytes(std::string& text) {
-  const std::string given = text;  // the conversion takes the text apart before it fails
-  try {
-    return CLI::AsSizeValue(false)(text);
-  } catch (const CLI::ValidationError&) {
-    return fmt::format("expected an amount such as 2GB, got '{}'", given);
-  }
-}
+std::string refuse_empty(std::string& text) { return text.empty() ? "it must not be empty" : ""; }
 
 // An option or a flag of a verb. A function a type keeps CLI11's templates out of the verbs, where
 // they would be laid out anew at each call.
 template <class Value>
 [[gnu::noinline]] CLI::Option* option(CLI::App& verb, const char* name, Value& value,
                                       const char* about) {
-  return verb.add_option(name, value, about);
+  return verb.add_option(name, value, about)->check(CLI::Validator(refuse_empty, ""));
+}
+
+// A number that `read` reads by its law, of the option's name and the text.
+template <class Value, class Read>
+CLI::Option* number(CLI::App& verb, const char* name, const char* type, Value& value,
+                    const char* about, const Read& read) {
+  const std::function<void(const std::string&)> set = [=, &value](const std::string& text) {
+    value = static_cast<Value>(read(name, text));
+  };
+  return verb.add_option_function(name, set, about)->type_name(type);
+}
+
+// A whole number; its default, where it has one, stands in the help.
+template <class Value>
+void whole(CLI::App& verb, const char* name, Value& value, const char* about, WholeLaw law = {}) {
+  CLI::Option* made = number(verb, name, "INT", value, about,
+                             [law](auto& of, auto& text) { return read_whole(of, text, law); });
+  if (value >= law.low) made->default_str(std::to_string(value));
+}
+
+CLI::Option* real(CLI::App& verb, const char* name, double& value, const Range& range,
+                  const char* about) {
+  return number(verb, name, "FLOAT", value, about,
+                [range](auto& of, auto& text) { return read_real(of, text, range); });
+}
+
+void seed(CLI::App& verb, std::uint64_t& value, const char* about) {
+  number(verb, "--seed", "UINT", value, about, read_seed)->default_str(std::to_string(value));
+}
+
+void time(CLI::App& verb, double& seconds, const char* about) {
+  number(verb, "--time", "TIME", seconds, about, read_time);
+}
+
+void memory(CLI::App& verb, std::int64_t& bytes, const char* about) {
+  number(verb, "--memory", "SIZE", bytes, about, read_bytes);
 }
 
 [[gnu::noinline]] CLI::Option* flag(CLI::App& verb, const char* name, bool& value,
@@ -49,8 +78,9 @@ struct Declared {
 
 class CommandLine {
  public:
-  CommandLine(const std::string& program, Session& session);
-  int run(int count, char** arguments);
+  // `runs`: or only reads.
+  CommandLine(const std::string& program, Session& session, bool runs);
+  int read(int count, char** arguments);  // and runs; the exit code
 
  private:
   template <class Arguments>
@@ -58,7 +88,9 @@ class CommandLine {
                           int (*verb)(const Arguments&, Session&)) {
     const auto given = std::make_shared<Arguments>();
     CLI::App& declared = *app_.add_subcommand(name, about);
-    declared.callback([this, given, verb] { exit_code_ = verb(*given, session_); });
+    declared.callback([this, given, verb] {
+      if (runs_) exit_code_ = verb(*given, session_);
+    });
     return {declared, *given};
   }
   std::vector<std::string> verbs() const;
@@ -67,6 +99,7 @@ class CommandLine {
   void add_report();
   void add_compare();
   void add_baseline();
+  void add_replay();
   void add_merge();
   void add_best();
   void add_claims();
@@ -82,31 +115,23 @@ class CommandLine {
 
   const std::string program_;
   Session& session_;
+  const bool runs_;
   CLI::App app_;
   int exit_code_ = kGood;
 };
 
-CommandLine::CommandLine(const std::string& program, Session& session)
-    : program_(program), session_(session), app_(kAbout, program) {
+CommandLine::CommandLine(const std::string& program, Session& session, bool runs)
+    : program_(program), session_(session), runs_(runs), app_(kAbout, program) {
+  using This = CommandLine;
   app_.footer(kExamples);
   app_.set_version_flag("--version", "isoline " + version());
   app_.require_subcommand(1);
-  add_run();
-  add_report();
-  add_compare();
-  add_baseline();
-  add_merge();
-  add_best();
-  add_claims();
-  add_list();
-  add_describe();
-  add_check();
-  add_audit();
-  add_validate();
-  add_tune();
-  add_train();
-  add_infer();
-  add_completion();
+  for (const auto add_verb :
+       {&This::add_run, &This::add_report, &This::add_compare, &This::add_baseline,
+        &This::add_replay, &This::add_merge, &This::add_best, &This::add_claims, &This::add_list,
+        &This::add_describe, &This::add_check, &This::add_audit, &This::add_validate,
+        &This::add_tune, &This::add_train, &This::add_infer, &This::add_completion})
+    (this->*add_verb)();
 }
 
 std::vector<std::string> CommandLine::verbs() const {
@@ -115,7 +140,7 @@ std::vector<std::string> CommandLine::verbs() const {
   return names;
 }
 
-int CommandLine::run(int count, char** arguments) {
+int CommandLine::read(int count, char** arguments) {
   if (count > 1 && arguments[1][0] != '-') {
     const std::vector<std::string> known = verbs();
     require(std::ranges::find(known, arguments[1]) != known.end(),
@@ -124,7 +149,7 @@ int CommandLine::run(int count, char** arguments) {
   try {
     app_.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app_.exit(error);  // --help and --version
+    if (error.get_exit_code() == 0) return runs_ ? app_.exit(error) : kGood;  // --help, --version
     throw UsageError(fmt::format("{} (see {} --help)", error.what(), program_));
   }
   return exit_code_;
@@ -139,24 +164,17 @@ void CommandLine::add_run() {
   option(verb, "--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'");
   option(verb, "--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'");
   option(verb, "--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
-  option(verb, "--iterations", given.iterations, "Most iterations of a cell")
-      ->check(CLI::PositiveNumber);
-  option(verb, "--work", given.work, "Most work of a cell, in forward solves")
-      ->check(CLI::PositiveNumber);
-  option(verb, "--time", given.time, "Most time of a cell: 10s, 2m; twice that kills it");
-  option(verb, "--target", given.target,
-         "Stop at f_L + TARGET s, s the scale of the loss; where x is sought, at "
-         "TARGET of its error (default: 1e-10)")
-      ->check(CLI::Range(0.0, 1.0));
-  option(verb, "--threads", given.threads, "Threads of the libraries within a cell")
-      ->check(kThreads);
-  option(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
+  whole(verb, "--iterations", given.iterations, "Most iterations of a cell");
+  whole(verb, "--work", given.work, "Most work of a cell, in forward solves");
+  time(verb, given.seconds, "Most time of a cell: 10s, 2m; twice that kills it");
+  real(verb, "--target", given.target, between(0, 1),
+       "Stop at f_L + TARGET s, s the scale of the loss; where x is sought, at "
+       "TARGET of its error (default: 1e-10)");
+  whole(verb, "--threads", given.threads, "Threads of the libraries within a cell", kThreads);
+  whole(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
   flag(verb, "--exclusive", given.exclusive, "One at a time, for tables of wall time");
-  option(verb, "--repeat", given.repeat, "Timings wanted of each cell")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  option(verb, "--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)")
-      ->transform(CLI::Validator(to_bytes, ""));
+  whole(verb, "--repeat", given.repeat, "Timings wanted of each cell", {1, 1000});
+  memory(verb, given.memory_bytes, "Most memory of a cell (default: 4GB)");
   option(verb, "--rates", given.rates, "Table of tuned rates: builtin, none or a file")
       ->capture_default_str();
   option(verb, "--out", given.out,
@@ -164,6 +182,9 @@ void CommandLine::add_run() {
          "suite, a name made of its cells, the same for the same plan)");
   flag(verb, "--force", given.force, "Repeat cells that are done");
   flag(verb, "--reuse", given.reuse, "Keep cells that another build has done");
+  option(verb, "--retry", given.retry, "Repeat cells that ended so: failed,crashed,timeout,memory")
+      ->delimiter(',');
+  flag(verb, "--allow-large", given.allow_large, "Plan more than a million cells");
   CLI::Option* dry =
       flag(verb, "--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
   flag(verb, "--all", given.lists_all, "With --dry-run: every cell, not the first 20")->needs(dry);
@@ -181,9 +202,8 @@ void CommandLine::add_report() {
   option(verb, "--by", given.by, "What is counted, in orders, tables and plots")
       ->check(CLI::IsMember(measures))
       ->capture_default_str();
-  option(verb, "--tolerance", given.tolerance,
-         "What may be left of a loss, or of an error in x, to count as solved")
-      ->check(CLI::Range(1e-10, 1.0))
+  real(verb, "--tolerance", given.tolerance, between(1e-10, 1),
+       "What may be left of a loss, or of an error in x, to count as solved")
       ->default_str("1e-6");
   verb.footer(kReportNotes);
 }
@@ -193,14 +213,13 @@ void CommandLine::add_compare() {
       add("compare", "Tell what got worse between two results", compare_verb);
   option(verb, "BASE", given.before, "Result folder, baseline, or a report.json")->required();
   option(verb, "NEW", given.after, "Result folder, or a report.json")->required();
-  option(verb, "--tolerance", given.tolerance,
-         "Relative tolerance of figures (default: equal bit for bit)")
-      ->check(CLI::Range(0.0, 1.0));
+  real(verb, "--tolerance", given.tolerance, between(0, 1),
+       "Relative tolerance of figures (default: equal bit for bit)");
   option(verb, "--time-cells", given.timed,
          "Cells (digests, or their beginnings) whose time is judged, 20 at most")
       ->delimiter(',');
-  option(verb, "--noise", given.noise, "Least band of noise of times, relative (default: 0.1)")
-      ->check(CLI::Range(0.0, 10.0));
+  real(verb, "--noise", given.noise, between(0, 10),
+       "Least band of noise of times, relative (default: 0.1)");
   option(verb, "--allow", given.allowed,
          "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
   flag(verb, "--common", given.is_common_only, "Let NEW lack any cell of BASE");
@@ -216,12 +235,19 @@ void CommandLine::add_baseline() {
       "baseline", "Keep what later results are compared with, as one small file", baseline_verb);
   option(verb, "RESULTS", given.folders, "Result folders of `isoline run`")->required();
   option(verb, "--out", given.out, "The file (default: standard output)");
-  option(verb, "--perturbations", given.perturbations,
-         "Runs of each cell from a start that differs in the last bit")
-      ->check(CLI::Range(0, 100))
-      ->capture_default_str();
-  option(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
+  whole(verb, "--perturbations", given.perturbations,
+        "Runs of each cell from a start that differs in the last bit", {0, 100});
+  whole(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
   verb.footer(kBaselineNotes);
+}
+
+void CommandLine::add_replay() {
+  const auto [verb, given] =
+      add("replay", "Run the cell of a record again, and hold the two to each other bit for bit",
+          replay_verb);
+  option(verb, "RECORD", given.records, "Records of `isoline run`: files in runs/")->required();
+  memory(verb, given.memory_bytes, "Most memory of a cell (default: 4GB)");
+  verb.footer(kReplayNotes);
 }
 
 void CommandLine::add_merge() {
@@ -245,7 +271,7 @@ void CommandLine::add_claims() {
       add("claims", "Judge what papers claim, by runs; what is missing is run first", claims_verb);
   option(verb, "ID", given.names, "Claims, or groups of them (default: all)");
   option(verb, "--out", given.out, "Result folder that holds the runs")->capture_default_str();
-  option(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)")->check(kJobs);
+  whole(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
   flag(verb, "--list", given.is_list, "List the claims, and do nothing");
   flag(verb, "--json", given.as_json, "As JSON");
   flag(verb, "--no-run", given.no_run, "Judge by the runs that are there");
@@ -276,8 +302,7 @@ void CommandLine::add_check() {
       add("check", "Hold a problem's derivatives, adjoint and inverse to each other, with figures",
           check_verb);
   option(verb, "SPEC", given.spec, "Problems, as in `isoline run` (default: all)");
-  option(verb, "--seed", given.seed, "Seed of the instance and of the directions")
-      ->capture_default_str();
+  seed(verb, given.seed, "Seed of the instance and of the directions");
   flag(verb, "--json", given.as_json, "As JSON");
 }
 
@@ -315,13 +340,9 @@ void CommandLine::add_tune() {
       ->capture_default_str();
   option(verb, "--tuning-seeds", given.seeds, "Seeds, apart from those that judge")
       ->capture_default_str();
-  option(verb, "--work", given.work, "Most work of a run")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  option(verb, "--iterations", given.iterations, "Most iterations of a run")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  option(verb, "--jobs", given.jobs, "Runs at a time (default: one a core)")->check(kJobs);
+  whole(verb, "--work", given.work, "Most work of a run");
+  whole(verb, "--iterations", given.iterations, "Most iterations of a run");
+  whole(verb, "--jobs", given.jobs, "Runs at a time (default: one a core)", kJobs);
   option(verb, "--out", given.folder, "Folder of the records")->capture_default_str();
   option(verb, "--table", given.table, "Table of rates to write or to add to");
 }
@@ -334,11 +355,11 @@ void CommandLine::add_train() {
   option(verb, "--out", given.out, "Where to write it: .json, or any other name for raw numbers")
       ->required();
   option(verb, "--optimizer", given.optimizer, "Training method")->capture_default_str();
-  option(verb, "--iterations", given.iterations, "Steps of training")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  option(verb, "--seed", given.seed, "Seed of the start and of the samples")->capture_default_str();
-  option(verb, "--threads", given.threads, "Threads of the libraries")->check(kThreads);
+  whole(verb, "--iterations", given.iterations, "Steps of training");
+  seed(verb, given.seed, "Seed of the start and of the samples");
+  whole(verb, "--threads", given.threads, "Threads of the libraries", kThreads);
+  time(verb, given.seconds, "Most time of training: 10s, 2m; twice that kills it");
+  memory(verb, given.memory_bytes, "Most memory (default: 4GB)");
   flag(verb, "--quiet", given.quiet, "No progress");
 }
 
@@ -351,6 +372,8 @@ void CommandLine::add_infer() {
          "or .csv")
       ->required();
   option(verb, "--output", given.output, "Where to write the inferred x: .npy or .csv")->required();
+  time(verb, given.seconds, "When it is ended: 10s, 2m (default: 10m)");
+  memory(verb, given.memory_bytes, "Most memory (default: 4GB)");
 }
 
 void CommandLine::add_completion() {
@@ -363,7 +386,12 @@ void CommandLine::add_completion() {
 }  // namespace
 
 int parse_and_run(const std::string& program, int count, char** arguments, Session& session) {
-  return CommandLine(program, session).run(count, arguments);
+  return CommandLine(program, session, true).read(count, arguments);
+}
+
+void parse_only(const std::string& program, int count, char** arguments) {
+  Session none("", {});
+  CommandLine(program, none, false).read(count, arguments);
 }
 
 }  // namespace isoline::benchmarks

@@ -11,4 +11,7 @@ class Session;
 // where they name none. `program` is what the user called.
 int parse_and_run(const std::string& program, int count, char** arguments, Session& session);
 
+// The same without running it: UsageError where the arguments are wrong.
+void parse_only(const std::string& program, int count, char** arguments);
+
 }  // namespace isoline::benchmarks

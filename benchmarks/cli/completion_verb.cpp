@@ -35,7 +35,7 @@ _isoline() {
          describe) list=$("$program" list all --names 2>/dev/null) ;;
          check) list=$("$program" list problems --names 2>/dev/null) ;;
          claims) list=$("$program" claims --list 2>/dev/null | grep -oE '^ *[a-z0-9-]+') ;;
-         list) list="problems optimizers suites all" ;;
+         list) list="problems networks optimizers suites all" ;;
          completion) list=bash ;;
          *) COMPREPLY=($(compgen -f -- "$word")); return ;;
        esac ;;

@@ -3,25 +3,60 @@
 
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "benchmarks/run/isolate.h"
 #include "benchmarks/run/trained.h"
+#include "core/errors.h"
 #include "core/records/number_file.h"
 
 namespace isoline::benchmarks {
 
-int infer_verb(const InferArguments& given, Session& session) {
+namespace {
+
+// Reads, infers and writes; the sentence about it.
+std::string inferred(const InferArguments& given, const Catalog& catalog) {
   const TrainedNetwork network = read_network(given.network);
   const NumberArray input = read_numbers(given.input);
   const Component component =
-      complete_problem(session.catalog(), network.problem.name, network.problem.options);
-  const Problem problem = make_problem(session.catalog(), component, network.seed);
-  require(problem.unknowns() == network.theta.size(), [&] {
-    return fmt::format("{} holds {} parameters and its network has {}", given.network,
-                       network.theta.size(), problem.unknowns());
-  });
+      complete_problem(catalog, network.problem.name, network.problem.options);
+  require(component.is_learned,
+          [&] { return given.network + " is no trained network: its problem has none"; });
+  const Problem problem = make_problem(catalog, component, network.seed);
+  try {
+    require_fitting(network, problem);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", given.network, error.what()));
+  }
   const NumberArray output = infer(problem, network, input, given.input);
   write_numbers(given.output, output);
-  fmt::print("{}: {} samples inferred by {} trained on {} for {} iterations\n", given.output,
-             output.shape[0], network.optimizer.spec, network.problem.spec, network.iterations);
+  return fmt::format("{}: {} samples inferred by {} trained on {} for {} iterations", given.output,
+                     output.shape[0], network.optimizer.spec, network.problem.spec,
+                     network.iterations);
+}
+
+// How the process that infers tells its parent whose fault it was.
+constexpr char kSaid = '+', kMistaken = '-';
+
+}  // namespace
+
+// In a process of its own, under limits: whatever a file holds costs that process alone.
+int infer_verb(const InferArguments& given, Session& session) {
+  const Catalog& catalog = session.catalog();
+  const auto work = [&] {
+    try {
+      return kSaid + inferred(given, catalog);
+    } catch (const UsageError& mistake) {
+      return std::string(1, kMistaken) + mistake.what();
+    }
+  };
+  const std::int64_t memory = given.memory_bytes > 0 ? given.memory_bytes : Limits{}.memory_bytes;
+  const auto [text, failure] = isolated_text(work, given.seconds, memory);
+  if (!text || text->empty()) {
+    fmt::print(stderr, "isoline: {} was not written: {}\n", given.output,
+               text ? "the process said nothing" : failure);
+    return kWorse;
+  }
+  require(text->front() != kMistaken, [&] { return text->substr(1); });
+  fmt::print("{}\n", text->substr(1));
   return kGood;
 }
 

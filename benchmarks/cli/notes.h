@@ -45,6 +45,13 @@ inline constexpr const char* kBaselineNotes =
     "  ISOLINE_PRESET=portable isoline baseline results/quick --out baseline.json\n"
     "  isoline compare baseline.json results/quick";
 
+inline constexpr const char* kReplayNotes =
+    "The cell is run in a process of its own, with the problem, options, seed, budget and threads of\n"
+    "the record, and written nowhere. A record that a clock or a kill ended is compared up to the last\n"
+    "iteration that both have. Exit codes: 0 equal; 2 another result, whose first difference is named;\n"
+    "4 not comparable: another build answered, whose parts are named, or the record's component is\n"
+    "not there.";
+
 inline constexpr const char* kMergeNotes =
     "Records of the same cell and build become one with the timings of all. Where they differ in\n"
     "anything but timings and provenance the record is left out, the cell is named on standard\n"

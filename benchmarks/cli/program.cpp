@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <new>
 
 #include "benchmarks/cli/command_line.h"
 #include "benchmarks/cli/session.h"
@@ -38,6 +39,9 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
     return kUsage;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: there is not enough memory for this\n", program.c_str());
+    return kWorse;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
     return kWorse;

@@ -15,8 +15,8 @@
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/soundness.h"
-#include "benchmarks/run/used_rates.h"
 #include "core/spec.h"
+#include "core/suggest.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -36,12 +36,13 @@ struct Undertaking {
 };
 
 void override_blocks(const RunArguments& given, Suite& suite) {
+  const std::uint64_t most_seeds = given.allow_large ? kMostWhereLarge : kMostSeeds;
   for (MatrixBlock& block : suite.blocks) {
-    if (!given.seeds.empty()) block.seeds = parse_seeds(given.seeds);
+    if (!given.seeds.empty()) block.seeds = parse_seeds(given.seeds, most_seeds);
     if (given.iterations > 0) block.budget.iterations = given.iterations;
     if (given.work > 0) block.budget.work = given.work;
     if (given.target >= 0) block.budget.target = given.target;
-    if (!given.time.empty()) block.budget.seconds = parse_duration(given.time);
+    if (given.seconds > 0) block.budget.seconds = given.seconds;
     if (given.threads > 0) block.threads = given.threads;
   }
 }
@@ -61,7 +62,8 @@ Undertaking undertaking_of(const RunArguments& given, const Catalog& catalog) {
   }
   override_blocks(given, suite);
   Rates rates = Rates::named(given.rates);
-  Undertaking all{suite.name, expand(catalog, suite, rates), given.out, std::move(rates)};
+  Undertaking all{suite.name, expand(catalog, suite, rates, given.allow_large), given.out,
+                  std::move(rates)};
   if (is_suite && is_limited)
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;
@@ -70,15 +72,32 @@ Undertaking undertaking_of(const RunArguments& given, const Catalog& catalog) {
   return all;
 }
 
+// --retry as statuses. What was interrupted is run again without it.
+std::set<Status> statuses_of(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const std::string_view name : kStatusNames)
+    if (name != name_of(Status::running)) known.emplace_back(name);
+  std::set<Status> statuses;
+  for (const std::string& name : names) {
+    require(std::ranges::find(known, name) != known.end(),
+            [&] { return "--retry: " + unknown_name("status", name, known); });
+    statuses.insert(*status_of(name));
+  }
+  return statuses;
+}
+
 std::string fate_of(const PreviewedCell& cell) {
   if (cell.is_cached) return "cached";
   return cell.why_inapplicable.empty() ? "run" : "inapplicable: " + cell.why_inapplicable;
 }
 
-void print_plan(const Undertaking& all, int jobs, const RunArguments& given, Session& session) {
+void print_plan(const Undertaking& all, const RunOptions& options, const RunArguments& given,
+                Session& session) {
   constexpr std::size_t kMost = 20;
-  const std::vector<PreviewedCell> cells =
-      preview(session.catalog(), all.requests, all.folder, given.reuse);
+  const int jobs = options.jobs;
+  const auto [cells, likened] =
+      preview(session.catalog(), all.requests, all.folder,
+              {.force = options.force, .reuse = options.reuse, .retry = options.retry});
   double seconds = 0;
   std::size_t cached = 0, inapplicable = 0;
   for (const PreviewedCell& cell : cells) {
@@ -89,6 +108,9 @@ void print_plan(const Undertaking& all, int jobs, const RunArguments& given, Ses
   fmt::print("{} cells: {} cached, {} inapplicable, {} to run, about {} with {} at a time\n",
              cells.size(), cached, inapplicable, cells.size() - cached - inapplicable,
              duration_text(seconds / jobs), jobs);
+  if (likened > 0)
+    fmt::print("{} of the problems' settings were not looked at: taken to be like others\n",
+               likened);
   fmt::print("result folder: {}\n", all.folder.string());
   const std::size_t listed = given.lists_all ? cells.size() : std::min(kMost, cells.size());
   for (std::size_t i = 0; i < listed; ++i) {
@@ -125,6 +147,7 @@ int run_verb(const RunArguments& given, Session& session) {
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .force = given.force,
                      .reuse = given.reuse,
+                     .retry = statuses_of(given.retry),
                      .exclusive = given.exclusive,
                      .repeat = given.repeat,
                      .command = session.command()};
@@ -133,13 +156,10 @@ int run_verb(const RunArguments& given, Session& session) {
   if (!given.quiet) options.progress = Progress::style_of(STDERR_FILENO);
   if (given.is_dry) {
     require_sound(catalog, all.requests);
-    print_plan(all, options.jobs, given, session);
+    print_plan(all, options, given, session);
     return kGood;
   }
-  require_sound(catalog, all.requests);
-  for (const std::string& remark : write_used_rates(all.rates, all.requests, all.folder))
-    say(stderr, remark + "\n");
-  const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options);
+  const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options, all.rates);
   print_outcome(outcome, given.quiet);
   if (!given.no_report) report_on(all.folder, given.quiet, session);
   return exit_code_of(outcome);

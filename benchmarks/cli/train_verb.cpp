@@ -3,11 +3,17 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <new>
+
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolate.h"
+#include "benchmarks/run/runner.h"
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/trained.h"
 
@@ -24,7 +30,9 @@ Request request_of(const TrainArguments& given, const Catalog& catalog) {
   return named({.problem = problem,
                 .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
                 .seed = given.seed,
-                .budget = {.iterations = given.iterations, .target = 0},
+                .budget = {.iterations = given.iterations,
+                           .seconds = given.seconds > 0 ? given.seconds : Budget{}.seconds,
+                           .target = 0},
                 .threads = given.threads,
                 .rates = ""});
 }
@@ -33,12 +41,18 @@ bool is_trained(const Trace& trace) {
   return trace.status == Status::budget || trace.status == Status::converged;
 }
 
-// In the worker: the run, then the network with its statistics.
-void train_and_write(const Catalog& catalog, const Request& request, const std::string& out,
-                     Trace& trace) {
-  Vector theta;
-  execute(catalog, request, trace, {}, &theta);
-  if (!is_trained(trace)) return;
+// Before hours of training: a network that cannot be written is not trained.
+void require_writable(const std::string& out) {
+  const std::filesystem::path path(out), parent = path.parent_path();
+  const std::filesystem::path folder = parent.empty() ? "." : parent;
+  require(!std::filesystem::is_directory(path),
+          [&] { return fmt::format("cannot write {}: it is a folder", out); });
+  require(access(folder.c_str(), W_OK) == 0,
+          [&] { return fmt::format("cannot write {}: {}", out, std::strerror(errno)); });
+}
+
+void write(const Catalog& catalog, const Request& request, const Vector& theta, const Trace& trace,
+           const std::string& out) {
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   write_network({.problem = request.problem,
                  .optimizer = request.optimizer,
@@ -49,6 +63,22 @@ void train_and_write(const Catalog& catalog, const Request& request, const std::
                  .theta = theta,
                  .statistics = averaged_statistics(problem, theta, trace.last.iteration)},
                 out);
+}
+
+// In the worker: the run, then the network with its statistics.
+void train_and_write(const Catalog& catalog, const Request& request, const std::string& out,
+                     Trace& trace) {
+  Vector theta;
+  execute(catalog, request, trace, {}, &theta);
+  if (!is_trained(trace)) return;
+  try {
+    write(catalog, request, theta, trace, out);
+  } catch (const std::bad_alloc&) {
+    throw;  // the worker knows it
+  } catch (const std::exception& error) {
+    trace.status = Status::failed;
+    set_text(trace.message, error.what());
+  }
 }
 
 void show(const Trace& trace, std::int64_t iterations, const char* end) {
@@ -71,11 +101,13 @@ void watch(Worker& worker, std::int64_t iterations, bool is_shown) {
 
 int train_verb(const TrainArguments& given, Session& session) {
   const Request request = request_of(given, session.catalog());
+  require_writable(given.out);
   require_sound(session.catalog(), {request});
+  Limits standard{.hard_seconds = kMostSeconds};  // unless --time is given
+  if (given.memory_bytes > 0) standard.memory_bytes = given.memory_bytes;
   Worker worker;
-  constexpr double kForever = 1e9;
   worker.start([&](Trace& trace) { train_and_write(session.catalog(), request, given.out, trace); },
-               {.hard_seconds = kForever, .memory_bytes = std::int64_t{8} << 30}, request.threads);
+               limits_of(request, standard), request.threads);
   watch(worker, given.iterations, !given.quiet && isatty(STDERR_FILENO) != 0);
   const Trace& trace = worker.trace();
   require(trace.status != Status::inapplicable, [&] {

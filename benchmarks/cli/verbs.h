@@ -13,12 +13,13 @@ namespace isoline::benchmarks {
 class Session;
 
 struct RunArguments {
-  std::string suite, problem, optimizer, seeds, time, out, rates = "builtin";
+  std::string suite, problem, optimizer, seeds, out, rates = "builtin";
   std::int64_t iterations = 0, work = 0, memory_bytes = 0;  // 0: as the suite or the runner has it
-  double target = -1;                                       // −1: as the suite has it
+  double seconds = 0, target = -1;                          // 0, −1: as the suite has it
+  std::vector<std::string> retry;                           // statuses
   int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
   bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
-  bool no_report = false, quiet = false;
+  bool no_report = false, quiet = false, allow_large = false;
 };
 int run_verb(const RunArguments& given, Session& session);
 
@@ -44,6 +45,12 @@ struct BaselineArguments {
   int perturbations = 2, jobs = 0;
 };
 int baseline_verb(const BaselineArguments& given, Session& session);
+
+struct ReplayArguments {
+  std::vector<std::string> records;
+  std::int64_t memory_bytes = 0;  // 0: as the runner has it
+};
+int replay_verb(const ReplayArguments& given, Session& session);
 
 struct MergeArguments {
   std::vector<std::string> folders;
@@ -107,7 +114,8 @@ int tune_verb(const TuneArguments& given, Session& session);
 struct TrainArguments {
   std::string problem, optimizer = "sip", out;
   std::uint64_t seed = 0;
-  std::int64_t iterations = 1000;
+  std::int64_t iterations = 1000, memory_bytes = 0;  // 0: as a cell's
+  double seconds = 0;                                // 0: no limit
   int threads = 1;
   bool quiet = false;
 };
@@ -115,6 +123,8 @@ int train_verb(const TrainArguments& given, Session& session);
 
 struct InferArguments {
   std::string network, input, output;
+  std::int64_t memory_bytes = 0;  // 0: as a cell's
+  double seconds = 600;
 };
 int infer_verb(const InferArguments& given, Session& session);
 

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <unordered_set>
 
 #include "benchmarks/plan/filter.h"
+#include "benchmarks/plan/plan_size.h"
 #include "benchmarks/plan/resources.h"
+#include "core/count.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
@@ -19,10 +22,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The schema knows that it is a whole number from 1 on, and not where its type ends.
+std::int64_t amount_in(const Json& json, const char* name, std::int64_t standard) {
+  if (!json.contains(name)) return standard;
+  const auto amount = json[name].get<std::uint64_t>();
+  require(amount <= kMostAmount, [&] {
+    return fmt::format("{} must be at most {}, got {}", name, count_text(kMostAmount),
+                       count_text(amount));
+  });
+  return static_cast<std::int64_t>(amount);
+}
+
 Budget budget_from(const Json& json) {
   Budget budget;
-  budget.iterations = json.value("iterations", budget.iterations);
-  budget.work = json.value("work", budget.work);
+  budget.iterations = amount_in(json, "iterations", budget.iterations);
+  budget.work = amount_in(json, "work", budget.work);
   if (json.contains("seconds")) budget.seconds = real_of(json["seconds"]);
   budget.target = json.value("target", budget.target);
   return budget;
@@ -45,11 +59,12 @@ bool is_excepted(const std::string& name, const std::vector<std::string>& except
   return std::ranges::find(excepted, name) != excepted.end();
 }
 
-std::vector<Spec> chosen_problems(const Catalog& catalog, const MatrixBlock& block) {
+std::vector<Spec> chosen_problems(const Catalog& catalog, const MatrixBlock& block,
+                                  std::uint64_t most) {
   std::vector<Spec> specs;
   for (const std::string& text : block.problems) {
     if (text != "*") {
-      for (Spec& spec : parse_specs(text)) specs.push_back(std::move(spec));
+      for (Spec& spec : parse_specs(text, most)) specs.push_back(std::move(spec));
       continue;
     }
     for (const auto& [name, entry] : catalog.problems)
@@ -58,11 +73,12 @@ std::vector<Spec> chosen_problems(const Catalog& catalog, const MatrixBlock& blo
   return specs;
 }
 
-std::vector<Spec> chosen_optimizers(const Catalog& catalog, const MatrixBlock& block) {
+std::vector<Spec> chosen_optimizers(const Catalog& catalog, const MatrixBlock& block,
+                                    std::uint64_t most) {
   std::vector<Spec> specs;
   for (const std::string& text : block.optimizers) {
     if (text != "*" && !text.starts_with('@')) {
-      for (Spec& spec : parse_specs(text)) specs.push_back(std::move(spec));
+      for (Spec& spec : parse_specs(text, most)) specs.push_back(std::move(spec));
       continue;
     }
     const std::size_t before = specs.size();
@@ -74,29 +90,71 @@ std::vector<Spec> chosen_optimizers(const Catalog& catalog, const MatrixBlock& b
   return specs;
 }
 
-void expand_block(const Catalog& catalog, const MatrixBlock& block, const Rates& rates,
-                  std::set<std::string>& known, std::vector<Request>& requests) {
-  const std::vector<Spec> optimizers = chosen_optimizers(catalog, block);
-  for (const Spec& problem_spec : chosen_problems(catalog, block)) {
-    const Component problem = complete_problem(catalog, problem_spec);
-    for (const Spec& spec : optimizers) {
-      const bool is_at_defaults = block.rates == "none";
-      const Rates::Row* row =
-          is_at_defaults ? nullptr : rates.find(problem, spec.name, block.rates);
-      const Component optimizer = with_rates(catalog, spec, row);
-      for (const std::uint64_t seed : block.seeds) {
-        Request request = named({.problem = problem,
-                                 .optimizer = optimizer,
-                                 .seed = seed,
-                                 .budget = block.budget,
-                                 .threads = block.threads,
-                                 .rates = row ? row->origin : "",
-                                 .hard_seconds = block.hard_seconds});
-        if (known.insert(request.cell).second) requests.push_back(std::move(request));
+// The optimizers of a block. One component serves all problems that share its row of rates.
+class RatedOptimizers {
+ public:
+  RatedOptimizers(const Catalog& catalog, const MatrixBlock& block, const Rates& rates)
+      : catalog_(catalog), rates_(rates), table_(block.rates) {}
+
+  // The row for the problem; null where there is none, or defaults are wanted.
+  const Rates::Row* row_for(const Component& problem, const std::string& optimizer) const {
+    return table_ == "none" ? nullptr : rates_.find(problem, optimizer, table_);
+  }
+  const Component& at(const Spec& spec, const Rates::Row* row) {
+    const auto [known, is_new] = made_.try_emplace({&spec, row});
+    if (is_new) known->second = with_rates(catalog_, spec, row);
+    return known->second;
+  }
+
+ private:
+  const Catalog& catalog_;
+  const Rates& rates_;
+  const std::string& table_;
+  std::map<std::pair<const Spec*, const Rates::Row*>, Component> made_;
+};
+
+class Expansion {
+ public:
+  Expansion(const Catalog& catalog, const Rates& rates, std::uint64_t most_settings)
+      : catalog_(catalog), rates_(rates), most_settings_(most_settings) {}
+
+  void add(const MatrixBlock& block) {
+    const std::vector<Spec> specs = chosen_optimizers(catalog_, block, most_settings_);
+    RatedOptimizers optimizers(catalog_, block, rates_);
+    for (const Spec& problem_spec : chosen_problems(catalog_, block, most_settings_)) {
+      const Component problem = complete_problem(catalog_, problem_spec);
+      std::map<std::string, const Rates::Row*> rows;
+      for (const Spec& spec : specs) {
+        const auto [row, is_new] = rows.try_emplace(spec.name);
+        if (is_new) row->second = optimizers.row_for(problem, spec.name);
+        add({.problem = problem,
+             .optimizer = optimizers.at(spec, row->second),
+             .budget = block.budget,
+             .threads = block.threads,
+             .rates = row->second ? row->second->origin : "",
+             .hard_seconds = block.hard_seconds},
+            block.seeds);
       }
     }
   }
-}
+  std::vector<Request> requests() && { return std::move(requests_); }
+
+ private:
+  void add(Request request, const std::vector<std::uint64_t>& seeds) {
+    const CellNames names(request);
+    for (const std::uint64_t seed : seeds) {
+      request.seed = seed;
+      request.cell = names.of(seed);
+      if (known_.insert(request.cell).second) requests_.push_back(request);
+    }
+  }
+
+  const Catalog& catalog_;
+  const Rates& rates_;
+  std::uint64_t most_settings_;
+  std::unordered_set<std::string> known_;
+  std::vector<Request> requests_;
+};
 
 }  // namespace
 
@@ -129,12 +187,12 @@ Suite read_suite(const std::string& name_or_path) {
   throw UsageError(unknown_name("suite", name_or_path, names));
 }
 
-std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates) {
-  std::vector<Request> requests;
-  std::set<std::string> known;
-  for (const MatrixBlock& block : suite.blocks)
-    expand_block(catalog, block, rates, known, requests);
-  return requests;
+std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,
+                            bool allows_large) {
+  if (!allows_large) require_ordinary(size_of(catalog, suite));
+  Expansion expansion(catalog, rates, allows_large ? kMostWhereLarge : kMostSettings);
+  for (const MatrixBlock& block : suite.blocks) expansion.add(block);
+  return std::move(expansion).requests();
 }
 
 }  // namespace isoline::benchmarks

@@ -41,6 +41,8 @@ Suite read_suite(const std::string& name_or_path);
 Suite suite_from_json(const Json& json, const std::string& origin);
 
 // Every cell, in order, each once. Options not given are filled in from the rates, then defaults.
-std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates);
+// UsageError where the plan is large (benchmarks/plan/plan_size.h), unless that is meant.
+std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,
+                            bool allows_large = false);
 
 }  // namespace isoline::benchmarks

@@ -2,6 +2,7 @@
 // how long the rest may take.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,21 @@ struct PreviewedCell {
   double seconds = 0;            // estimate, where it would run
 };
 
-// Looks into result folders without touching them; with `reuse` a cell that another build has done
-// is cached too. Problems are made in processes of their own.
-std::vector<PreviewedCell> preview(const Catalog& catalog, const std::vector<Request>& requests,
-                                   const std::filesystem::path& folder, bool reuse = false);
+struct Preview {
+  std::vector<PreviewedCell> cells;  // one a request, in order
+  std::size_t likened = 0;           // settings of problems that were taken to be like another one
+};
+
+// Which records count as done.
+struct PreviewOptions {
+  bool force = false;           // none
+  bool reuse = false;           // also those of another build
+  std::set<Status> retry = {};  // but those that ended so
+};
+
+// Looks into result folders without touching them. Problems are made in processes of their own; of
+// a sweep over more settings than can be made in a second, the rest are taken to be like the first.
+Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
+                const std::filesystem::path& folder, const PreviewOptions& options = {});
 
 }  // namespace isoline::benchmarks

@@ -23,10 +23,6 @@ fs::path run_path(const fs::path& folder, const std::string& file_name) {
   return folder / "runs" / file_name;
 }
 
-std::string file_name_of(const Request& request) {
-  return record_file_name(request.cell, build_digest(request));
-}
-
 // Held while the plan is read and written: two runs may share a folder.
 class FolderLock {
  public:
@@ -45,6 +41,19 @@ class FolderLock {
 }  // namespace
 
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
+  make_folders();
+  sweep();
+}
+
+std::string Store::name_of(const Request& request) {
+  return record_file_name(request.cell, build_digest(request));
+}
+
+bool Store::has(const Request& request) const {
+  return is_there(run_path(folder_, name_of(request)));
+}
+
+void Store::make_folders() const {
   for (const char* part : {"runs", "components", "checkpoints"}) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
@@ -52,7 +61,6 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) {
       return fmt::format("cannot create {}: {}", (folder_ / part).string(), error.message());
     });
   }
-  sweep();
 }
 
 // Only what our own writing leaves behind, where it writes: everything else is somebody's.
@@ -125,7 +133,7 @@ std::optional<Record> stored_record(const fs::path& path, const Request& request
 }  // namespace
 
 std::optional<Record> Store::find(const Request& request) {
-  const fs::path path = run_path(folder_, file_name_of(request));
+  const fs::path path = run_path(folder_, name_of(request));
   try {
     return stored_record(path, request);
   } catch (const std::exception& error) {
@@ -136,7 +144,7 @@ std::optional<Record> Store::find(const Request& request) {
 
 std::optional<Record> Store::find_in(const fs::path& folder, const Request& request) {
   try {
-    return stored_record(run_path(folder, file_name_of(request)), request);
+    return stored_record(run_path(folder, name_of(request)), request);
   } catch (const std::exception&) {
     return std::nullopt;  // damaged: a run sets it aside
   }
@@ -172,6 +180,17 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
+  try {
+    write_files(record);
+  } catch (const std::exception&) {
+    std::error_code unknown;
+    if (fs::is_directory(folder_ / "runs", unknown)) throw;
+    make_folders();  // they were removed while the run goes on
+    write_files(record);
+  }
+}
+
+void Store::write_files(const Record& record) {
   const fs::path path = run_path(folder_, record.file_name());
   if (record.exhibit && record.exhibit->is_picture()) {
     const fs::path pictures = fs::path(path).replace_extension(".npy");
@@ -183,7 +202,7 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
 }
 
 fs::path Store::checkpoint_path(const Request& request) const {
-  return folder_ / "checkpoints" / fs::path(file_name_of(request)).replace_extension(".state");
+  return folder_ / "checkpoints" / fs::path(name_of(request)).replace_extension(".state");
 }
 
 void Store::remove_checkpoint(const Request& request) const {

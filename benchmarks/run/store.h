@@ -17,7 +17,6 @@ namespace isoline::benchmarks {
 
 class Store {
  public:
-  // Creates the folder where it is missing; UsageError where it cannot be.
   explicit Store(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -31,6 +30,12 @@ class Store {
   std::optional<Record> find(const Request& request);
   static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
 
+  // What this build calls its record of the request, and whether there is one, of whatever kind.
+  static std::string name_of(const Request& request);
+  bool has(const Request& request) const;
+
+  // Creates the folder and its rooms where they are missing; UsageError where they cannot be.
+  void make_folders() const;
   // Moves a file that cannot be read as what it should be into `damaged/`, where nothing is ever
   // overwritten, with a remark that names it and the reason.
   void set_aside(const std::filesystem::path& path, const std::string& reason);
@@ -48,6 +53,7 @@ class Store {
   void remove_checkpoint(const Request& request) const;
 
  private:
+  void write_files(const Record& record);
   void sweep() const;  // removes what killed runs of this machine left half-written
   void clear_way(
       const std::filesystem::path& path);  // where a file is to stand: of a folder, a pipe

@@ -9,10 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "benchmarks/plan/resources.h"
+#include "core/count.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/option_json.h"
+#include "core/records/schema.h"
 
 namespace isoline::benchmarks {
 
@@ -44,28 +47,23 @@ Json header_of(const TrainedNetwork& network) {
           {"statistics", network.statistics.size()}};
 }
 
+// All but its numbers, by a header of the right form.
 TrainedNetwork from_header(const Json& json) {
-  require(json.at("schema") == kSchema,
-          [&] { return fmt::format("its schema is not {}", kSchema); });
-  TrainedNetwork network{.problem = component_from(json.at("problem")),
-                         .optimizer = component_from(json.at("optimizer")),
-                         .seed = json.at("seed"),
-                         .iterations = json.at("iterations"),
-                         .loss = real_of(json.at("loss")),
-                         .x_error = real_of(json.at("x_error"))};
-  network.theta.resize(json.at("parameters").get<Index>());
-  network.statistics.resize(json.at("statistics").get<Index>());
-  return network;
+  static const Schema schema(parse_json(std::string(builtin_schemas().at("network")), "schema"));
+  const std::vector<std::string> violations = schema.violations(json);
+  require(violations.empty(), [&] { return violations[0]; });
+  return {.problem = component_from(json.at("problem")),
+          .optimizer = component_from(json.at("optimizer")),
+          .seed = json.at("seed"),
+          .iterations = json.at("iterations"),
+          .loss = real_of(json.at("loss")),
+          .x_error = real_of(json.at("x_error")),
+          .theta = {},
+          .statistics = {}};
 }
 
 Json values_of(const Vector& vector) {
   return json_numbers({vector.data(), static_cast<std::size_t>(vector.size())});
-}
-
-void fill(Vector& vector, const Json& values) {
-  require(static_cast<Index>(values.size()) == vector.size(), "it holds too few numbers");
-  for (Index i = 0; i < vector.size(); ++i)
-    vector[i] = real_of(values[static_cast<std::size_t>(i)]);
 }
 
 std::string_view bytes_of(const Vector& vector) {
@@ -73,20 +71,50 @@ std::string_view bytes_of(const Vector& vector) {
           sizeof(Real) * static_cast<std::size_t>(vector.size())};
 }
 
-TrainedNetwork parsed(const std::string& text) {
-  const std::size_t end = text.find('\n');
-  TrainedNetwork network = from_header(parse_json(text.substr(0, end), "its header"));
-  if (end + 1 >= text.size()) {
-    const Json json = parse_json(text, "it");
-    fill(network.theta, json.at("theta"));
-    fill(network.statistics, json.at("mean_statistics"));
-    return network;
-  }
-  const std::size_t theta = bytes_of(network.theta).size();
-  const std::size_t statistics = bytes_of(network.statistics).size();
-  require(text.size() - end - 1 == theta + statistics, "it is cut short");
-  std::memcpy(network.theta.data(), text.data() + end + 1, theta);
-  std::memcpy(network.statistics.data(), text.data() + end + 1 + theta, statistics);
+// How many numbers the header says there are, which must be how many there are: what it says alone
+// makes no room for them.
+void require_count(const Json& header, const char* name, std::size_t there) {
+  const auto said = header.at(name).get<std::uint64_t>();
+  require(said == there, [&] {
+    return fmt::format("its \"{}\" says {} numbers and it holds {}", name, count_text(said),
+                       count_text(there));
+  });
+}
+
+Vector taken(Json& json, const char* list) {
+  require(json.contains(list), [&] { return fmt::format("it has no \"{}\"", list); });
+  require(json[list].is_array(), [&] { return fmt::format("its \"{}\" is no list", list); });
+  const std::vector<Real> values = reals_of(json[list]);
+  json.erase(list);
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
+
+TrainedNetwork from_json(Json json) {
+  require(json.is_object(), "it is no JSON object");
+  const Vector theta = taken(json, "theta"), statistics = taken(json, "mean_statistics");
+  TrainedNetwork network = from_header(json);
+  require_count(json, "parameters", static_cast<std::size_t>(theta.size()));
+  require_count(json, "statistics", static_cast<std::size_t>(statistics.size()));
+  network.theta = theta;
+  network.statistics = statistics;
+  return network;
+}
+
+TrainedNetwork from_raw(const Json& header, std::string_view numbers) {
+  TrainedNetwork network = from_header(header);
+  const auto said = header.at("parameters").get<std::uint64_t>();
+  const std::size_t there = numbers.size() / sizeof(Real);
+  require(numbers.size() % sizeof(Real) == 0 && said <= there, [&] {
+    return fmt::format("it is cut short: {} bytes of numbers follow its header, which says {} of 8",
+                       numbers.size(), count_text(said));
+  });
+  require_count(header, "statistics", there - said);
+  network.theta.resize(static_cast<Index>(said));
+  network.statistics.resize(static_cast<Index>(there - said));
+  if (said > 0) std::memcpy(network.theta.data(), numbers.data(), said * sizeof(Real));
+  if (said < there)
+    std::memcpy(network.statistics.data(), numbers.data() + said * sizeof(Real),
+                (there - said) * sizeof(Real));
   return network;
 }
 
@@ -125,12 +153,38 @@ void write_network(const TrainedNetwork& network, const std::filesystem::path& p
   write_text(path, text);
 }
 
+// A first line that is a header alone has raw numbers behind it. All else is one JSON document,
+// however it is laid out.
+TrainedNetwork network_from_text(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  if (end != std::string::npos && end + 1 < text.size()) {
+    const Json header = Json::parse(text.substr(0, end), nullptr, false);
+    if (header.is_object() && !header.contains("theta"))
+      return from_raw(header, std::string_view(text).substr(end + 1));
+  }
+  return from_json(parse_json(text, "it"));
+}
+
 TrainedNetwork read_network(const std::filesystem::path& path) {
   try {
-    return parsed(read_text(path));
-  } catch (const std::exception& error) {  // of JSON, or ours
+    return network_from_text(read_text(path));
+  } catch (const UsageError& error) {
     throw UsageError(fmt::format("{} is no trained network: {}", path.string(), error.what()));
   }
+}
+
+void require_fitting(const TrainedNetwork& network, const Problem& problem) {
+  const auto require_size = [](const char* what, Index held, Index wanted) {
+    require(held == wanted, [&] {
+      return fmt::format("it holds {} {} and its network has {}", held, what, wanted);
+    });
+  };
+  require_size("parameters", network.theta.size(), problem.unknowns());
+  Batch batch;
+  Workspace workspace;
+  problem.draw_batch(0, batch);
+  const Vector one = problem.network().statistics(network.theta, batch.input, workspace);
+  require_size("statistics", network.statistics.size(), one.size());
 }
 
 Vector averaged_statistics(const Problem& problem, VectorRef theta, std::int64_t first_step) {

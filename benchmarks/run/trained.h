@@ -21,9 +21,13 @@ struct TrainedNetwork {
 // Whole or not at all.
 void write_network(const TrainedNetwork& network, const std::filesystem::path& path);
 TrainedNetwork read_network(const std::filesystem::path& path);  // UsageError where it is none
+TrainedNetwork network_from_text(const std::string& text);       // what such a file holds
 
 // The samples that pass through a network, averaged: what `statistics` holds.
 Vector averaged_statistics(const Problem& problem, VectorRef theta, std::int64_t first_step);
+
+// UsageError where the network is not one of this problem.
+void require_fitting(const TrainedNetwork& network, const Problem& problem);
 
 // x of each input. One sample along the first index: (S, i) -> (S, k), and (S, [channels,] N, N) of
 // grids as pictures, row by row. UsageError where the shape does not fit.

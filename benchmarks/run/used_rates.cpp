@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/run/store.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/option_json.h"
@@ -32,10 +31,8 @@ std::string table_of(const std::string& origin) { return origin.substr(0, origin
 
 }  // namespace
 
-std::vector<std::string> write_used_rates(const Rates& rates, const std::vector<Request>& requests,
-                                          const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "rates.json";
-  Store store(folder);  // or a UsageError that says why it cannot be
+void write_used_rates(const Rates& rates, const std::vector<Request>& requests, Store& store) {
+  const std::filesystem::path file = store.folder() / "rates.json";
   RowsByPair rows = stored_rows(file, store);
   for (const Request& request : requests) {
     if (request.rates.empty()) continue;
@@ -48,11 +45,10 @@ std::vector<std::string> write_used_rates(const Rates& rates, const std::vector<
                                        {"file", row->origin},
                                        {"source", parse_json(row->source, row->origin)}};
   }
-  if (rows.empty()) return store.remarks();
+  if (rows.empty()) return;
   Json all = Json::array();
   for (const auto& [pair, row] : rows) all.push_back(row);
   write_text(file, json_text(Json{{"schema", "isoline.rates/1"}, {"rows", all}}) + "\n");
-  return store.remarks();
 }
 
 }  // namespace isoline::benchmarks

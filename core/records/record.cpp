@@ -94,6 +94,7 @@ Json result_of(const Json& record) {
 
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
+  record.erase("output");                  // may hold addresses and times
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
   for (const char* name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"}) {
     record.at("summary").erase(name);

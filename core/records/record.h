@@ -58,6 +58,7 @@ struct Record {
   Request request;
   Status status = Status::running;
   std::string message;
+  std::string output;           // what it wrote to its terminal, where that was kept
   std::string claimed;          // what the method said of its own success
   Aim aim = Aim::loss;          // what its user wants: headlines count that
   std::optional<Real> minimum;  // f_L: declared, else the best known

@@ -12,18 +12,26 @@ namespace isoline {
 
 bool asks_to_learn(const OptionValues& options) { return options.text("mode") == "learn"; }
 
-std::string cell_digest(const Request& request) {
+// A JSON object with its keys in order.
+CellNames::CellNames(const Request& request) {
   Json budget;
   Form<Budget>::write(request.budget, JsonPlace(budget));
-  const Json asked{{"problem", request.problem.name},
-                   {"problem_options", to_json(request.problem.options)},
-                   {"optimizer", request.optimizer.name},
-                   {"optimizer_options", to_json(request.optimizer.options)},
-                   {"seed", request.seed},
-                   {"budget", std::move(budget)},
-                   {"threads", request.threads}};
-  return digest(json_text(asked));
+  const Json shared{{"budget", std::move(budget)},
+                    {"optimizer", request.optimizer.name},
+                    {"optimizer_options", to_json(request.optimizer.options)},
+                    {"problem", request.problem.name},
+                    {"problem_options", to_json(request.problem.options)}};
+  before_ = json_text(shared);
+  before_.pop_back();  // its brace
+  before_ += ",\"seed\":";
+  after_ = ",\"threads\":" + std::to_string(request.threads) + "}";
 }
+
+std::string CellNames::of(std::uint64_t seed) const {
+  return digest(before_ + std::to_string(seed) + after_);
+}
+
+std::string cell_digest(const Request& request) { return CellNames(request).of(request.seed); }
 
 Request named(Request request) {
   request.cell = cell_digest(request);

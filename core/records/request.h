@@ -42,6 +42,16 @@ struct Request {
 
 std::string cell_digest(const Request& request);
 
+// The cells of requests that differ in their seeds alone: what they share is written once.
+class CellNames {
+ public:
+  explicit CellNames(const Request& request);
+  std::string of(std::uint64_t seed) const;
+
+ private:
+  std::string before_, after_;  // of the digested text, around the seed
+};
+
 // Digests of all that may change a result besides the request, by part: platform, harness, problem,
 // optimizer, network.
 using BuildParts = std::map<std::string, std::string>;

@@ -1,0 +1,131 @@
+// isoline replay RECORD...: runs the cell of a record again and holds the two to each other.
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "benchmarks/cli/on_terminal.h"
+#include "benchmarks/cli/session.h"
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/run/runner.h"
+#include "benchmarks/run/same_result.h"
+#include "core/errors.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A result folder that nobody keeps.
+class PassingFolder {
+ public:
+  PassingFolder() {
+    std::string pattern = (fs::temp_directory_path() / "isoline-replay-XXXXXX").string();
+    const char* made = mkdtemp(pattern.data());
+    require(made != nullptr, [&] { return fmt::format("cannot create {}", pattern); });
+    path_ = made;
+  }
+  ~PassingFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  PassingFolder(const PassingFolder&) = delete;
+  PassingFolder& operator=(const PassingFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+// What the record asked, of the components that this program has.
+Request request_of(const Record& record, const Catalog& catalog) {
+  const Request& asked = record.request;
+  constexpr double kLeastSeconds = 60, kSlower = 10;  // this machine may be slower, and busy
+  return named(
+      {.problem = complete_problem(catalog, asked.problem.name, asked.problem.options),
+       .optimizer = complete_optimizer(catalog, asked.optimizer.name, asked.optimizer.options),
+       .seed = asked.seed,
+       .budget = asked.budget,
+       .threads = asked.threads,
+       .rates = asked.rates,
+       .hard_seconds = std::max(kLeastSeconds, kSlower * record.summary.wall_seconds)});
+}
+
+// Why the two were not made by the same program on the same platform; empty where they were.
+std::string difference_of_builds(const Record& record, const Request& request) {
+  if (record.cell != request.cell) return "this program asks for another cell: options were added";
+  if (record.build == build_digest(request)) return "";
+  std::string parts;
+  for (const auto& [part, digest] : build_parts(request)) {
+    const auto stored = record.build_parts.find(part);
+    if (stored != record.build_parts.end() && stored->second == digest) continue;
+    parts += (parts.empty() ? "" : ", ") + part;
+  }
+  return "another build answered, which differs in: " + parts;
+}
+
+// One run of the request; nothing where the user stopped it.
+std::optional<Record> run_again(const Request& request, const ReplayArguments& given,
+                                Session& session) {
+  const PassingFolder folder;
+  Store store(folder.path());
+  RunOptions options{.force = true, .command = session.command()};
+  if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
+  const Outcome outcome = run_all(session.catalog(), {request}, store, options);
+  return outcome.is_interrupted ? std::nullopt : store.find(request);
+}
+
+std::string words_of(const Comparison& found) {
+  if (!found.difference.empty()) return "differs: " + found.difference;
+  if (found.is_up_to_there)
+    return fmt::format("equal up to iteration {}, where a clock or a kill ended one of them",
+                       found.iterations);
+  return fmt::format("equal, {} iterations", found.iterations);
+}
+
+// The exit code of one record.
+int replay(const std::string& path, const ReplayArguments& given, Session& session) {
+  require(!fs::is_directory(path), [&] {
+    return fmt::format("{} is a folder: name records, such as those in its runs/", path);
+  });
+  const Record record = read_record(path);
+  const std::string title = fmt::format("{}: {} × {}, seed {}", path, record.request.problem.spec,
+                                        record.request.optimizer.spec, record.request.seed);
+  Request request;
+  try {
+    request = request_of(record, session.catalog());
+  } catch (const UsageError& error) {
+    fmt::print("{}: not comparable: {}\n", title, error.what());
+    return kNotComparable;
+  }
+  const std::string builds = difference_of_builds(record, request);
+  const std::optional<Record> again = run_again(request, given, session);
+  if (!again) return kInterrupted;
+  Record same_asked = *again;
+  same_asked.cell = record.cell;  // told apart above
+  same_asked.request = record.request;
+  const Comparison found = compare_results(record, same_asked);
+  fmt::print("{}: {}{}\n", title, builds.empty() ? "" : "not comparable: " + builds + "; ",
+             words_of(found));
+  if (!builds.empty()) return kNotComparable;
+  return found.difference.empty() ? kGood : kWorse;
+}
+
+}  // namespace
+
+int replay_verb(const ReplayArguments& given, Session& session) {
+  int worst = kGood;
+  for (const std::string& path : given.records) {
+    const int code = replay(path, given, session);
+    if (code == kInterrupted) {
+      fmt::print(stderr, "interrupted\n");
+      return kInterrupted;
+    }
+    if (worst != kWorse && code != kGood) worst = code;
+  }
+  return worst;
+}
+
+}  // namespace isoline::benchmarks
