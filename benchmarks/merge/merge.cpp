@@ -36,7 +36,7 @@ std::string title_of(const Request& request) {
 Json json_from(const std::string& text, const std::string& origin) {
   return parse_json(text, origin);
 }
-std::string text_of(const Plan& plan) { return json_text(plan); }
+std::string text_of(const Plan& plan) { return file_text(plan); }
 std::string text_of(const Json& json) { return json_text(json) + "\n"; }
 
 class Merge {

@@ -115,7 +115,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
   for (const PlannedCell& cell : plan.cells) known.insert(cell.cell);
   for (const PlannedCell& cell : cells)
     if (known.insert(cell.cell).second) plan.cells.push_back(cell);
-  write_text(path, json_text(plan));
+  write_text(path, file_text(plan));
 }
 
 namespace {
@@ -198,7 +198,7 @@ void Store::write_files(const Record& record) {
     write_pictures(*record.exhibit, pictures);
   }
   clear_way(path);
-  write_text(path, json_text(record));
+  write_text(path, file_text(record));
 }
 
 fs::path Store::checkpoint_path(const Request& request) const {
@@ -213,7 +213,7 @@ void Store::remove_checkpoint(const Request& request) const {
 void Store::write(const Sheet& sheet) {
   const fs::path path = folder_ / "components" / sheet.file_name();
   clear_way(path);
-  write_text(path, json_text(sheet));
+  write_text(path, file_text(sheet));
 }
 
 }  // namespace isoline::benchmarks

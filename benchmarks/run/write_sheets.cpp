@@ -40,7 +40,7 @@ class SheetWriter {
  private:
   // By the whole one, where that can be made.
   bool replace(Sheet& sheet, const std::function<Sheet()>& make) {
-    const IsolatedText made = isolated_text([&] { return json_text(make()); }, kSheetSeconds);
+    const IsolatedText made = isolated_text([&] { return file_text(make()); }, kSheetSeconds);
     std::string reason = made.failure;
     if (made.text) try {
         sheet = sheet_from_text(*made.text, "what it wrote");
@@ -82,7 +82,7 @@ class SheetWriter {
       Sheet sheet;
       sheet.options_text = "[]";
       sheet.prices = measure_prices(make_problem(catalog_, component, 0), build);
-      return json_text(sheet);
+      return file_text(sheet);
     };
     const auto text = isolated_text(measured, kSheetSeconds).text;
     if (text) try {

@@ -10,9 +10,9 @@ struct Plan;
 struct Record;
 struct Sheet;
 
-std::string json_text(const Record& record);
-std::string json_text(const Plan& plan);
-std::string json_text(const Sheet& sheet);
+std::string file_text(const Record& record);
+std::string file_text(const Plan& plan);
+std::string file_text(const Sheet& sheet);
 
 // Most of a record's file, or that of its pictures: ours have some tens of thousands.
 inline constexpr std::size_t kMostRecordBytes = std::size_t{64} << 20;

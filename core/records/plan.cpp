@@ -30,7 +30,7 @@ Json to_json(const Plan& plan) {
   return json;
 }
 
-std::string json_text(const Plan& plan) { return json_text(to_json(plan)) + "\n"; }
+std::string file_text(const Plan& plan) { return json_text(to_json(plan)) + "\n"; }
 
 Plan plan_from_text(const std::string& text, const std::string& origin) {
   JsonReader reader;

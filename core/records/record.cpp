@@ -54,7 +54,7 @@ Json to_json(const Record& record) {
   return json;
 }
 
-std::string json_text(const Record& record) { return json_text(to_json(record)) + "\n"; }
+std::string file_text(const Record& record) { return json_text(to_json(record)) + "\n"; }
 
 Record record_from_text(const std::string& text, const std::string& origin) {
   static thread_local JsonReader reader;

@@ -96,7 +96,7 @@ Json to_json(const Sheet& sheet) {
   return json;
 }
 
-std::string json_text(const Sheet& sheet) { return json_text(to_json(sheet)) + "\n"; }
+std::string file_text(const Sheet& sheet) { return json_text(to_json(sheet)) + "\n"; }
 
 Sheet sheet_from_text(const std::string& text, const std::string& origin) {
   JsonReader reader;
