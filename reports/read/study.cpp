@@ -8,32 +8,20 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <tuple>
-#include <unordered_map>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "reports/read/newest.h"
+#include "reports/read/result_files.h"
 
 namespace isoline::reports {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Which stand there under such a name, whatever they are; where that cannot be told, why.
-std::vector<fs::path> json_files(const fs::path& folder, std::vector<Unreadable>& unreadable) {
-  std::vector<fs::path> files;
-  try {
-    for (const std::string& name : names_in(folder))
-      if (name.ends_with(".json")) files.push_back(folder / name);
-  } catch (const UsageError& error) {
-    unreadable.push_back({folder, error.what()});
-  }
-  return files;
-}
-
 // The record, or why it is none.
-std::string read_into(Record& record, const fs::path& file) {
+std::string read_into(Record& record, const std::string& file) {
   try {
     record = read_record(file);
     return "";
@@ -42,59 +30,28 @@ std::string read_into(Record& record, const fs::path& file) {
   }
 }
 
-const std::string& started(const Record& record) { return record.provenance.run.started; }
-
-// ISO times sort as text; the file name decides where they are absent or equal.
-bool is_newer(const Record& a, const Record& b) {
-  return std::pair(started(a), a.file_name()) > std::pair(started(b), b.file_name());
-}
-
-// Where the record of each cell stands among the `kept` first ones of all.
-using Places = std::unordered_map<std::string, std::size_t>;
-
-// What no clock decides is the same in all records of one build.
-bool are_at_odds(const Record& a, const Record& b) {
-  return a.build == b.build && !a.is_nondeterministic && !b.is_nondeterministic &&
-         result_of(to_json(a)) != result_of(to_json(b));
-}
-
-void keep_newest(Study& study, Places& place, std::size_t index) {
-  Record& record = study.runs[index];
-  const std::size_t kept = place.size();
-  const auto [at, is_first] = place.emplace(record.cell, kept);
-  Record& known = study.runs[at->second];
-  if (!is_first) ++study.superseded;
-  if (!is_first && are_at_odds(record, known)) study.disputed.insert(record.cell);
-  if (&known != &record && (is_first || is_newer(record, known))) known = std::move(record);
-}
-
 void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener) {
-  std::vector<fs::path> files;
-  for (const fs::path folder : folders)
-    for (fs::path& file : json_files(folder / "runs", study.unreadable))
-      files.push_back(std::move(file));
+  const std::vector<std::string> files = record_files(folders, study.unreadable);
   std::vector<std::string> reasons(files.size());
-  study.runs.resize(files.size());
+  std::vector<Record> runs(files.size());
   share(
-      files.size(), [&](std::size_t i) { reasons[i] = read_into(study.runs[i], files[i]); },
-      listener);
-  Places place;
+      files.size(), [&](std::size_t i) { reasons[i] = read_into(runs[i], files[i]); }, listener);
+  std::vector<RunMark> marks(files.size());
   for (std::size_t i = 0; i < files.size(); ++i)
     if (reasons[i].empty())
-      keep_newest(study, place, i);
+      marks[i] = mark_of(runs[i]);
     else
       study.unreadable.push_back({files[i], std::move(reasons[i])});
-  study.runs.resize(place.size());
-  const auto order = [](const Record& r) {
-    return std::tie(r.request.problem.spec, r.request.optimizer.spec, r.request.seed, r.cell);
-  };
-  std::sort(study.runs.begin(), study.runs.end(),
-            [&](const Record& a, const Record& b) { return order(a) < order(b); });
+  Newest newest =
+      newest_of(marks, [&](std::size_t i, std::size_t j) { return are_at_odds(runs[i], runs[j]); });
+  for (const std::size_t i : newest.kept) study.runs.push_back(std::move(runs[i]));
+  study.superseded = newest.superseded;
+  study.disputed = std::move(newest.disputed);
 }
 
 void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& known) {
-  for (const fs::path& file : json_files(folder / "components", study.unreadable)) try {
-      Sheet sheet = sheet_from_text(read_text(file), file.string());
+  for (const std::string& file : json_files(folder / "components", study.unreadable)) try {
+      Sheet sheet = sheet_from_text(read_text(file), file);
       if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
     } catch (const std::exception& error) {
       study.unreadable.push_back({file, error.what()});
