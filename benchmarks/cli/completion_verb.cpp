@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "benchmarks/cli/verbs.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -52,7 +53,7 @@ int completion_verb(const CompletionArguments& given, Session&) {
   std::string verbs, script = kBash;
   for (const std::string& verb : given.verbs) verbs += verb + " ";
   script.replace(script.find(kPlace), kPlace.size(), verbs);
-  fmt::print("{}", script);
+  say(stdout, script);
   return kGood;
 }
 

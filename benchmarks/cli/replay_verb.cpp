@@ -12,6 +12,7 @@
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/same_result.h"
 #include "core/errors.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -97,7 +98,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   try {
     request = request_of(record, session.catalog());
   } catch (const UsageError& error) {
-    fmt::print("{}: not comparable: {}\n", title, error.what());
+    say(stdout, fmt::format("{}: not comparable: {}\n", title, error.what()));
     return kNotComparable;
   }
   const std::string builds = difference_of_builds(record, request);
@@ -107,8 +108,9 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   same_asked.cell = record.cell;  // told apart above
   same_asked.request = record.request;
   const Comparison found = compare_results(record, same_asked);
-  fmt::print("{}: {}{}\n", title, builds.empty() ? "" : "not comparable: " + builds + "; ",
-             words_of(found));
+  say(stdout,
+      fmt::format("{}: {}{}\n", title, builds.empty() ? "" : "not comparable: " + builds + "; ",
+                  words_of(found)));
   if (!builds.empty()) return kNotComparable;
   return found.difference.empty() ? kGood : kWorse;
 }
@@ -120,7 +122,7 @@ int replay_verb(const ReplayArguments& given, Session& session) {
   for (const std::string& path : given.records) {
     const int code = replay(path, given, session);
     if (code == kInterrupted) {
-      fmt::print(stderr, "interrupted\n");
+      say(stderr, "interrupted\n");
       return kInterrupted;
     }
     if (worst != kWorse && code != kGood) worst = code;

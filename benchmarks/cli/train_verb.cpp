@@ -16,6 +16,7 @@
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/trained.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -82,8 +83,9 @@ void train_and_write(const Catalog& catalog, const Request& request, const std::
 }
 
 void show(const Trace& trace, std::int64_t iterations, const char* end) {
-  fmt::print(stderr, "\riteration {} of {}, loss {:.3g}, error in x {:.3g}   {}",
-             trace.last.iteration, iterations, trace.last.loss, trace.last.x_error, end);
+  say(stderr,
+      fmt::format("\riteration {} of {}, loss {:.3g}, error in x {:.3g}   {}", trace.last.iteration,
+                  iterations, trace.last.loss, trace.last.x_error, end));
 }
 
 // How far it has come, as a line that each call overwrites.
@@ -115,12 +117,14 @@ int train_verb(const TrainArguments& given, Session& session) {
                        trace.message);
   });
   if (!is_trained(trace)) {
-    fmt::print(stderr, "isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message);
+    say(stderr,
+        fmt::format("isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message));
     return kWorse;
   }
-  fmt::print("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n", given.out,
-             request.problem.spec, request.optimizer.spec, trace.last.iteration, trace.last.loss,
-             trace.last.x_error);
+  say(stdout,
+      fmt::format("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n",
+                  given.out, request.problem.spec, request.optimizer.spec, trace.last.iteration,
+                  trace.last.loss, trace.last.x_error));
   return kGood;
 }
 

@@ -90,7 +90,7 @@ std::vector<Probe> probes_together(const Catalog& catalog, const std::vector<Set
       if (all.size() >= kAtLeast && monotonic_nanoseconds() - begin > kNanoseconds) break;
       all.push_back(probe(catalog, setting));
     }
-    return all.dump();
+    return json_text(all);
   };
   const auto text = isolated_text(probe_some, kProbeSeconds).text;
   std::vector<Probe> probes;
@@ -106,7 +106,7 @@ std::vector<Probe> probes_apart(const Catalog& catalog, const std::vector<Settin
   for (const Setting& setting : settings) {
     if (probes.size() == kMost) break;
     const auto text =
-        isolated_text([&] { return probe(catalog, setting).dump(); }, kProbeSeconds).text;
+        isolated_text([&] { return json_text(probe(catalog, setting)); }, kProbeSeconds).text;
     probes.push_back(text ? probe_from(parse_json(*text, "probe")) : Probe());
   }
   return probes;
