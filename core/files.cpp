@@ -3,13 +3,21 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <utility>
 
+#include "core/digest.h"
 #include "core/errors.h"
 
 namespace isoline {
@@ -24,8 +32,9 @@ namespace fs = std::filesystem;
 // An open file, closed with its scope; `close` tells whether that went well.
 class OpenFile {
  public:
-  OpenFile(const fs::path& path, int how, const char* what)
-      : descriptor_(::open(path.c_str(), how | O_CLOEXEC, 0644)) {
+  OpenFile(const fs::path& path, int how)
+      : descriptor_(::open(path.c_str(), how | O_CLOEXEC, 0644)) {}
+  OpenFile(const fs::path& path, int how, const char* what) : OpenFile(path, how) {
     if (descriptor_ < 0) fail(what, path);
   }
   ~OpenFile() {
@@ -51,32 +60,152 @@ void write_all(int file, std::string_view text, const fs::path& path) {
 }
 
 void write_new(const fs::path& path, std::string_view text, bool is_flushed) {
-  OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC, "create");
+  OpenFile file(path, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW, "create");
   write_all(file.descriptor(), text, path);
   if (is_flushed && ::fsync(file.descriptor()) != 0) fail("flush", path);
   if (!file.close()) fail("close", path);
 }
 
-}  // namespace
+[[noreturn]] void refuse(const fs::path& path, std::string_view reason) {
+  throw UsageError(fmt::format("cannot read {}: {}", path.string(), reason));
+}
 
-std::string read_text(const fs::path& path) {
-  constexpr std::size_t kChunk = 1 << 16;
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  std::string text;
-  ssize_t count = file < 0 ? -1 : 1;
-  while (count > 0) {
-    const std::size_t size = text.size();
-    text.resize(size + kChunk);
-    while ((count = ::read(file, text.data() + size, kChunk)) < 0 && errno == EINTR) continue;
-    text.resize(size + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+// What it is, where that is no file to read.
+const char* oddity_of(mode_t mode) {
+  if (S_ISREG(mode)) return nullptr;
+  if (S_ISDIR(mode)) return "it is a folder";
+  if (S_ISFIFO(mode)) return "it is a pipe";
+  if (S_ISSOCK(mode)) return "it is a socket";
+  if (S_ISLNK(mode)) return "it is a symbolic link, which is not followed here";
+  return "it is a device";
+}
+
+void require_readable(const struct stat& found, const fs::path& path, std::size_t most_bytes) {
+  if (const char* oddity = oddity_of(found.st_mode)) refuse(path, oddity);
+  if (static_cast<std::size_t>(found.st_size) > most_bytes)
+    refuse(path,
+           fmt::format("it has {} bytes, and at most {} are read", found.st_size, most_bytes));
+}
+
+// All of an open file, which has about so many bytes: some of the system's say 0.
+std::string all_of(int file, std::size_t size, const fs::path& path, std::size_t most_bytes) {
+  constexpr std::size_t kLeast = 1 << 12;
+  std::string text(std::max(size + 1, kLeast), '\0');  // with room to see the end
+  std::size_t have = 0;
+  for (;;) {
+    const ssize_t got = ::read(file, text.data() + have, text.size() - have);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(path, strerror(errno));
+    if (got == 0) break;
+    have += static_cast<std::size_t>(got);
+    if (have > most_bytes) refuse(path, fmt::format("it grows beyond {} bytes", most_bytes));
+    if (have == text.size()) text.resize(2 * have);
   }
-  if (file >= 0) ::close(file);
-  if (count < 0) throw UsageError(fmt::format("cannot read {}", path.string()));
+  text.resize(have);
   return text;
 }
 
+// "9c1d52aa": tells the processes of this machine from those of others. Machines made of one image
+// differ in their host's name, and containers have process numbers of their own.
+std::string machine_name() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  std::string identity;
+  std::getline(std::ifstream("/etc/machine-id"), identity);
+  std::error_code unknown;
+  const fs::path numbers = fs::read_symlink("/proc/self/ns/pid", unknown);
+  constexpr std::size_t kDigits = 8;
+  return digest(fmt::format("{} {} {}", identity, host.data(), numbers.string()))
+      .substr(0, kDigits);
+}
+
+const std::string& this_machine() {
+  static const std::string name = machine_name();
+  return name;
+}
+
+// The process of this machine that a temporary file is named after.
+std::optional<pid_t> writer_of(const fs::path& path) {
+  if (path.extension() != ".tmp") return std::nullopt;
+  const std::string writer = path.stem().extension().string();  // ".9c1d52aa-4711"
+  const std::string ours = "." + this_machine() + "-";
+  if (!writer.starts_with(ours)) return std::nullopt;
+  pid_t process = 0;
+  const char* const end = writer.data() + writer.size();
+  const auto [stop, error] = std::from_chars(writer.data() + ours.size(), end, process);
+  if (error != std::errc() || stop != end || process <= 0) return std::nullopt;
+  return process;
+}
+
+// Never onto what has the new name. Some file systems cannot promise that: there it is looked up.
+bool has_moved(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;
+  if (!is_there(to)) return ::rename(from.c_str(), to.c_str()) == 0;
+  errno = EEXIST;
+  return false;
+}
+
+}  // namespace
+
+// Looked at before it is opened, for some devices act when they are, and after, for another file
+// may have taken the name.
+std::string read_text(const fs::path& path, std::size_t most_bytes, Links links) {
+  const bool follows = links == Links::followed;
+  struct stat found {};
+  if ((follows ? ::stat : ::lstat)(path.c_str(), &found) != 0) refuse(path, strerror(errno));
+  require_readable(found, path, most_bytes);
+  const OpenFile file(path, O_RDONLY | O_NONBLOCK | (follows ? 0 : O_NOFOLLOW));
+  if (file.descriptor() < 0 || ::fstat(file.descriptor(), &found) != 0)
+    refuse(path, strerror(errno));
+  require_readable(found, path, most_bytes);
+  return all_of(file.descriptor(), static_cast<std::size_t>(found.st_size), path, most_bytes);
+}
+
+bool is_there(const fs::path& path) {
+  struct stat found {};
+  return ::lstat(path.c_str(), &found) == 0;
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  fs::directory_iterator at(folder, error);
+  if (error == std::errc::no_such_file_or_directory) return paths;
+  for (; !error && at != fs::directory_iterator(); at.increment(error)) paths.push_back(at->path());
+  require(!error,
+          [&] { return fmt::format("cannot list {}: {}", folder.string(), error.message()); });
+  std::ranges::sort(paths);
+  return paths;
+}
+
+fs::path temporary_of(const fs::path& path) {
+  return path.string() + fmt::format(".{}-{}.tmp", this_machine(), ::getpid());
+}
+
+bool is_abandoned(const fs::path& path) {
+  const std::optional<pid_t> writer = writer_of(path);
+  struct stat found {};
+  return writer && ::lstat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode) &&
+         ::kill(*writer, 0) != 0 && errno == ESRCH;
+}
+
+fs::path move_into(const fs::path& folder, const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  constexpr int kMost = 1000;  // copies of one name
+  for (int i = 1; i <= kMost; ++i) {
+    const std::string number = i == 1 ? "" : fmt::format(".{}", i);
+    fs::path place = folder / (path.filename().string() + number);
+    if (has_moved(path, place)) return place;
+    if (errno != EEXIST) break;
+  }
+  throw UsageError(
+      fmt::format("cannot move {} into {}: {}", path.string(), folder.string(), strerror(errno)));
+}
+
 void write_text(const fs::path& path, std::string_view text) {
-  const fs::path temporary = path.string() + fmt::format(".{}.tmp", ::getpid());
+  const fs::path temporary = temporary_of(path);
   try {
     write_new(temporary, text, true);
     if (::rename(temporary.c_str(), path.c_str()) != 0) fail("rename to", path);

@@ -1,16 +1,46 @@
-// Files read whole, and written whole or not at all.
+// Files read whole, and written whole or not at all. What stands under a name may be anything: a
+// pipe that never ends, a device, a link in a circle. Only regular files of a bounded size are
+// read.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace isoline {
 
-std::string read_text(const std::filesystem::path& path);  // UsageError where it cannot be read
+inline constexpr std::size_t kMostBytes = std::size_t{2} << 30;  // of any file that is read whole
+
+enum class Links { followed, refused };  // symbolic ones, as the last part of a path
+
+// UsageError, which says why, where it cannot be read: never waits, never reads on without end.
+std::string read_text(const std::filesystem::path& path, std::size_t most_bytes = kMostBytes,
+                      Links links = Links::followed);
+
+// Whether anything stands under that name, be it a link that leads nowhere.
+bool is_there(const std::filesystem::path& path);
+
+// What stands in a folder, sorted, whatever it is; nothing where there is no such folder.
+// UsageError where it cannot be listed.
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
 // By a temporary file, fsync and rename: whoever looks finds the old file or the new one.
 void write_text(const std::filesystem::path& path, std::string_view text);
+
+// The name that a file has while this process writes it, "record.json.9c1d52aa-4711.tmp": of the
+// machine and the process.
+std::filesystem::path temporary_of(const std::filesystem::path& path);
+
+// Whether a path is a regular file of such a name, left by a process of this machine that is gone.
+// What another machine writes into a shared folder is never taken for abandoned.
+bool is_abandoned(const std::filesystem::path& path);
+
+// Moves what stands under a name into a folder, beside what is there already: "plan.json.2" where
+// "plan.json" is taken. Where it now stands; UsageError where it cannot be moved.
+std::filesystem::path move_into(const std::filesystem::path& folder,
+                                const std::filesystem::path& path);
 
 // For many files of a folder that has no name yet: each is written without a flush, and one flush
 // of them all comes before the folder gets its name. Both throw where the disk says no.

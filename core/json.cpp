@@ -3,13 +3,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/errors.h"
 #include "core/files.h"
 
 namespace isoline {
+namespace {
+
+// Trees are copied, compared and written by recursion: each level takes of the stack.
+constexpr std::size_t kMostNesting = 200;
+
+// How deep lists and objects stand within each other, texts aside; of what is no JSON some number.
+std::size_t nesting_of(std::string_view text) {
+  std::size_t depth = 0, most = 0;
+  bool is_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i];
+    if (letter == '"') is_text = !is_text;
+    if (is_text && letter == '\\') ++i;
+    if (is_text) continue;
+    if (letter == '[' || letter == '{') most = std::max(most, ++depth);
+    if ((letter == ']' || letter == '}') && depth > 0) --depth;
+  }
+  return most;
+}
+
+}  // namespace
 
 Json json_number(Real value) {
   if (std::isnan(value)) return "nan";
@@ -29,7 +52,7 @@ Real real_of(const Json& value) {
   if (text == "nan") return std::nan("");
   if (text == "inf") return INFINITY;
   if (text == "-inf") return -INFINITY;
-  throw UsageError(fmt::format("expected a number, got {}", value.dump()));
+  throw UsageError(fmt::format("expected a number, got {}", json_text(value)));
 }
 
 std::vector<Real> reals_of(const Json& list) {
@@ -39,12 +62,18 @@ std::vector<Real> reals_of(const Json& list) {
   return values;
 }
 
-std::string json_text(const Json& value, int indent) { return value.dump(indent); }
+std::string json_text(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 Json parse_json(const std::string& text, const std::string& origin) {
+  require(nesting_of(text) <= kMostNesting, [&] {
+    return fmt::format("{} is no JSON of ours: it nests deeper than {} levels", origin,
+                       kMostNesting);
+  });
   try {
     return Json::parse(text);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {  // also of numbers that are out of range
     throw UsageError(fmt::format("{} is no JSON: {}", origin, error.what()));
   }
 }
@@ -54,7 +83,7 @@ Json read_json(const std::filesystem::path& path) {
 }
 
 void write_json(const std::filesystem::path& path, const Json& value) {
-  write_text(path, value.dump(1) + "\n");
+  write_text(path, json_text(value, 1) + "\n");
 }
 
 }  // namespace isoline

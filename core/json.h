@@ -19,7 +19,8 @@ Json json_numbers(std::span<const Real> values);
 Real real_of(const Json& value);  // UsageError when it is no number
 std::vector<Real> reals_of(const Json& list);
 
-std::string json_text(const Json& value, int indent = -1);  // for who prints and does not parse
+// The one way of ours to JSON as text: what is no UTF-8 in it becomes U+FFFD, and nothing throws.
+std::string json_text(const Json& value, int indent = -1);
 
 Json parse_json(const std::string& text, const std::string& origin);  // UsageError names the origin
 Json read_json(const std::filesystem::path& path);

@@ -26,7 +26,8 @@ OptionValue option_from(const std::string& name, const Json& json) {
   if (json.is_number_integer()) return json.get<Index>();
   if (json.is_number()) return json.get<Real>();
   require(json.is_string(), [&] {
-    return fmt::format("the option {} is neither number, truth nor text: {}", name, json.dump());
+    return fmt::format("the option {} is neither number, truth nor text: {}", name,
+                       json_text(json));
   });
   return json.get<std::string>();
 }
@@ -40,7 +41,7 @@ Json to_json(const OptionValues& options) {
 }
 
 OptionValues option_values_from(const Json& json) {
-  require(json.is_object(), [&] { return "options are an object, got " + json.dump(); });
+  require(json.is_object(), [&] { return "options are an object, got " + json_text(json); });
   OptionValues options;
   for (const auto& [name, value] : json.items()) options.set(name, option_from(name, value));
   return options;

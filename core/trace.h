@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 
 #include "core/aim.h"
@@ -86,9 +87,12 @@ struct Trace {
   char claimed[kText] = "";     // what the method says of its own success, in its words
 };
 
-// Truncated to what fits.
-inline void set_text(char (&out)[Trace::kText], std::string_view text) {
-  out[text.copy(out, Trace::kText - 1)] = '\0';
-}
+// What fits, cut at a character.
+void set_text(char (&out)[Trace::kText], std::string_view text);
+
+// What cannot be, in a trace that another process had its hands on; empty where all of it is sound:
+// every count, size, choice and text is within its law, so that whoever reads it reads nothing
+// else.
+std::string defect_of(const Trace& trace);
 
 }  // namespace isoline

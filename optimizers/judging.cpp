@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
@@ -74,9 +75,23 @@ void Meter::persist(Archive& archive) {
           judged_.loss, judged_theta_, previous_, wall, processor);
   archive.raw(&trace_, sizeof trace_);  // plain data, but for atomics that nobody waits for
   if (!archive.is_reading()) return;
+  require_sound();
+  trace_.is_finished = false;
   watch_.set(wall, processor);
   prepare();
   watch_.resume();
+}
+
+// What a file brought back is this run's, or nothing: sizes and counts are within their laws.
+void Meter::require_sound() const {
+  const Index n = problem_.unknowns();
+  const bool is_sound = targets_met_ >= 0 && targets_met_ <= kRungs && iteration_ >= 0 &&
+                        work_ >= 0 && status_ == Status::running && batch_loss_.is_sound() &&
+                        batch_x_error_.is_sound() && previous_.size() == n &&
+                        (judged_theta_.size() == n || judged_theta_.size() == 0);
+  require(is_sound, "the state of the meter is none of this run");
+  const std::string defect = defect_of(trace_);
+  require(defect.empty(), [&] { return "its trace holds " + defect; });
 }
 
 Status Meter::iterate(VectorRef theta) {

@@ -112,8 +112,9 @@ class Meter {
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   Real judged_gradient_norm();
   void keep_point();
-  void show();        // what was learned
-  void prepare();     // samples and limits
+  void show();     // what was learned
+  void prepare();  // samples and limits
+  void require_sound() const;
   void set_scales();  // by which this run's targets are measured; after the start's loss
   Real target_at(Real tau) const { return trace_.minimum + tau * trace_.scale; }  // nan where none
   const Batch& judging() const { return problem_.is_learned() ? validation_ : problem_.batch(); }

@@ -15,6 +15,7 @@ class RunningMean {
   static constexpr std::int64_t kMost = 256;
 
   void add(Real value) { values_[static_cast<std::size_t>(count_++ % kMost)] = value; }
+  bool is_sound() const { return count_ >= 0; }  // what a file brought back need not be
   Real last() const { return count_ > 0 ? at(count_ - 1) : 0; }
   // Over the last `most` values, or as many as there are; nan where there is none.
   Real mean(std::int64_t most) const {

@@ -7,6 +7,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/runner.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 
@@ -28,6 +29,11 @@ void print_outcome(const Outcome& outcome, bool quiet) {
     fmt::print(stderr, "… and {} more\n", outcome.failures.size() - kMost);
   for (const std::string& name : outcome.conflicts)
     fmt::print(stderr, "{}: its repetition gave another result\n", name);
+  for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
+  if (!outcome.missing.empty())
+    say(stderr, fmt::format("the records of {} of {} cells have vanished while the run went on, as "
+                            "that of {}; the same command runs these cells again\n",
+                            outcome.missing.size(), outcome.planned, outcome.missing.front()));
   if (outcome.reused_from_other_builds > 0)
     fmt::print(stderr, "{} of the reused cells were run by another build\n",
                outcome.reused_from_other_builds);
@@ -44,7 +50,13 @@ int exit_code_of(const Outcome& outcome) {
     fmt::print(stderr, "interrupted; the same command goes on where it stopped\n");
     return kInterrupted;
   }
-  return outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
+  if (outcome.interrupted > 0) {
+    fmt::print(stderr, "{} of the cells were killed by others; the same command runs them again\n",
+               outcome.interrupted);
+    return kInterrupted;
+  }
+  const bool is_whole = outcome.missing.empty();
+  return is_whole && outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
 }
 
 }  // namespace isoline::benchmarks

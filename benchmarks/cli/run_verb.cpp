@@ -16,9 +16,9 @@
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/soundness.h"
-#include "benchmarks/run/used_rates.h"
 #include "core/spec.h"
 #include "core/suggest.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 
@@ -164,9 +164,7 @@ int run_verb(const RunArguments& given, Session& session) {
     print_plan(all, options, given, session);
     return kGood;
   }
-  require_sound(catalog, all.requests);
-  write_used_rates(all.rates, all.requests, all.folder);
-  const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options);
+  const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options, all.rates);
   print_outcome(outcome, given.quiet);
   if (!given.no_report) report_on(all.folder, given.quiet, session);
   return exit_code_of(outcome);

@@ -29,20 +29,44 @@ Checkpoint::Checkpoint(std::filesystem::path path, std::string identity, double 
   std::signal(SIGTERM, [](int) { stop_requested = 1; });
 }
 
-bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) const {
-  if (path_.empty() || !std::filesystem::exists(path_)) return false;
-  std::string bytes = read_text(path_);
+bool Checkpoint::restore(Optimizer& method, Meter& meter, Vector& theta) {
+  std::error_code error;
+  if (path_.empty() || !std::filesystem::exists(path_, error)) return false;
+  std::string bytes;
+  try {
+    bytes = read_text(path_);
+  } catch (const UsageError&) {
+    return false;
+  }
   if (!bytes.starts_with(identity_)) return false;
   bytes.erase(0, identity_.size());
   const std::string sum = bytes.substr(0, kDigits);
   bytes.erase(0, kDigits);
   if (sum != digest(bytes)) return false;
+  try {
+    read(std::move(bytes), method, meter, theta);
+  } catch (const std::exception& cause) {
+    set_aside();
+    throw DamagedCheckpoint(cause.what());
+  }
+  return true;
+}
+
+void Checkpoint::read(std::string bytes, Optimizer& method, Meter& meter, Vector& theta) const {
   Archive archive(std::move(bytes));
   method.start(meter, theta);
   archive(theta);
-  if (!method.persist(archive)) return false;
+  require(theta.size() == meter.unknowns(), "it holds another number of unknowns");
+  require(method.persist(archive), "the method keeps no state");
   meter.persist(archive);
-  return true;
+  require(archive.bytes_left() == 0, "it holds more than the state of this run");
+}
+
+// To be looked at, and out of the way.
+void Checkpoint::set_aside() {
+  std::error_code error;
+  std::filesystem::rename(path_, path_.string() + ".damaged", error);
+  if (error) path_.clear();  // nor is it read again, or written over
 }
 
 bool Checkpoint::save_if_due(Optimizer& method, Meter& meter, Vector& theta) {
@@ -55,13 +79,15 @@ bool Checkpoint::save_if_due(Optimizer& method, Meter& meter, Vector& theta) {
   return stop_requested != 0;
 }
 
-bool Checkpoint::save(Optimizer& method, Meter& meter, Vector& theta) const {
+void Checkpoint::save(Optimizer& method, Meter& meter, Vector& theta) const {
   Archive archive;
   archive(theta);
-  if (!method.persist(archive)) return false;
+  if (!method.persist(archive)) return;
   meter.persist(archive);
-  write_text(path_, identity_ + digest(archive.bytes()) + archive.bytes());
-  return true;
+  try {
+    write_text(path_, identity_ + digest(archive.bytes()) + archive.bytes());
+  } catch (const std::runtime_error&) {  // a full disk costs the checkpoint, not the run
+  }
 }
 
 }  // namespace isoline::benchmarks

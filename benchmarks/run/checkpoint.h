@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 #include "optimizers/optimizer.h"
@@ -11,6 +12,10 @@ namespace isoline::benchmarks {
 using optimizers::Meter;
 using optimizers::Optimizer;
 
+struct DamagedCheckpoint : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 class Checkpoint {
  public:
   Checkpoint() = default;  // keeps nothing
@@ -18,13 +23,17 @@ class Checkpoint {
   Checkpoint(std::filesystem::path path, std::string identity, double every_seconds);
 
   // Brings back method, meter and θ where there is something to go on with. The method is started.
-  bool restore(Optimizer& method, Meter& meter, Vector& theta) const;
+  // A file that says it is that, and is not, is set aside: DamagedCheckpoint, and what was given
+  // holds parts of it. The next call finds nothing.
+  bool restore(Optimizer& method, Meter& meter, Vector& theta);
   // Writes the state if the last time is long enough ago, or if the process was asked to stop: then
-  // true.
+  // true. Where the disk refuses, the run goes on without.
   bool save_if_due(Optimizer& method, Meter& meter, Vector& theta);
 
  private:
-  bool save(Optimizer& method, Meter& meter, Vector& theta) const;
+  void read(std::string bytes, Optimizer& method, Meter& meter, Vector& theta) const;
+  void save(Optimizer& method, Meter& meter, Vector& theta) const;
+  void set_aside();
 
   std::filesystem::path path_;
   std::string identity_;

@@ -1,18 +1,13 @@
-// The run loop, the verdict on it, and the record made from its trace.
+// The run loop, and the verdict on it.
 #include "benchmarks/run/execute.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
 #include <new>
-#include <sstream>
+#include <stdexcept>
 
-#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/perturbation.h"
-#include "core/ladder.h"
-#include "core/records/provenance.h"
 
 namespace isoline::benchmarks {
 
@@ -22,13 +17,6 @@ namespace {
 void conclude(Trace& trace, Status status, std::string_view message) {
   trace.status = status;
   set_text(trace.message, message);
-}
-
-std::vector<std::string> lines_of(const char* text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
 }
 
 void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint& checkpoint,
@@ -48,141 +36,12 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   if (returned) *returned = theta;
 }
 
-// What only learning problems and problems with series trace.
-void add_training_columns(const Trace& trace, Curve& curve) {
-  const auto column = [&](auto&& value) {
-    std::vector<Real> values;
-    for (int i = 0; i < trace.points; ++i) values.push_back(value(trace.point[i]));
-    return values;
-  };
-  if (!trace.is_learned) return;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::int64_t window = TracePoint::kWindows[i];
-    curve.batch_loss[window] = column([i](const TracePoint& point) { return point.batch_loss[i]; });
-    curve.batch_x_error[window] =
-        column([i](const TracePoint& point) { return point.batch_x_error[i]; });
-  }
-}
-
-std::map<std::string, std::vector<Real>> series_of(const Trace& trace) {
-  std::map<std::string, std::vector<Real>> series;
-  const std::vector<std::string> names = lines_of(trace.series_names);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    for (int p = 0; p < trace.points; ++p) series[names[i]].push_back(trace.point[p].series[i]);
-  return series;
-}
-
-Grid grid_of(const Trace::Exhibit& shown) {
-  return {shown.rows, shown.columns, {shown.value, shown.value + shown.rows * shown.columns}};
-}
-
-std::optional<Exhibit> exhibit_of(const Trace& trace) {
-  if (trace.shown_x.rows == 0) return std::nullopt;
-  return Exhibit{.grid = trace.shown_grid,
-                 .target = grid_of(trace.shown_target),
-                 .x = grid_of(trace.shown_x),
-                 .truth = grid_of(trace.shown_truth)};
-}
-
-Curve curve_of(const Trace& trace) {
-  Curve curve;
-  const int points = trace.points;
-  for (int i = 0; i < points; ++i) {
-    const TracePoint& point = trace.point[i];
-    curve.iteration.push_back(point.iteration);
-    curve.work.push_back(point.work);
-    curve.wall_seconds.push_back(point.wall_seconds);
-    curve.processor_seconds.push_back(point.processor_seconds);
-    curve.loss.push_back(point.loss);
-    curve.x_error.push_back(point.x_error);
-    curve.gradient_norm.push_back(point.gradient_norm);
-    curve.step_norm.push_back(point.step_norm);
-  }
-  add_training_columns(trace, curve);
-  for (std::size_t kind = 0; kind < kOracles; ++kind) {
-    std::vector<std::int64_t> column;
-    for (int i = 0; i < points; ++i) column.push_back(trace.point[i].counts[kind]);
-    if (!column.empty() && column.back() > 0)
-      curve.counts[std::string(kOracleNames[kind])] = column;
-  }
-  return curve;
-}
-
-Hits hits_of(const Trace& trace) {
-  Hits hits;
-  for (std::size_t j = 0; j < kRungs; ++j) {
-    const TraceHit& hit = trace.hit[j];
-    const bool is_met = hit.iteration >= 0;
-    hits.target.push_back(rung(j));
-    hits.iteration.push_back(hit.iteration);
-    hits.work.push_back(is_met ? hit.work : -1);
-    hits.forwards.push_back(is_met ? hit.counts[0] : -1);
-    hits.wall_seconds.push_back(is_met ? hit.wall_seconds : std::nan(""));
-  }
-  for (std::size_t kind = 0; kind < kOracles; ++kind) {
-    std::vector<std::int64_t> column;
-    for (const TraceHit& hit : trace.hit)
-      column.push_back(hit.iteration >= 0 ? hit.counts[kind] : -1);
-    const bool is_asked = trace.last.counts[kind] > 0 || std::ranges::max(column) > 0;
-    if (is_asked) hits.counts[std::string(kOracleNames[kind])] = std::move(column);
-  }
-  return hits;
-}
-
-Trajectory trajectory_of(const Trace& trace) {
-  Trajectory path;
-  const int points = trace.points;
-  for (int i = 0; i < points; ++i) {
-    path.x.emplace_back(trace.path_x[i], trace.path_x[i] + trace.path_inputs);
-    path.y.emplace_back(trace.path_y[i], trace.path_y[i] + trace.path_outputs);
-  }
-  return path;
-}
-
-Summary summary_of(const Trace& trace) {
-  const TracePoint& last = trace.last;
-  return {.iterations = last.iteration,
-          .work = last.work,
-          .rejected_steps = trace.rejected_steps,
-          .start_loss = trace.start_loss,
-          .loss = trace.points > 0 ? last.loss : std::nan(""),
-          .best_loss = trace.best_loss,
-          .start_x_error = trace.start_x_error,
-          .x_error = trace.points > 0 ? last.x_error : std::nan(""),
-          .gradient_norm = trace.points > 0 ? last.gradient_norm : std::nan(""),
-          .wall_seconds = last.wall_seconds,
-          .processor_seconds = last.processor_seconds,
-          .peak_memory_bytes = trace.peak_memory_bytes};
-}
-
-bool has_returned(const Trace& trace) { return !is_failure(trace.status) && trace.points > 0; }
-
-// f ≤ f_L + τ s at the returned point; a run that broke off returned none.
-std::optional<bool> is_verified(const Trace& trace, Real tau) {
-  if (std::isnan(trace.minimum)) return std::nullopt;
-  return has_returned(trace) && std::isfinite(trace.last.loss) &&
-         trace.last.loss <= trace.minimum + tau * trace.scale;
-}
-
-std::optional<bool> is_found(const Trace& trace, Real tau) {
-  if (std::isnan(trace.x_scale)) return std::nullopt;
-  return has_returned(trace) && trace.last.x_error <= x_goal(tau, trace.x_scale, trace.x_floor);
-}
-
-// What the run is judged by, and how it fared.
-void add_verdicts(const Trace& trace, Record& record) {
-  const auto known = [](Real value) {
-    return std::isnan(value) ? std::nullopt : std::optional(value);
-  };
-  record.aim = trace.aim;
-  record.minimum = known(trace.minimum);
-  record.scale = known(trace.scale);
-  record.x_scale = known(trace.x_scale);
-  record.x_floor = trace.x_floor;
-  for (const auto& [name, tau] : kVerified) {
-    record.verified[name] = is_verified(trace, tau);
-    record.found[name] = is_found(trace, tau);
-  }
+// Of other sizes the harness would read what is not there.
+void require_size(const Vector& theta, const Meter& meter) {
+  if (theta.size() == meter.unknowns()) return;
+  throw std::runtime_error(
+      fmt::format("the method changed the number of unknowns from {} to {}, which is no step",
+                  meter.unknowns(), theta.size()));
 }
 
 }  // namespace
@@ -195,6 +54,7 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
   }
   while (verdict == Status::running) {
     verdict = method.step(meter, theta);
+    require_size(theta, meter);
     if (method.reports_iterations()) break;
     const Status judged = meter.iterate(theta);
     if (judged != Status::running) verdict = judged;
@@ -207,7 +67,14 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
 void execute(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint checkpoint,
              Vector* returned, int perturbation) {
   try {
-    run(catalog, request, trace, checkpoint, returned, perturbation);
+    try {
+      run(catalog, request, trace, checkpoint, returned, perturbation);
+    } catch (const DamagedCheckpoint&) {  // which is set aside: from the beginning, then
+      new (&trace) Trace;
+      run(catalog, request, trace, checkpoint, returned, perturbation);
+    }
+    if (trace.status == Status::running)
+      conclude(trace, Status::interrupted, "it was asked to stop, and kept its state");
   } catch (const NotApplicable& reason) {
     conclude(trace, Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {
@@ -217,34 +84,6 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
   } catch (...) {
     conclude(trace, Status::failed, "threw something that is no std::exception");
   }
-}
-
-Record record_of(const Request& request, const Trace& trace) {
-  Record record;
-  record.request = request;
-  require(!request.cell.empty(), "a request is run without the name of its cell");
-  record.cell = request.cell;
-  record.build = build_digest(request);
-  record.build_parts = build_parts(request);
-  record.status = trace.status;
-  record.message = trace.message;
-  record.claimed = trace.claimed;
-  add_verdicts(trace, record);
-  record.counts = trace.last.counts;
-  record.prices = trace.prices;
-  record.summary = summary_of(trace);
-  record.curve = curve_of(trace);
-  if (record.minimum) record.hits = hits_of(trace);
-  if (trace.path_inputs > 0) record.trajectory = trajectory_of(trace);
-  record.series = series_of(trace);
-  record.exhibit = exhibit_of(trace);
-  record.privileges = lines_of(trace.privileges);
-  record.is_nondeterministic = trace.stopped_by_clock || trace.status == Status::timeout ||
-                               trace.status == Status::interrupted ||
-                               trace.status == Status::memory;
-  if (trace.is_finished) record.repeat_wall_seconds = {trace.last.wall_seconds};
-  record.provenance.build = this_build();
-  return record;
 }
 
 }  // namespace isoline::benchmarks

@@ -1,59 +1,59 @@
-// Work in a process of its own: whatever it does to itself, this process goes on.
+// One run in a process of its own: whatever it does to itself, this process goes on.
 #pragma once
 
-#include <sys/resource.h>
-
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
+#include "benchmarks/run/captured_output.h"
+#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/limits.h"
+#include "benchmarks/run/process_group.h"
+#include "benchmarks/run/returned.h"
+#include "benchmarks/run/shared_memory.h"
 #include "core/trace.h"
 
 namespace isoline::benchmarks {
 
-struct Limits {
-  double startup_seconds = 30;  // from fork to the first oracle call
-  double hard_seconds = 60;     // from the first oracle call
-  std::int64_t memory_bytes = std::int64_t{4} << 30;
-};
-
-// One run in a child process. Its trace lives in shared memory and outlives the child.
+// Its trace lives in shared memory and outlives the child. Until the child has ended it may hold
+// anything; then it is checked whole, and what is read of it is sound.
 class Worker {
  public:
-  Worker();
+  Worker() = default;
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
   void start(const std::function<void(Trace&)>& work, const Limits& limits, int threads);
-  bool is_running() const { return pid_ > 0; }
+  bool is_running() const { return group_.is_running(); }
   // Ends the child where it is over a limit, collects it where it has ended. True once it has.
   bool poll();
-  void interrupt();  // ends it at once, as `interrupted`
+  // Asks the child to keep its state and end. So that many may be asked before one is waited for.
+  void ask_to_stop();
+  void interrupt();  // asks, waits a little, ends it: what was not done by then is `interrupted`
+  void dispute(const std::string& message);  // of a child that has ended: it failed after all
   const Trace& trace() const { return *trace_; }
-  int descriptor() const { return descriptor_; }  // readable when the child has ended
+  const CapturedOutput& output() const { return output_; }
+  // What the child said that it returned, to be judged by another process, which inherits the
+  // memory where it is started after this worker was made.
+  void keep_returned(VectorRef theta) { returned_->keep(theta); }  // called by the child
+  const double* returned() const { return returned_->theta; }
+  Index returned_size() const;                            // 0: nothing
+  int descriptor() const { return group_.descriptor(); }  // readable when the child has ended
 
  private:
-  void kill_as(Status status, const std::string& message);
-  void collect(int wait_status, const rusage& usage);
-  void enforce();
+  void do_in_child(const std::function<void(Trace&)>& work, int threads);
+  void conclude(Status status, const std::string& message);
+  void finish(const ProcessGroup::End& end);
+  void judge_end(int wait_status);
 
-  Trace* trace_;
-  Limits limits_;
-  pid_t pid_ = 0;
-  int descriptor_ = -1;
-  std::int64_t started_ = 0;       // monotonic nanoseconds
-  std::optional<Status> verdict_;  // ours, when we killed it
+  Shared<Trace> trace_;
+  Shared<Returned> returned_;
+  ProcessGroup group_;
+  CapturedOutput output_;
+  LimitWatch watch_;
+  std::optional<LimitWatch::Breach> breach_;  // why we killed it
+  std::int64_t asked_to_stop_ = 0;            // monotonic nanoseconds; 0: it was not
 };
-
-// What work in a child process came to: its text, or why there is none.
-struct IsolatedText {
-  std::optional<std::string> text;
-  std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
-};
-
-IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
-                           std::int64_t memory_bytes = Limits{}.memory_bytes);
 
 }  // namespace isoline::benchmarks

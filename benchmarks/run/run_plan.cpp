@@ -7,6 +7,8 @@
 
 #include "benchmarks/run/sheets.h"
 #include "benchmarks/run/soundness.h"
+#include "benchmarks/run/store.h"
+#include "benchmarks/run/used_rates.h"
 #include "core/digest.h"
 #include "core/records/plan.h"
 
@@ -39,12 +41,19 @@ std::string names_of(const std::vector<Request>& requests, Component Request::*c
 
 Outcome run_plan(const Catalog& catalog, const std::string& name,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
-                 const RunOptions& options) {
+                 const RunOptions& options, const Rates& rates) {
   require_sound(catalog, requests);
   Store store(folder);
   store.plan(name, planned_cells(requests));
+  write_used_rates(rates, requests, store);
   write_sheets(catalog, requests, store);
-  return run_all(catalog, requests, store, options);
+  Outcome outcome = run_all(catalog, requests, store, options);
+  if (!outcome.missing.empty()) {
+    store.make_folders();
+    store.plan(name, planned_cells(requests));
+  }
+  outcome.remarks = store.remarks();
+  return outcome;
 }
 
 std::string folder_name_of(const std::vector<Request>& requests, const std::string& title) {

@@ -5,16 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/plan/rates.h"
 #include "benchmarks/run/runner.h"
 
 namespace isoline::benchmarks {
 
 // UsageError, and nothing written, where a component of the plan cannot be made. Else the plan is
 // stored in the folder before anything runs, so that a part never passes for the whole; then the
-// sheets of its components; then its cells are run.
+// rates that it uses and the sheets of its components; then its cells are run. The plan is stored
+// again where records have vanished by then: the folder may have been emptied.
 Outcome run_plan(const Catalog& catalog, const std::string& name,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
-                 const RunOptions& options);
+                 const RunOptions& options, const Rates& rates = {});
 
 // A folder name that says what is planned and differs where the cells do:
 // "square-rosenbrock-gd-1a2b3c4d". `title` opens it where there is one.

@@ -7,46 +7,22 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <csignal>
 #include <thread>
 
 #include "benchmarks/run/execute.h"
+#include "benchmarks/run/interrupt_guard.h"
+#include "benchmarks/run/judge.h"
+#include "benchmarks/run/pending.h"
+#include "benchmarks/run/prediction.h"
 #include "benchmarks/run/same_result.h"
+#include "core/clock.h"
 #include "core/records/provenance.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
 
-volatile std::sig_atomic_t interrupt_requested = 0;
-
-// While it lives, Ctrl-C and a polite kill only raise a flag; a second one ends us at once.
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    interrupt_requested = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupt_requested = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
-  }
-  ~InterruptGuard() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  struct sigaction old_int_ {
-  }, old_term_{};
-};
-
-std::string title_of(const Request& request) {
-  return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
-                     request.seed);
-}
+constexpr double kJudgeSeconds = 300;  // that a point may take, its problem made afresh
 
 class Runner {
  public:
@@ -56,90 +32,66 @@ class Runner {
         options_(options),
         jobs_(options.exclusive ? 1 : options.jobs),
         workers_(static_cast<std::size_t>(jobs_)),
-        tasks_(workers_.size()) {}
+        tasks_(workers_.size()),
+        judges_(catalog, workers_, kJudgeSeconds),
+        predictions_(catalog, store.folder()) {}
 
   Outcome run(const std::vector<Request>& requests) {
     const InterruptGuard guard;
-    const std::vector<const Request*> pending = find_pending(requests);
     outcome_.planned = static_cast<std::int64_t>(requests.size());
-    const auto repetitions = static_cast<std::int64_t>(pending.size());
-    Progress progress(options_.progress, "cells", outcome_.reused + repetitions, outcome_.reused);
-    std::size_t next = 0;
-    while (!interrupt_requested) {
-      next = start_some(pending, next, progress);
-      if (next == pending.size() && idle()) break;
+    Pending pending(requests, store_, options_, outcome_);
+    pending_ = &pending;
+    Progress progress(options_.progress, "cells",
+                      outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused);
+    while (guard.asked() != Asked::stop) {
+      if (guard.asked() == Asked::nothing) start_some(progress);
+      const bool is_over = guard.asked() == Asked::finish || pending.is_empty();
+      if (is_over && is_idle()) break;
+      tell_once(guard.asked());
       wait();
       collect(progress);
       progress.show();
     }
-    if (interrupt_requested) stop();
+    if (!is_idle()) stop();
+    outcome_.is_interrupted |= !pending.is_empty();
     progress.show(outcome_.run > 0);
     return outcome_;
   }
 
  private:
   struct Task {
-    const Request* request;
-    RunProvenance run;
+    const Request* request = nullptr;  // nothing is done here
+    RunProvenance run = {};
+    bool is_being_judged = false;  // the cell itself has ended
   };
 
-  // One entry a run that is wanted: a cell that is to be timed anew stands in it as often.
-  std::vector<const Request*> find_pending(const std::vector<Request>& requests) {
-    std::vector<std::pair<std::size_t, const Request*>> rounds;
-    std::optional<RecordsOfAnyBuild> earlier;  // times of two builds make no list
-    if (options_.reuse && !options_.force && options_.repeat == 1) earlier.emplace(store_.folder());
-    for (const Request& request : requests) {
-      if (earlier && is_reused(request, *earlier)) continue;
-      std::optional<Record> done = store_.find(request);
-      if (is_repeated_anyway(done)) done.reset();
-      const std::size_t have = done ? done->repeat_wall_seconds.size() : 0;
-      const bool is_timed = !done || done->status != Status::inapplicable;
-      const auto wanted = static_cast<std::size_t>(is_timed ? options_.repeat : 1);
-      if (done && (have >= wanted || is_failure(done->status))) {
-        ++outcome_.reused;
-        count(*done);
-        continue;
-      }
-      for (std::size_t i = have; i < wanted; ++i) rounds.emplace_back(i - have, &request);
-    }
-    // Repetitions go round all cells, so that those of one cell see how the machine drifts.
-    std::ranges::stable_sort(rounds, {}, [](const auto& entry) { return entry.first; });
-    std::vector<const Request*> pending;
-    for (const auto& [round, request] : rounds) pending.push_back(request);
-    return pending;
-  }
-
-  // Whether the record that is there stands in nobody's way.
-  bool is_repeated_anyway(const std::optional<Record>& done) const {
-    return options_.force || (done && options_.retry.contains(done->status));
-  }
-
-  bool is_reused(const Request& request, const RecordsOfAnyBuild& earlier) {
-    if (store_.find(request)) return false;  // by this build
-    const std::optional<Record> done = earlier.find(request);
-    if (!done || is_repeated_anyway(done)) return false;
-    ++outcome_.reused;
-    ++outcome_.reused_from_other_builds;
-    count(*done);
-    return true;
-  }
-
-  std::size_t start_some(const std::vector<const Request*>& pending, std::size_t next,
-                         Progress& progress) {
-    for (std::size_t i = 0; i < workers_.size() && next < pending.size(); ++i) {
-      if (workers_[i].is_running()) continue;
-      const Request& request = *pending[next++];
-      tasks_[i] = {&request, run_provenance()};
-      progress.started(title_of(request));
-      if (options_.force) store_.remove_checkpoint(request);
+  void start_some(Progress& progress) {
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      if (tasks_[i].request) continue;
+      const Request* request = pending_->next();
+      if (!request) return;
+      tasks_[i] = {request, run_provenance()};
+      progress.started(title_of(*request));
+      if (options_.force) store_.remove_checkpoint(*request);
       workers_[i].start(
-          [&](Trace& trace) {
-            execute(catalog_, request, trace, checkpoint_of(request), nullptr,
+          [&, i, request](Trace& trace) {
+            Vector returned;
+            execute(catalog_, *request, trace, checkpoint_of(*request), &returned,
                     options_.perturbation);
+            workers_[i].keep_returned(returned);
           },
-          limits_of(request, options_.limits), request.threads);
+          limits_of(*request, options_.limits, predictions_.of(*request)), request->threads);
     }
-    return next;
+  }
+
+  void tell_once(Asked asked) {
+    if (asked != Asked::finish || std::exchange(has_told_, true) ||
+        options_.progress == Progress::Style::silent)
+      return;
+    const auto running =
+        std::ranges::count_if(tasks_, [](const Task& task) { return task.request; });
+    say(stderr,
+        fmt::format("\nfinishing {} running cells; Ctrl-C again stops them now\n", running));
   }
 
   Checkpoint checkpoint_of(const Request& request) const {
@@ -155,8 +107,8 @@ class Runner {
             .command = options_.command};
   }
 
-  bool idle() const {
-    return std::ranges::none_of(workers_, [](const Worker& worker) { return worker.is_running(); });
+  bool is_idle() const {
+    return std::ranges::none_of(tasks_, [](const Task& task) { return task.request; });
   }
 
   void wait() const {
@@ -164,49 +116,79 @@ class Runner {
     std::vector<pollfd> waiting;
     for (const Worker& worker : workers_)
       if (worker.is_running()) waiting.push_back({worker.descriptor(), POLLIN, 0});
+    judges_.add_to(waiting);
     ::poll(waiting.data(), waiting.size(), kMilliseconds);
   }
 
+  // Cells that have ended go to a judge where they claim a point, and are kept once it has spoken.
   void collect(Progress& progress) {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
-      if (!workers_[i].is_running() || !workers_[i].poll()) continue;
-      keep(tasks_[i], workers_[i].trace());
-      progress.finished();
+      Task& task = tasks_[i];
+      if (!task.request || task.is_being_judged || !workers_[i].poll()) continue;
+      task.is_being_judged = has_point(workers_[i].trace());
+      if (task.is_being_judged)
+        judges_.ask(i, *task.request);
+      else
+        keep(i, progress);
+    }
+    for (const Verdict& verdict : judges_.collect()) {
+      settle(verdict);
+      keep(verdict.slot, progress);
     }
   }
 
+  static bool has_point(const Trace& trace) {
+    return !is_failure(trace.status) && trace.status != Status::inapplicable &&
+           trace.status != Status::interrupted;
+  }
+
+  void settle(const Verdict& verdict) {
+    Worker& worker = workers_[verdict.slot];
+    if (!verdict.judged) return worker.dispute("its point could not be judged: " + verdict.failure);
+    const std::string found = contradiction(told_by(worker.trace()), *verdict.judged);
+    if (!found.empty()) worker.dispute(found);
+  }
+
+  // Cells that run keep their state and end; a point that no judge has seen by then is found again.
   void stop() {
+    constexpr std::int64_t kGrace = 3'000'000'000;  // nanoseconds
     outcome_.is_interrupted = true;
-    for (std::size_t i = 0; i < workers_.size(); ++i) {
-      if (!workers_[i].is_running()) continue;
-      workers_[i].interrupt();
-      keep(tasks_[i], workers_[i].trace());
-    }
+    for (Worker& worker : workers_) worker.ask_to_stop();
+    for (Worker& worker : workers_)
+      if (worker.is_running()) worker.interrupt();
+    Progress silent(Progress::Style::silent, "", 0, 0);
+    const std::int64_t last = monotonic_nanoseconds() + kGrace;
+    for (collect(silent); !is_idle() && monotonic_nanoseconds() < last; collect(silent)) wait();
   }
 
-  void keep(Task& task, const Trace& trace) {
-    Record record = record_of(*task.request, trace);
+  void keep(std::size_t slot, Progress& progress) {
+    const Request& request = *tasks_[slot].request;
+    keep(tasks_[slot], workers_[slot]);
+    pending_->release(request);
+    tasks_[slot] = {};
+    progress.finished();
+  }
+
+  void keep(Task& task, const Worker& worker) {
+    Record record = record_of(*task.request, worker.trace());
     record.provenance.run = task.run;
+    if (options_.keeps_output) record.output = worker.output().text();
+    if (record.status == Status::crashed && record.output.empty())
+      record.output = worker.output().last_words();
     std::optional<Record> earlier = store_.find(record.request);
-    if (is_repeated_anyway(earlier) && !repeated(record)) earlier.reset();
+    const bool is_redone = options_.force || (earlier && options_.retry.contains(earlier->status));
+    if (is_redone && !repeated(record)) earlier.reset();
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
         !same_result(*earlier, record))
       outcome_.conflicts.push_back(title_of(*task.request));
     store_.write(record, earlier);
     if (record.status != Status::interrupted) store_.remove_checkpoint(record.request);
     ++outcome_.run;
-    if (!earlier) count(record);
+    if (!earlier) outcome_.count(record);
   }
 
   // Whether an earlier repetition of this cell ran within this very call.
   bool repeated(const Record& record) { return !seen_.insert(record.cell).second; }
-
-  void count(const Record& record) {
-    ++outcome_.statuses[record.status];
-    if (is_failure(record.status))
-      outcome_.failures.push_back(fmt::format("{}: {}: {}", title_of(record.request),
-                                              name_of(record.status), record.message));
-  }
 
   const Catalog& catalog_;
   Store& store_;
@@ -214,7 +196,11 @@ class Runner {
   int jobs_;
   std::vector<Worker> workers_;
   std::vector<Task> tasks_;
+  Judges judges_;
+  Pending* pending_ = nullptr;  // of the plan that is run
+  Predictions predictions_;
   std::set<std::string> seen_;
+  bool has_told_ = false;  // that it is finishing
   Outcome outcome_;
 };
 
@@ -222,16 +208,16 @@ class Runner {
 
 int one_a_core() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-Limits limits_of(const Request& request, const Limits& standard) {
-  Limits limits = standard;
-  if (request.hard_seconds > 0) limits.hard_seconds = request.hard_seconds;
-  if (std::isfinite(request.budget.seconds)) limits.hard_seconds = 2 * request.budget.seconds;
-  return limits;
-}
-
 Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                 const RunOptions& options) {
-  return Runner(catalog, store, options).run(requests);
+  Outcome outcome = Runner(catalog, store, options).run(requests);
+  if (outcome.is_interrupted) return outcome;
+  const std::optional<RecordsOfAnyBuild> earlier =
+      options.reuse ? std::optional<RecordsOfAnyBuild>(store.folder()) : std::nullopt;
+  for (const Request& request : requests)
+    if (!store.has(request) && !(earlier && earlier->find(request)))
+      outcome.missing.push_back(title_of(request));
+  return outcome;
 }
 
 }  // namespace isoline::benchmarks

@@ -3,13 +3,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "benchmarks/run/isolate.h"
-#include "benchmarks/run/prices.h"
 #include "core/decompose.h"
-#include "core/errors.h"
-#include "core/files.h"
 #include "core/json.h"
 #include "core/option_json.h"
 
@@ -55,31 +50,50 @@ std::optional<Real> condition_of(const Problem& problem) {
   return least > 0 ? svd.sigma[0] / least : std::numeric_limits<Real>::infinity();
 }
 
+// x₁ and x₂, or y₁ and y₂, over a window.
+template <class Visit>
+void for_each_point(const std::array<Real, 4>& window, Visit visit) {
+  const auto& [low1, high1, low2, high2] = window;
+  for (Index j = 0; j < kGrid; ++j)
+    for (Index i = 0; i < kGrid; ++i)
+      visit(i, j, Eigen::Vector2d(grid_point(low1, high1, i), grid_point(low2, high2, j)));
+}
+
+// The least box around points, those aside that are not finite: one pole would make it boundless.
+class Box {
+ public:
+  void include(const Eigen::Vector2d& point) {
+    if (!point.allFinite()) return;
+    low_ = low_.cwiseMin(point);
+    high_ = high_.cwiseMax(point);
+  }
+  std::optional<std::array<Real, 4>> window() const {
+    if (!low_.allFinite()) return std::nullopt;
+    return std::array<Real, 4>{low_[0], high_[0], low_[1], high_[1]};
+  }
+
+ private:
+  Eigen::Vector2d low_ = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
+  Eigen::Vector2d high_ = -low_;
+};
+
 // L over the problem's window in x, and over the box in y that the window maps into.
 void draw_landscapes(const Problem& problem, Sheet& sheet) {
   Landscape in_x{*problem.window(), Grid(kGrid, kGrid), problem.contour_spacing()};
-  const auto& [x1_low, x1_high, x2_low, x2_high] = in_x.window;
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<Real>::infinity());
-  Eigen::Vector2d high = -low;
+  Box image;
   Point point;
-  for (Index j = 0; j < kGrid; ++j)
-    for (Index i = 0; i < kGrid; ++i) {
-      const Eigen::Vector2d x(grid_point(x1_low, x1_high, i), grid_point(x2_low, x2_high, j));
-      problem.forward(x, point);
-      in_x.loss(i, j) = point.loss;
-      if (problem.outputs() != 2) continue;
-      low = low.cwiseMin(point.y.col(0));
-      high = high.cwiseMax(point.y.col(0));
-    }
+  for_each_point(in_x.window, [&](Index i, Index j, const Eigen::Vector2d& x) {
+    problem.forward(x, point);
+    in_x.loss(i, j) = point.loss;
+    if (problem.outputs() == 2) image.include(point.y.col(0));
+  });
   sheet.landscape_x = in_x;
-  if (problem.outputs() != 2) return;
-  const std::array<Real, 4> image{low[0], high[0], low[1], high[1]};
-  Landscape in_y{problem.y_window().value_or(image), Grid(kGrid, kGrid), problem.contour_spacing()};
-  const auto& [y1_low, y1_high, y2_low, y2_high] = in_y.window;
-  for (Index j = 0; j < kGrid; ++j)
-    for (Index i = 0; i < kGrid; ++i)
-      in_y.loss(i, j) = problem.loss_of(
-          Eigen::Vector2d(grid_point(y1_low, y1_high, i), grid_point(y2_low, y2_high, j)));
+  const auto window = problem.y_window() ? problem.y_window() : image.window();
+  if (problem.outputs() != 2 || !window) return;
+  Landscape in_y{*window, Grid(kGrid, kGrid), problem.contour_spacing()};
+  for_each_point(in_y.window, [&](Index i, Index j, const Eigen::Vector2d& y) {
+    in_y.loss(i, j) = problem.loss_of(y);
+  });
   sheet.landscape_y = in_y;
 }
 
@@ -111,26 +125,46 @@ std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
   return all;
 }
 
+// What the registry knows of a component, without making one.
+template <class Entry>
+Sheet described(const char* kind, const Entry& entry, const Component& component) {
+  return {.kind = kind,
+          .name = entry.name,
+          .spec = component.spec,
+          .title = entry.title,
+          .formula = entry.formula,
+          .source = entry.source,
+          .note = entry.note,
+          .options_text = json_text(describe_options(entry.options))};
+}
+
 }  // namespace
 
-Sheet problem_sheet(const Catalog& catalog, const Component& component) {
+Sheet described_problem(const Catalog& catalog, const Component& component) {
   const ProblemEntry& entry = catalog.problems.at(component.name);
-  const Problem problem = make_problem(catalog, component, 0);
-  Sheet sheet{.kind = "problem",
-              .name = entry.name,
-              .spec = component.spec,
-              .title = entry.title,
-              .formula = entry.formula,
-              .source = entry.source,
-              .note = entry.note,
-              .options_text = json_text(describe_options(entry.options)),
-              .oracles = names_of(problem.offers()),
-              .inverse = kInverseNames[static_cast<int>(problem.inverse_kind())],
-              .unknowns = problem.unknowns(),
-              .residuals = problem.residuals(),
-              .aim = entry.aim,
-              .target = small(problem.target())};
+  Sheet sheet = described("problem", entry, component);
+  sheet.aim = entry.aim;
   sheet.panels = entry.panels;
+  return sheet;
+}
+
+Sheet described_optimizer(const Catalog& catalog, const Component& component) {
+  const OptimizerEntry& entry = catalog.optimizers.at(component.name);
+  Sheet sheet = described("optimizer", entry, component);
+  sheet.oracles = names_of(entry.needs);
+  sheet.family = std::string(name_of(entry.family));
+  sheet.tunable = entry.tunable.option;
+  return sheet;
+}
+
+Sheet problem_sheet(const Catalog& catalog, const Component& component) {
+  const Problem problem = make_problem(catalog, component, 0);
+  Sheet sheet = described_problem(catalog, component);
+  sheet.oracles = names_of(problem.offers());
+  sheet.inverse = kInverseNames[static_cast<int>(problem.inverse_kind())];
+  sheet.unknowns = problem.unknowns();
+  sheet.residuals = problem.residuals();
+  sheet.target = small(problem.target());
   sheet.condition = condition_of(problem);
   if (problem.truth()) sheet.truth = small(*problem.truth());
   if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
@@ -138,74 +172,9 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
 }
 
 Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
-  const OptimizerEntry& entry = catalog.optimizers.at(component.name);
-  return {.kind = "optimizer",
-          .name = entry.name,
-          .spec = component.spec,
-          .title = entry.title,
-          .formula = entry.formula,
-          .source = entry.source,
-          .note = entry.note,
-          .options_text = json_text(describe_options(entry.options)),
-          .oracles = names_of(entry.needs),
-          .privileges = possible_privileges(entry, component),
-          .family = std::string(name_of(entry.family)),
-          .tunable = entry.tunable.option};
-}
-
-namespace {
-
-constexpr double kSheetSeconds = 30;
-
-std::optional<MeasuredPrices> stored_prices(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  try {
-    return sheet_from_text(read_text(file), file.string()).prices;
-  } catch (const UsageError&) {
-    return std::nullopt;  // damaged: it is written anew
-  }
-}
-
-// Those that the folder has already, where this build measured them on this processor: a run that
-// goes on does not change the report of what is done. The problem is made again, in a process of
-// its own: what goes wrong in measuring does not cost the sheet.
-std::optional<MeasuredPrices> prices_of(const Catalog& catalog, const Component& component,
-                                        const std::filesystem::path& file) {
-  const std::string build = prices_build(component);
-  auto stored = stored_prices(file);
-  if (are_ours(stored, build)) return stored;
-  const auto measured = [&] {
-    Sheet sheet;
-    sheet.options_text = "[]";
-    sheet.prices = measure_prices(make_problem(catalog, component, 0), build);
-    return json_text(to_json(sheet));
-  };
-  const auto text = isolated_text(measured, kSheetSeconds).text;
-  if (!text) return std::nullopt;
-  return sheet_from_text(*text, "prices of " + component.spec).prices;
-}
-
-}  // namespace
-
-void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store) {
-  std::set<std::string> known;
-  const auto made = [&](const std::string& spec, const auto& make) -> std::optional<Sheet> {
-    if (!known.insert(spec).second) return std::nullopt;
-    const auto text = isolated_text([&] { return json_text(to_json(make())); }, kSheetSeconds).text;
-    if (!text) return std::nullopt;
-    return sheet_from_text(*text, spec);
-  };
-  for (const Request& request : requests) {
-    if (auto sheet = made("problem " + request.problem.spec,
-                          [&] { return problem_sheet(catalog, request.problem); })) {
-      sheet->prices =
-          prices_of(catalog, request.problem, store.folder() / "components" / sheet->file_name());
-      store.write(*sheet);
-    }
-    if (const auto sheet = made("optimizer " + request.optimizer.spec,
-                                [&] { return optimizer_sheet(catalog, request.optimizer); }))
-      store.write(*sheet);
-  }
+  Sheet sheet = described_optimizer(catalog, component);
+  sheet.privileges = possible_privileges(catalog.optimizers.at(component.name), component);
+  return sheet;
 }
 
 }  // namespace isoline::benchmarks

@@ -7,10 +7,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
@@ -24,18 +22,6 @@ namespace {
 
 fs::path run_path(const fs::path& folder, const std::string& file_name) {
   return folder / "runs" / file_name;
-}
-
-std::string file_name_of(const Request& request) {
-  return record_file_name(request.cell, build_digest(request));
-}
-
-// A file half written by a process that was killed: its name ends in ".PID.tmp".
-bool is_abandoned(const fs::path& path) {
-  if (path.extension() != ".tmp") return false;
-  const std::string pid = path.stem().extension().string();  // ".PID", or empty
-  const int writer = pid.empty() ? 0 : std::atoi(pid.c_str() + 1);
-  return writer <= 0 || (kill(writer, 0) != 0 && errno == ESRCH);
 }
 
 // Held while the plan is read and written: two runs may share a folder.
@@ -56,6 +42,19 @@ class FolderLock {
 }  // namespace
 
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
+  make_folders();
+  sweep();
+}
+
+std::string Store::name_of(const Request& request) {
+  return record_file_name(request.cell, build_digest(request));
+}
+
+bool Store::has(const Request& request) const {
+  return is_there(run_path(folder_, name_of(request)));
+}
+
+void Store::make_folders() const {
   for (const char* part : {"runs", "components", "checkpoints"}) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
@@ -63,41 +62,96 @@ Store::Store(fs::path folder) : folder_(std::move(folder)) {
       return fmt::format("cannot create {}: {}", (folder_ / part).string(), error.message());
     });
   }
-  for (const auto& entry : fs::recursive_directory_iterator(folder_))
-    if (is_abandoned(entry.path())) fs::remove(entry.path());
+}
+
+// Only what our own writing leaves behind, where it writes: everything else is somebody's.
+void Store::sweep() const {
+  for (const char* part : {"", "runs", "components", "checkpoints"})
+    for (const fs::path& path : entries_of(folder_ / part))
+      if (std::error_code error; is_abandoned(path)) fs::remove(path, error);
+}
+
+void Store::set_aside(const fs::path& path, const std::string& reason) {
+  const std::string name = path.string();
+  const bool is_named = reason.find(name) != std::string::npos;
+  const std::string sentence = is_named ? reason : fmt::format("{}: {}", name, reason);
+  try {
+    remark(fmt::format("damaged: {}; moved to {}", sentence,
+                       move_into(folder_ / "damaged", path).string()));
+  } catch (const UsageError& error) {
+    remark(fmt::format("damaged: {}; {}", sentence, error.what()));
+  }
+}
+
+void Store::clear_way(const fs::path& path) {
+  std::error_code unknown;
+  switch (fs::symlink_status(path, unknown).type()) {
+    case fs::file_type::none:
+    case fs::file_type::not_found:
+    case fs::file_type::regular:
+    case fs::file_type::symlink:
+      return;  // writing replaces it
+    default:
+      set_aside(path, "it is no file");
+  }
 }
 
 void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells) {
   const FolderLock lock(folder_);
   Plan plan;
   const fs::path path = folder_ / "plan.json";
-  if (fs::exists(path)) plan = plan_from_text(read_text(path), path.string());
+  if (is_there(path)) try {
+      plan = plan_from_text(read_text(path), path.string());
+    } catch (const std::exception& error) {
+      plan = {};
+      set_aside(path, fmt::format("{} (of the cells that earlier runs planned only those with a "
+                                  "record are known)",
+                                  error.what()));
+    }
   if (std::ranges::find(plan.suites, suite) == plan.suites.end()) plan.suites.push_back(suite);
   std::set<std::string> known;
   for (const PlannedCell& cell : plan.cells) known.insert(cell.cell);
   for (const PlannedCell& cell : cells)
     if (known.insert(cell.cell).second) plan.cells.push_back(cell);
-  write_text(path, to_json(plan).dump() + "\n");
+  write_text(path, json_text(to_json(plan)) + "\n");
+}
+
+namespace {
+
+// Nothing where there is none; throws where what stands there is not the record of the request.
+std::optional<Record> stored_record(const fs::path& path, const Request& request) {
+  if (!is_there(path)) return std::nullopt;
+  Record record = read_record(path);
+  require(record.cell == request.cell,
+          [&] { return "it holds the record of another cell, " + record.cell; });
+  if (record.status == Status::interrupted) return std::nullopt;
+  return record;
+}
+
+}  // namespace
+
+std::optional<Record> Store::find(const Request& request) {
+  const fs::path path = run_path(folder_, name_of(request));
+  try {
+    return stored_record(path, request);
+  } catch (const std::exception& error) {
+    set_aside(path, error.what());
+    return std::nullopt;
+  }
 }
 
 std::optional<Record> Store::find_in(const fs::path& folder, const Request& request) {
-  const fs::path path = run_path(folder, file_name_of(request));
-  if (!fs::exists(path)) return std::nullopt;
   try {
-    Record record = read_record(path);
-    if (record.status == Status::interrupted) return std::nullopt;
-    return record;
-  } catch (const UsageError&) {
-    return std::nullopt;  // damaged: the cell is run again and the file replaced
+    return stored_record(run_path(folder, name_of(request)), request);
+  } catch (const std::exception&) {
+    return std::nullopt;  // damaged: a run sets it aside
   }
 }
 
 RecordsOfAnyBuild::RecordsOfAnyBuild(const fs::path& folder) {
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(folder / "runs", missing)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".json")
-      paths_[name.substr(0, name.find('-'))].push_back(entry);
+  for (const fs::path& path : entries_of(folder / "runs")) {
+    const std::string name = path.filename().string();
+    if (path.extension() == ".json") paths_[name.substr(0, name.find('-'))].push_back(path);
   }
 }
 
@@ -111,7 +165,7 @@ std::optional<Record> RecordsOfAnyBuild::find(const Request& request) const {
       if (is_failure(record.status) || record.is_nondeterministic) continue;
       if (!newest || newest->provenance.run.started < record.provenance.run.started)
         newest = std::move(record);
-    } catch (const UsageError&) {
+    } catch (const std::exception&) {
       continue;  // damaged
     }
   }
@@ -125,14 +179,29 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
+  try {
+    write_files(record);
+  } catch (const std::exception&) {
+    std::error_code unknown;
+    if (fs::is_directory(folder_ / "runs", unknown)) throw;
+    make_folders();  // they were removed while the run goes on
+    write_files(record);
+  }
+}
+
+void Store::write_files(const Record& record) {
   const fs::path path = run_path(folder_, record.file_name());
-  if (record.exhibit && record.exhibit->is_picture())
-    write_pictures(*record.exhibit, fs::path(path).replace_extension(".npy"));
-  write_text(path, to_json(record).dump() + "\n");
+  if (record.exhibit && record.exhibit->is_picture()) {
+    const fs::path pictures = fs::path(path).replace_extension(".npy");
+    clear_way(pictures);
+    write_pictures(*record.exhibit, pictures);
+  }
+  clear_way(path);
+  write_text(path, json_text(to_json(record)) + "\n");
 }
 
 fs::path Store::checkpoint_path(const Request& request) const {
-  return folder_ / "checkpoints" / fs::path(file_name_of(request)).replace_extension(".state");
+  return folder_ / "checkpoints" / fs::path(name_of(request)).replace_extension(".state");
 }
 
 void Store::remove_checkpoint(const Request& request) const {
@@ -141,7 +210,9 @@ void Store::remove_checkpoint(const Request& request) const {
 }
 
 void Store::write(const Sheet& sheet) {
-  write_text(folder_ / "components" / sheet.file_name(), to_json(sheet).dump() + "\n");
+  const fs::path path = folder_ / "components" / sheet.file_name();
+  clear_way(path);
+  write_text(path, json_text(to_json(sheet)) + "\n");
 }
 
 }  // namespace isoline::benchmarks

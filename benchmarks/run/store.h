@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/records/plan.h"
@@ -16,18 +17,32 @@ namespace isoline::benchmarks {
 
 class Store {
  public:
-  // Creates the folder where it is missing; UsageError where it cannot be.
   explicit Store(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  // Adds the cells to the stored plan; those of earlier runs stay planned.
+  // Adds the cells to the stored plan; those of earlier runs stay planned. A damaged plan is set
+  // aside.
   void plan(const std::string& suite, const std::vector<PlannedCell>& cells);
 
   // The record of this request by this build, unless there is none, or it is damaged or
-  // interrupted.
-  std::optional<Record> find(const Request& request) const { return find_in(folder_, request); }
+  // interrupted. A damaged one is set aside; `find_in`, which only looks, leaves it where it is.
+  std::optional<Record> find(const Request& request);
   static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
+
+  // What this build calls its record of the request, and whether there is one, of whatever kind.
+  static std::string name_of(const Request& request);
+  bool has(const Request& request) const;
+
+  // Creates the folder and its rooms where they are missing; UsageError where they cannot be.
+  void make_folders() const;
+  // Moves a file that cannot be read as what it should be into `damaged/`, where nothing is ever
+  // overwritten, with a remark that names it and the reason.
+  void set_aside(const std::filesystem::path& path, const std::string& reason);
+
+  // What its user should know: a sentence each.
+  void remark(std::string sentence) { remarks_.push_back(std::move(sentence)); }
+  const std::vector<std::string>& remarks() const { return remarks_; }
 
   // Writes the record whole; times of an earlier record of the same cell and build join its own.
   void write(Record record, const std::optional<Record>& earlier);
@@ -38,7 +53,13 @@ class Store {
   void remove_checkpoint(const Request& request) const;
 
  private:
+  void write_files(const Record& record);
+  void sweep() const;  // removes what killed runs of this machine left half-written
+  void clear_way(
+      const std::filesystem::path& path);  // where a file is to stand: of a folder, a pipe
+
   std::filesystem::path folder_;
+  std::vector<std::string> remarks_;
 };
 
 // What a folder holds of a request, whichever build wrote it.

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/run/store.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/option_json.h"
@@ -13,15 +12,16 @@ namespace {
 
 using RowsByPair = std::map<std::pair<std::string, std::string>, Json>;
 
-// What an earlier plan has left; a damaged file is written anew.
-RowsByPair stored_rows(const std::filesystem::path& file) {
+// What an earlier plan has left; a damaged file is set aside, and written anew.
+RowsByPair stored_rows(const std::filesystem::path& file, Store& store) {
   RowsByPair rows;
-  if (!std::filesystem::exists(file)) return rows;
+  if (!is_there(file)) return rows;
   try {
     const Json table = read_json(file);
     for (const Json& row : table.at("rows")) rows[{row.at("problem"), row.at("optimizer")}] = row;
-  } catch (const UsageError&) {
-  } catch (const Json::exception&) {
+  } catch (const std::exception& error) {
+    rows.clear();
+    store.set_aside(file, error.what());
   }
   return rows;
 }
@@ -31,10 +31,9 @@ std::string table_of(const std::string& origin) { return origin.substr(0, origin
 
 }  // namespace
 
-void write_used_rates(const Rates& rates, const std::vector<Request>& requests,
-                      const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "rates.json";
-  RowsByPair rows = stored_rows(file);
+void write_used_rates(const Rates& rates, const std::vector<Request>& requests, Store& store) {
+  const std::filesystem::path file = store.folder() / "rates.json";
+  RowsByPair rows = stored_rows(file, store);
   for (const Request& request : requests) {
     if (request.rates.empty()) continue;
     const auto& [problem, optimizer] = std::pair(request.problem, request.optimizer.name);
@@ -49,8 +48,7 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests,
   if (rows.empty()) return;
   Json all = Json::array();
   for (const auto& [pair, row] : rows) all.push_back(row);
-  const Store made(folder);  // or a UsageError that says why it cannot be
-  write_text(file, Json{{"schema", "isoline.rates/1"}, {"rows", all}}.dump() + "\n");
+  write_text(file, json_text(Json{{"schema", "isoline.rates/1"}, {"rows", all}}) + "\n");
 }
 
 }  // namespace isoline::benchmarks

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
+#include "core/text.h"
 
 namespace isoline {
 
@@ -20,7 +21,7 @@ void JsonPlace::set_null() const { *here_ = nullptr; }
 void JsonPlace::set(bool value) const { *here_ = value; }
 void JsonPlace::set(std::int64_t value) const { *here_ = value; }
 void JsonPlace::set(std::uint64_t value) const { *here_ = value; }
-void JsonPlace::set(std::string_view value) const { *here_ = value; }
+void JsonPlace::set(std::string_view value) const { *here_ = valid_utf8(value); }
 void JsonPlace::set(Real value) const { *here_ = json_number(value); }
 void JsonPlace::set(std::span<const Real> values) const { *here_ = json_numbers(values); }
 void JsonPlace::set(Json value) const { *here_ = std::move(value); }

@@ -27,7 +27,7 @@ class JsonPlace {
   void set(bool value) const;
   void set(std::int64_t value) const;
   void set(std::uint64_t value) const;
-  void set(std::string_view value) const;
+  void set(std::string_view value) const;  // of what is no UTF-8 U+FFFD stays
   void set(const char* value) const { set(std::string_view(value)); }
   void set(Real value) const;                    // also infinite, or not a number
   void set(std::span<const Real> values) const;  // a list of them

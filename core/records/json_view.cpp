@@ -128,9 +128,9 @@ std::vector<std::pair<std::string, JsonView>> JsonView::items() const {
 
 std::string JsonView::text() const { return simdjson::minify(element_at(place_)); }
 
-std::string JsonView::tree_text() const { return json().dump(); }
+std::string JsonView::tree_text() const { return json_text(json()); }
 
-std::string json_of_text(const std::string& text) { return Json(text).dump(); }
+std::string json_of_text(const std::string& text) { return json_text(Json(text)); }
 
 Json JsonView::json() const { return copy_of(element_at(place_)); }
 

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <functional>
-#include <numeric>
-#include <regex>
+#include <string_view>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -20,12 +20,107 @@ namespace {
 constexpr std::string_view kMagic = "\x93NUMPY";
 constexpr std::size_t kPreamble = 8;  // magic, major and minor version
 constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kMostHeaderBytes = 10'000;  // NumPy's own bound (max_header_size)
+constexpr std::size_t kMostDimensions = 64;       // NumPy's own bound (NPY_MAXDIMS of NumPy 2)
 
 struct Header {
   std::string type;
   bool is_column_major = false;
   std::vector<Index> shape;
   std::size_t data_begin = 0;
+};
+
+// Reads {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), } from left to right.
+class HeaderReader {
+ public:
+  HeaderReader(std::string_view text, Header& out) : text_(text), out_(out) {}
+
+  void read() {
+    require(takes('{'), "its header is no dictionary");
+    while (!takes('}')) {
+      read_entry(quoted("its header has a key that is no text"));
+      if (takes(',')) continue;
+      require(takes('}'), "its header is no dictionary");
+      break;
+    }
+    skip_spaces();
+    require(text_.empty(), "its header goes on behind its end");
+    require(has_type_, "its header names no plain type of numbers");
+    require(has_order_, "its header names no order of indices");
+    require(has_shape_, "its header names no shape");
+  }
+
+ private:
+  void read_entry(const std::string& key) {
+    require(takes(':'), "its header has a key without a value");
+    if (key == "descr") {
+      once(has_type_);
+      out_.type = quoted("its header names no plain type of numbers");
+    } else if (key == "fortran_order") {
+      once(has_order_);
+      out_.is_column_major = takes("True");
+      require(out_.is_column_major || takes("False"), "its header names no order of indices");
+    } else {
+      require(key == "shape",
+              [&] { return fmt::format("its header has an unknown key '{}'", key); });
+      once(has_shape_);
+      read_shape();
+    }
+  }
+
+  static void once(bool& is_known) {
+    require(!is_known, "its header has a key twice");
+    is_known = true;
+  }
+
+  void read_shape() {
+    require(takes('('), "its header names no shape");
+    while (!takes(')')) {
+      require(out_.shape.size() < kMostDimensions,
+              [] { return fmt::format("its shape has more than {} indices", kMostDimensions); });
+      out_.shape.push_back(size());
+      if (takes(',')) continue;
+      require(takes(')'), "its shape is no list of sizes");
+      break;
+    }
+  }
+
+  Index size() {
+    skip_spaces();
+    Index size = 0;
+    const char* const end = text_.data() + text_.size();
+    const auto [stop, error] = std::from_chars(text_.data(), end, size);
+    require(error == std::errc() && size >= 0, "its shape has a size that is no count of numbers");
+    text_.remove_prefix(static_cast<std::size_t>(stop - text_.data()));
+    return size;
+  }
+
+  std::string quoted(const char* law) {
+    skip_spaces();
+    require(!text_.empty() && (text_[0] == '\'' || text_[0] == '"'), law);
+    const std::size_t end = text_.find(text_[0], 1);
+    require(end != std::string_view::npos, law);
+    const std::string content(text_.substr(1, end - 1));
+    text_.remove_prefix(end + 1);
+    return content;
+  }
+
+  bool takes(std::string_view token) {
+    skip_spaces();
+    if (!text_.starts_with(token)) return false;
+    text_.remove_prefix(token.size());
+    return true;
+  }
+  bool takes(char token) { return takes(std::string_view(&token, 1)); }
+
+  void skip_spaces() {
+    const std::size_t first = text_.find_first_not_of(" \t\r\n");
+    text_.remove_prefix(std::min(first, text_.size()));
+  }
+
+  std::string_view text_;
+  Header& out_;
+  bool has_type_ = false, has_order_ = false, has_shape_ = false;
 };
 
 std::size_t length_field(const std::string& bytes, std::size_t size) {
@@ -37,42 +132,55 @@ std::size_t length_field(const std::string& bytes, std::size_t size) {
 
 Header header_of(const std::string& bytes) {
   require(bytes.starts_with(kMagic) && bytes.size() > kPreamble + 4, "it is no .npy file");
-  const std::size_t field = bytes[6] == 1 ? 2 : 4;  // version 1.0 has two bytes of length
+  const int version = bytes[kMagic.size()];
+  require(version >= 1 && version <= 3, [&] {
+    return fmt::format("its version of the format is {}; 1 to 3 can be read", version);
+  });
+  const std::size_t field = version == 1 ? 2 : 4;  // bytes of the header's length
+  const std::size_t length = length_field(bytes, field);
+  require(length <= kMostHeaderBytes, [&] {
+    return fmt::format("its header has {} bytes, and at most {} are read", length,
+                       kMostHeaderBytes);
+  });
   Header header;
-  header.data_begin = kPreamble + field + length_field(bytes, field);
+  header.data_begin = kPreamble + field + length;
   require(header.data_begin <= bytes.size(), "its header is cut short");
-  const std::string text(bytes, kPreamble + field, header.data_begin - kPreamble - field);
-  static const std::regex type("'descr': *'([^']*)'"), order("'fortran_order': *(True|False)"),
-      shape("'shape': *\\(([0-9, ]*)\\)");
-  std::smatch found;
-  require(std::regex_search(text, found, type), "its header names no plain type of numbers");
-  header.type = found[1];
-  require(std::regex_search(text, found, order), "its header names no order of indices");
-  header.is_column_major = found[1] == "True";
-  require(std::regex_search(text, found, shape), "its header names no shape");
-  const std::string sizes = found[1];
-  static const std::regex number("[0-9]+");
-  for (std::sregex_iterator i(sizes.begin(), sizes.end(), number), end; i != end; ++i)
-    header.shape.push_back(std::stoll(i->str()));
+  HeaderReader(std::string_view(bytes).substr(kPreamble + field, length), header).read();
   return header;
 }
 
-template <class Number>
-std::vector<Real> numbers_at(const std::string& bytes, std::size_t begin, std::size_t count) {
-  require(bytes.size() - begin == count * sizeof(Number), [&] {
-    return fmt::format("it holds {} bytes of numbers and its shape asks for {}",
-                       bytes.size() - begin, count * sizeof(Number));
-  });
-  std::vector<Number> raw(count);
-  if (count > 0) std::memcpy(raw.data(), bytes.data() + begin, count * sizeof(Number));
-  return {raw.begin(), raw.end()};
+// How many numbers a shape asks for. Sizes of 0 make it empty, and excuse no other size.
+std::size_t count_of(const std::vector<Index>& shape) {
+  Index count = 1, others = 1;
+  for (const Index size : shape) {
+    require(!__builtin_mul_overflow(others, std::max<Index>(size, 1), &others),
+            "its shape asks for more numbers than any file can hold");
+    count *= size;
+  }
+  return static_cast<std::size_t>(count);
 }
 
-std::vector<Real> numbers_of(const std::string& bytes, const Header& header, std::size_t count) {
-  if (header.type == "<f8") return numbers_at<double>(bytes, header.data_begin, count);
-  if (header.type == "<f4") return numbers_at<float>(bytes, header.data_begin, count);
-  if (header.type == "<i8") return numbers_at<std::int64_t>(bytes, header.data_begin, count);
-  if (header.type == "<i4") return numbers_at<std::int32_t>(bytes, header.data_begin, count);
+template <class Number>
+std::vector<Real> numbers_at(const std::string& bytes, const Header& header) {
+  const std::size_t count = count_of(header.shape), present = bytes.size() - header.data_begin;
+  require(present % sizeof(Number) == 0 && present / sizeof(Number) == count, [&] {
+    return fmt::format("it holds {} bytes of numbers and its shape asks for {} numbers of {} bytes",
+                       present, count, sizeof(Number));
+  });
+  std::vector<Real> numbers(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Number number;
+    std::memcpy(&number, bytes.data() + header.data_begin + i * sizeof(Number), sizeof(Number));
+    numbers[i] = static_cast<Real>(number);
+  }
+  return numbers;
+}
+
+std::vector<Real> numbers_of(const std::string& bytes, const Header& header) {
+  if (header.type == "<f8") return numbers_at<double>(bytes, header);
+  if (header.type == "<f4") return numbers_at<float>(bytes, header);
+  if (header.type == "<i8") return numbers_at<std::int64_t>(bytes, header);
+  if (header.type == "<i4") return numbers_at<std::int32_t>(bytes, header);
   throw UsageError(
       fmt::format("its numbers are of type '{}'; float64, float32, int64 and int32 "
                   "(little-endian) can be read",
@@ -94,17 +202,19 @@ std::vector<Real> turned(const std::vector<Real>& values, const std::vector<Inde
 
 }  // namespace
 
+NumberArray npy_from_bytes(const std::string& bytes) {
+  const Header header = header_of(bytes);
+  NumberArray array{header.shape, numbers_of(bytes, header)};
+  if (header.is_column_major) array.values = turned(array.values, array.shape);
+  for (const Real value : array.values)
+    require(std::isfinite(value), "it holds a number that is not finite");
+  return array;
+}
+
 NumberArray read_npy(const std::filesystem::path& path) {
   const std::string bytes = read_text(path);
   try {
-    const Header header = header_of(bytes);
-    const Index count =
-        std::accumulate(header.shape.begin(), header.shape.end(), Index{1}, std::multiplies<>());
-    NumberArray array{header.shape, numbers_of(bytes, header, static_cast<std::size_t>(count))};
-    if (header.is_column_major) array.values = turned(array.values, array.shape);
-    for (const Real value : array.values)
-      require(std::isfinite(value), "it holds a number that is not finite");
-    return array;
+    return npy_from_bytes(bytes);
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
   }

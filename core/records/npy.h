@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/real.h"
@@ -13,6 +14,11 @@ struct NumberArray {
   std::vector<Index> shape;
   std::vector<Real> values;
 };
+
+// Of the bytes of such a file; UsageError, which does not name it, where they are none. A header
+// longer than NumPy itself reads is refused, and a shape is held to the bytes that are there before
+// room is made for it.
+NumberArray npy_from_bytes(const std::string& bytes);
 
 // Float and integer arrays of 4 or 8 bytes a number, in either order of indices; UsageError, naming
 // the file, where it is none, is cut short, or holds a number that is not finite.

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "core/records/forms.h"
 
 namespace isoline {
@@ -40,7 +41,7 @@ Plan plan_from_text(const std::string& text, const std::string& origin) {
   }
 }
 
-Plan plan_from_json(const Json& json) { return plan_from_text(json.dump(), "it"); }
+Plan plan_from_json(const Json& json) { return plan_from_text(json_text(json), "it"); }
 
 Json plan_schema() {
   Json schema;

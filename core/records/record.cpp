@@ -5,10 +5,49 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/errors.h"
 #include "core/files.h"
+#include "core/json.h"
+#include "core/ladder.h"
 #include "core/records/record_fields.h"
 
 namespace isoline {
+namespace {
+
+constexpr std::size_t kMostRecordBytes = std::size_t{64} << 20;  // ours have some tens of thousands
+
+template <class Column>
+void require_length(std::size_t length, const char* whose, const Column& column) {
+  require(column.size() == length,
+          [&] { return fmt::format("the columns of its {} differ in length", whose); });
+}
+
+template <class Key, class Column>
+void require_length(std::size_t length, const char* whose, const std::map<Key, Column>& columns) {
+  for (const auto& [key, column] : columns) require_length(length, whose, column);
+}
+
+// Who reads a row of one column reads it of all.
+void require_equal_columns(const Record& record) {
+  const Curve& curve = record.curve;
+  const auto of_curve = [points = curve.iteration.size()](const auto&... columns) {
+    (require_length(points, "curve", columns), ...);
+  };
+  of_curve(curve.work, curve.counts, curve.wall_seconds, curve.processor_seconds, curve.loss,
+           curve.x_error, curve.gradient_norm, curve.step_norm, curve.batch_loss,
+           curve.batch_x_error, record.series);
+  if (record.trajectory) of_curve(record.trajectory->x, record.trajectory->y);
+  if (!record.hits) return;
+  const Hits& hits = *record.hits;
+  const std::size_t targets = hits.target.size();
+  require(targets <= std::size_t{kRungs}, "its hits have more targets than there are");
+  const auto of_hits = [targets](const auto&... columns) {
+    (require_length(targets, "hits", columns), ...);
+  };
+  of_hits(hits.iteration, hits.work, hits.forwards, hits.counts, hits.wall_seconds);
+}
+
+}  // namespace
 
 Json to_json(const Record& record) {
   Json json;
@@ -22,15 +61,18 @@ Record record_from_text(const std::string& text, const std::string& origin) {
   try {
     Record record;
     Form<Record>::read(json, record);
+    require_equal_columns(record);
     return record;
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("no {} record: {}", kRunSchema, error.what()));
   }
 }
 
-Record record_from_json(const Json& json) { return record_from_text(json.dump(), "it"); }
+Record record_from_json(const Json& json) { return record_from_text(json_text(json), "it"); }
 
-Record read_record(const std::string& path) { return record_from_text(read_text(path), path); }
+Record read_record(const std::string& path) {
+  return record_from_text(read_text(path, kMostRecordBytes), path);
+}
 
 Json run_schema() {
   Json schema;
@@ -51,6 +93,7 @@ Json result_of(const Json& record) {
 
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
+  record.erase("output");                  // may hold addresses and times
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
   for (const char* name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"}) {
     record.at("summary").erase(name);

@@ -58,6 +58,7 @@ struct Record {
   Request request;
   Status status = Status::running;
   std::string message;
+  std::string output;           // what it wrote to its terminal, where that was kept
   std::string claimed;          // what the method said of its own success
   Aim aim = Aim::loss;          // what its user wants: headlines count that
   std::optional<Real> minimum;  // f_L: declared, else the best known
@@ -84,7 +85,8 @@ struct Record {
 };
 
 Json to_json(const Record& record);
-// UsageError where it is no such record; the origin is named where it is no JSON.
+// UsageError where it is no such record, or its columns differ in length; the origin is named where
+// it is no JSON.
 Record record_from_json(const Json& json);
 Record record_from_text(const std::string& text, const std::string& origin);
 Record read_record(const std::string& path);

@@ -73,6 +73,8 @@ void fields(Like<Record> auto& record, auto& field) {
   field("request", record.request);
   field("status", record.status);
   field("message", record.message);
+  field.optional("output", record.output,
+                 R"({"description": "What it wrote to standard output and standard error"})");
   field("claimed", record.claimed);
   field.forgiven("aim", record.aim);
   field("minimum", record.minimum);

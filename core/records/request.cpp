@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/digest.h"
+#include "core/json.h"
 #include "core/option_json.h"
 #include "core/records/request_fields.h"
 
@@ -20,7 +21,7 @@ CellNames::CellNames(const Request& request) {
                     {"optimizer_options", to_json(request.optimizer.options)},
                     {"problem", request.problem.name},
                     {"problem_options", to_json(request.problem.options)}};
-  before_ = shared.dump();
+  before_ = json_text(shared);
   before_.pop_back();  // its brace
   before_ += ",\"seed\":";
   after_ = ",\"threads\":" + std::to_string(request.threads) + "}";
@@ -46,7 +47,7 @@ Json to_json(const Request& request) {
 Request request_from_json(const Json& json) {
   JsonReader reader;
   Request request;
-  Form<Request>::read(reader.parse(json.dump(), "a request"), request);
+  Form<Request>::read(reader.parse(json_text(json), "a request"), request);
   return named(std::move(request));
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/digest.h"
+#include "core/json.h"
 #include "core/records/forms.h"
 
 namespace isoline {
@@ -29,8 +30,9 @@ void fields(Like<Landscape> auto& landscape, auto& field) {
   field("spacing", landscape.spacing, R"({"enum": ["logarithm", "fifth root", "powers of two"]})");
   field("loss", loss);
   if constexpr (std::remove_cvref_t<decltype(field)>::kReads) {
-    require(rows >= 0 && columns >= 0 && static_cast<Index>(loss.size()) == rows * columns,
-            "a landscape has the wrong size");
+    const auto size = static_cast<Index>(loss.size());
+    const bool is_whole = columns > 0 ? size % columns == 0 && size / columns == rows : size == 0;
+    require(rows >= 0 && columns >= 0 && is_whole, "a landscape has the wrong size");
     landscape.loss = Grid(rows, columns, std::move(loss));
   }
 }
@@ -105,7 +107,7 @@ Sheet sheet_from_text(const std::string& text, const std::string& origin) {
   }
 }
 
-Sheet sheet_from_json(const Json& json) { return sheet_from_text(json.dump(), "it"); }
+Sheet sheet_from_json(const Json& json) { return sheet_from_text(json_text(json), "it"); }
 
 Json sheet_schema() {
   Json schema;

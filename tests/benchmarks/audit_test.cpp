@@ -199,6 +199,14 @@ struct Crasher {
     return Status::running;
   }
 };
+
+// Leaves as if all were well.
+struct Leaver {
+  struct State {};
+  State init(Meter&, const Vector&) const { return {}; }
+  Status step(Meter&, Vector&, State&) const { std::exit(0); }
+};
+void fields(Leaver&, auto&) {}
 void fields(Crasher&, auto&) {}
 
 Catalog catalog_with_liars() {
@@ -211,6 +219,8 @@ Catalog catalog_with_liars() {
                                                  .is_input_scale_invariant = true}));
   catalog.optimizers.add(stepper_entry<Crasher>(
       {.name = "crasher", .title = "Crashes", .formula = "", .source = "here"}));
+  catalog.optimizers.add(stepper_entry<Leaver>(
+      {.name = "leaver", .title = "Leaves", .formula = "", .source = "here"}));
   return catalog;
 }
 
@@ -222,11 +232,12 @@ TEST(Audit, FlagsAFalseDeclaration) {
   EXPECT_TRUE(found.flags[2].starts_with("declares that rescaled inputs leave its path"));
 }
 
-TEST(Audit, ACrashCostsItsOwnAuditAlone) {
-  const auto all = audit_all(catalog_with_liars(), {"crasher", "gd"});
-  ASSERT_EQ(all.size(), 2U);
+TEST(Audit, ACrashOrALeaveCostsItsOwnAuditAlone) {
+  const auto all = audit_all(catalog_with_liars(), {"crasher", "leaver", "gd"});
+  ASSERT_EQ(all.size(), 3U);
   EXPECT_NE(all[0].reason.find("signal"), std::string::npos) << all[0].reason;
-  EXPECT_EQ(all[1].reason, "");
+  EXPECT_NE(all[1].reason.find("without an answer"), std::string::npos) << all[1].reason;
+  EXPECT_EQ(all[2].reason, "");
   const Json schema = parse_json(std::string(builtin_schemas().at("audit")), "audit");
   EXPECT_EQ(schema_violations(audit_to_json(all), schema), std::vector<std::string>{});
 }

@@ -143,5 +143,24 @@ TEST(Escapes, ALossThatIsNotFiniteIsNeitherVerifiedNorHit) {
   EXPECT_EQ(stayed.status, Status::diverged);
 }
 
+// Infinity at most infinity says nothing: neither of the loss, nor of the x that is sought.
+TEST(Escapes, WithAnInfiniteScaleVerifyAndFindNothing) {
+  Trace trace;
+  trace.points = 1;
+  trace.status = Status::converged;
+  trace.minimum = 0;
+  trace.last.loss = trace.last.x_error = 1;
+  trace.scale = trace.x_scale = kInfinity;
+  const Request request =
+      named({.problem = complete_problem(with_escapes(), "wall", OptionValues()),
+             .optimizer = complete_optimizer(with_escapes(), "jump", {})});
+  for (const Real error : {Real{1}, kInfinity}) {
+    trace.last.x_error = error;
+    const Record record = record_of(request, trace);
+    for (const auto& [name, verified] : record.verified) EXPECT_EQ(verified, false) << name;
+    for (const auto& [name, found] : record.found) EXPECT_EQ(found, false) << name;
+  }
+}
+
 }  // namespace
 }  // namespace isoline::benchmarks

@@ -1,8 +1,16 @@
 // Optimizers and problems that misbehave, each in its own way after two good steps.
 #pragma once
 
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <new>
 
 #include "benchmarks/plan/catalog.h"
 
@@ -15,6 +23,40 @@ using problems::Draw;
 using problems::problem_entry;
 using problems::ProblemParts;
 
+// A number that a test shares with the cells it starts, whichever process writes it.
+inline std::atomic<int>& told() {
+  static auto* const number = new (mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE,
+                                        MAP_SHARED | MAP_ANONYMOUS, -1, 0)) std::atomic<int>(0);
+  return *number;
+}
+
+// The child of a child, in a session of its own, whose parent has ended: it tells its number, then
+// holds whatever it inherited.
+inline void leave_a_daemon_behind() {
+  if (fork() != 0) {
+    while (told() == 0) usleep(1000);
+    return;
+  }
+  if (fork() != 0) _exit(0);
+  setsid();
+  prctl(PR_SET_PDEATHSIG, 0);
+  told() = getpid();
+  for (;;) pause();
+}
+
+// Children that fill so many MiB each, and stay.
+inline void crowd(int children, int mebibytes) {
+  for (int i = 0; i < children; ++i) {
+    if (fork() != 0) continue;
+    const std::size_t size = static_cast<std::size_t>(mebibytes) << 20;
+    auto* const filled = new char[size];
+    for (std::size_t at = 0; at < size; at += 4096) filled[at] = 1;
+    told() += filled[size / 2];
+    for (;;) pause();
+  }
+  while (true) pause();
+}
+
 // Descends twice, then does `misdeed`.
 struct Hostile {
   std::string misdeed = "throw";
@@ -25,53 +67,83 @@ struct Hostile {
     int steps = 0;
     std::vector<std::unique_ptr<char[]>> hoard;
   };
+  static void persist(State& s, Archive& archive) { archive(s.steps); }
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     constexpr int kGoodSteps = 2;
     f.linearize(theta, s.at);
     s.at.gradient(s.gradient);
     theta -= 1e-3 * s.gradient;
-    if (++s.steps > kGoodSteps) misbehave(f, theta, s);
+    if (++s.steps == kGoodSteps + 1) act_once(theta);
+    if (s.steps > kGoodSteps) misbehave(theta, s);
     return Status::running;
   }
 
  private:
-  void misbehave(Meter& f, Vector& theta, State& s) const {
+  // And goes on as if nothing had been.
+  void act_once(Vector& theta) const {
+    if (misdeed == "terminate") std::raise(SIGTERM);
+    if (misdeed == "resize") theta = Vector::Constant(theta.size() + 1000, theta[0]);
+    if (misdeed == "daemon") leave_a_daemon_behind();
+    if (misdeed == "stop-parent") kill(getppid(), SIGSTOP);
+    if (misdeed == "end-parent") kill(getppid(), SIGTERM);
+    if (misdeed == "chatter")
+      for (int i = 0; i < 20000; ++i) std::printf("%s", "\x1b[31mI write what nobody asked for\n");
+  }
+  void misbehave(Vector& theta, State& s) const {
     if (misdeed == "throw") throw std::runtime_error("thrown on purpose");
     if (misdeed == "throw-int") throw 7;
     if (misdeed == "segfault") std::raise(SIGSEGV);
     if (misdeed == "abort") std::abort();
+    if (misdeed == "complain") {
+      std::fprintf(stderr, "some line\nthe grid is too coarse\n");
+      std::abort();
+    }
     if (misdeed == "exit") std::_Exit(0);
+    if (misdeed == "kill") std::raise(SIGKILL);
     if (misdeed == "nan") theta.setConstant(std::nan(""));
     if (misdeed == "overask") s.at.jacobian();
-    if (misdeed == "spin")
+    if (misdeed == "crowd") crowd(3, 300);
+    if (misdeed == "sleep") {
+      told() = 1;
+      for (;;) pause();
+    }
+    if (misdeed == "spin") {
+      told() = 1;
       for (volatile bool go_on = true; go_on;) {
       }
+    }
+    if (misdeed == "linger") {
+      told() = 1;
+      usleep(20'000);
+    }
     if (misdeed == "hoard")
       for (;;) {
         constexpr std::size_t kPiece = std::size_t{64} << 20;
         s.hoard.push_back(std::make_unique<char[]>(kPiece));  // value-initialized: really touched
       }
-    static_cast<void>(f);
   }
 };
 
 inline void fields(Hostile& o, auto& field) {
   field(
       "misdeed", o.misdeed,
-      Choices{"throw", "throw-int", "segfault", "abort", "exit", "nan", "overask", "spin", "hoard"},
+      Choices{"throw",  "throw-int", "segfault", "abort",       "complain",   "exit",   "kill",
+              "nan",    "overask",   "crowd",    "sleep",       "spin",       "hoard",  "terminate",
+              "resize", "daemon",    "chatter",  "stop-parent", "end-parent", "linger", "none"},
       "what it does after two good steps");
 }
 
-// A problem that cannot be made: "hang" or "segfault".
+// A problem that cannot be made: "hang", "segfault" or "exit".
 struct BrokenOptions {
   std::string misdeed = "hang";
 };
 inline void fields(BrokenOptions& o, auto& field) {
-  field("misdeed", o.misdeed, Choices{"hang", "segfault"}, "what its making does");
+  field("misdeed", o.misdeed, Choices{"hang", "segfault", "exit"}, "what its making does");
 }
 inline ProblemParts make_broken(const BrokenOptions& o, const Draw&) {
   if (o.misdeed == "segfault") std::raise(SIGSEGV);
+  if (o.misdeed == "exit") std::exit(0);
   for (volatile bool go_on = true; go_on;) {
   }
   return {};

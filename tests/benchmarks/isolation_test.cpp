@@ -3,34 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/run/runner.h"
-#include "core/clock.h"
-#include "tests/benchmarks/hostile.h"
-#include "tests/temporary_folder.h"
+#include "benchmarks/run/run_plan.h"
+#include "tests/benchmarks/hostile_cells.h"
 
 namespace isoline::benchmarks {
 namespace {
 
-class Isolation : public testing::Test {
- protected:
-  Record record_after(const std::string& misdeed) {
-    const Request request = request_for(catalog, "square", {}, "hostile", {{"misdeed", misdeed}});
-    run_all(catalog, {request}, store, options);
-    return record_of(request);
-  }
-  Record record_of(const Request& request) {
-    const auto record = store.find(request);
-    EXPECT_TRUE(record.has_value());
-    return record.value_or(Record{});
-  }
-
-  Catalog catalog = hostile_catalog();
-  TemporaryFolder folder;
-  Store store{folder.path()};
-  RunOptions options{.limits = {.startup_seconds = 0.5,
-                                .hard_seconds = 0.5,
-                                .memory_bytes = std::int64_t{512} << 20}};
-};
+class Isolation : public HostileCells {};
 
 TEST_F(Isolation, AnExceptionIsAFailureWithItsText) {
   const Record record = record_after("throw");
@@ -116,30 +95,20 @@ TEST_F(Isolation, OtherCellsAreUntouchedByTheirNeighbours) {
   EXPECT_EQ(without_timings(to_json(record_of(sound))), alone);
 }
 
-TEST_F(Isolation, AProcessThatDoesNotEndWellHasNoTextButAReason) {
-  const IsolatedText whole = isolated_text([] { return std::string("whole"); }, 10);
-  EXPECT_EQ(whole.text, "whole");
-  EXPECT_EQ(whole.failure, "");
-  struct End {
-    std::function<std::string()> work;
-    double seconds;
-    std::string reason;
-  };
-  const std::vector<End> ends = {
-      {[]() -> std::string { throw std::runtime_error("for a reason"); }, 10, "for a reason"},
-      {[]() -> std::string { throw 7; }, 10, "no std::exception"},
-      {[]() -> std::string { throw std::bad_alloc(); }, 10, "memory"},
-      {[]() -> std::string { return std::raise(SIGKILL) == 0 ? "x" : "y"; }, 10, "signal 9"},
-      {[]() -> std::string { _exit(3); }, 10, "exit code 3"},
-      {[]() -> std::string {
-         for (;;) pause();
-       },
-       0.2, "took more than 0.2 s"}};
-  for (const End& end : ends) {
-    const IsolatedText found = isolated_text(end.work, end.seconds);
-    EXPECT_FALSE(found.text.has_value()) << end.reason;
-    EXPECT_NE(found.failure.find(end.reason), std::string::npos) << found.failure;
-  }
+// Three numbers written over two would be read past their end.
+TEST_F(Isolation, AMethodThatChangesTheNumberOfUnknownsFails) {
+  const Record record = record_after("resize");
+  EXPECT_EQ(record.status, Status::failed);
+  EXPECT_NE(record.message.find("from 2 to 1002"), std::string::npos) << record.message;
+  EXPECT_EQ(record.verified.at("1e-1"), std::optional(false));
+}
+
+TEST_F(Isolation, AProblemThatLeavesWhileItIsMadeCostsItsCellAlone) {
+  const Request broken = request_for(catalog, "broken", {{"misdeed", "exit"}}, "gd", {});
+  const Request sound = request_for(catalog, "square", {}, "gd", {});
+  run_plan(catalog, "both", {broken, sound}, folder.path(), options);
+  EXPECT_EQ(record_of(broken).status, Status::crashed);
+  EXPECT_EQ(record_of(sound).status, Status::budget);
 }
 
 }  // namespace

@@ -229,8 +229,9 @@ TEST(UsedRates, StandBesideThePlanWithTheTableTheyAreFrom) {
                     .blocks = {{.problems = {"rosenbrock", "sine[mode=learn,xi=32]"},
                                 .optimizers = {"adam", "ceres-lm"}}}};
   const Rates rates = Rates::builtin();
-  write_used_rates(rates, expand(catalog(), suite, rates), folder.path());
-  write_used_rates(rates, {}, folder.path());  // another plan of the folder uses none
+  Store store(folder.path());
+  write_used_rates(rates, expand(catalog(), suite, rates), store);
+  write_used_rates(rates, {}, store);  // another plan of the folder uses none
   const Json table = read_json(folder.path() / "rates.json");
   const Json schema = parse_json(std::string(builtin_schemas().at("rates")), "rates");
   EXPECT_EQ(schema_violations(table, schema), std::vector<std::string>{});

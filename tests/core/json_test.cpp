@@ -11,6 +11,7 @@
 #include "core/digest.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {
@@ -77,6 +78,45 @@ TEST(Files, WhatIsNoJsonNamesItsOrigin) {
   } catch (const UsageError& error) {
     EXPECT_NE(std::string(error.what()).find("suite.json"), std::string::npos);
   }
+}
+
+std::string complaint_of_json(const std::string& text) {
+  try {
+    parse_json(text, "given.json");
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// 200,000 levels overflow the stack of whoever copies, compares or writes such a tree.
+TEST(Json, ThatNestsWithoutEndIsRefused) {
+  for (const std::string opening : {"[", "{\"a\":"}) {
+    std::string text;
+    for (int i = 0; i < 200'000; ++i) text += opening;
+    EXPECT_NE(complaint_of_json(text).find("nests deeper"), std::string::npos);
+  }
+  EXPECT_EQ(complaint_of_json("[\"[[[[\\\"[[[[\"]" + std::string(1000, ' ')), "");
+  EXPECT_EQ(complaint_of_json(std::string(150, '[') + std::string(150, ']')), "");
+}
+
+TEST(Json, OfNumbersThatNoDoubleHoldsIsAUsageError) {
+  EXPECT_NE(complaint_of_json("[1e400]").find("given.json"), std::string::npos);
+  EXPECT_NE(complaint_of_json("[" + std::string(400, '9') + "]").find("given.json"),
+            std::string::npos);
+}
+
+TEST(Json, ThatIsShownIsTheSameJson) {
+  const Json json = {{"message", "\x1b[2J \u009b \x7f \u202e \n \" \\ θ"}};
+  const std::string shown = printable(json_text(json));
+  EXPECT_EQ(Json::parse(shown), json);
+  EXPECT_EQ(shown.find('\x7f'), std::string::npos);
+}
+
+// Whatever a component says or a path is made of, JSON is written of it.
+TEST(Json, IsWrittenOfTextThatIsNoUtf8) {
+  EXPECT_EQ(json_text(Json{{"message", "x\xff"}}), "{\"message\":\"x\uFFFD\"}");
+  EXPECT_EQ(json_text(Json(std::string("cut \xCE"))), "\"cut \uFFFD\"");
 }
 
 // Published test vectors of FNV-1a, 64 bits (Fowler, Noll, Vo).

@@ -1,6 +1,7 @@
 // Arrays in files: NumPy's format and text.
 #include "core/records/npy.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -75,6 +76,77 @@ TEST(Npy, RefusesWhatItCannotTakeWithOneSentence) {
   const float nan = NAN;
   std::memcpy(infinite.data() + infinite.size() - 4, &nan, 4);
   EXPECT_NE(complaint(infinite).find("not finite"), std::string::npos);
+}
+
+// A file of the format's first version, with any header and numbers of zero.
+std::string npy_of(const std::string& header, std::size_t bytes) {
+  std::string file("\x93NUMPY\x01\x00", 8);
+  file += {static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
+  return file + header + std::string(bytes, '\0');
+}
+
+std::string shaped(const std::string& shape, const char* order = "False") {
+  return fmt::format("{{'descr': '<f8', 'fortran_order': {}, 'shape': {}, }}\n", order, shape);
+}
+
+std::string refusal_of(const std::string& bytes) {
+  try {
+    npy_from_bytes(bytes);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// As many letters as a header's length can say made std::regex recurse until the stack ended.
+TEST(Npy, AHeaderOfSixtyThousandLettersIsRefused) {
+  for (const std::string& header :
+       {std::string(60'000, ' '), "{'descr': '" + std::string(60'000, 'a') + "'}",
+        shaped("(" + std::string(60'000, '1') + ")"), shaped("(" + std::string(60'000, ' ') + ")")})
+    EXPECT_NE(refusal_of(npy_of(header, 0)).find("at most 10000"), std::string::npos)
+        << header.substr(0, 40);
+}
+
+// 2³² · 2³² is 0 in 64 bits: an index into what was allocated for it would lead anywhere.
+TEST(Npy, AShapeWhoseProductWrapsIsRefused) {
+  for (const char* order : {"False", "True"})
+    for (const char* shape :
+         {"(4294967296, 4294967296)", "(9223372036854775807, 2)", "(3, 6148914691236517206)",
+          "(0, 9223372036854775807, 9223372036854775807)"})
+      EXPECT_NE(refusal_of(npy_of(shaped(shape, order), 16)).find("more numbers than any file"),
+                std::string::npos)
+          << shape;
+}
+
+TEST(Npy, AShapeThatAsksForMoreThanIsThereIsRefusedBeforeItIsMadeRoomFor) {
+  EXPECT_NE(refusal_of(npy_of(shaped("(1000000000000,)"), 16)).find("it holds 16 bytes"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(npy_of(shaped("(2305843009213693952,)"), 0)).find("it holds 0 bytes"),
+            std::string::npos)
+      << "2⁶¹ numbers of 8 bytes are 0 bytes in 64 bits";
+}
+
+TEST(Npy, SizesThatAreNoCountsAreRefused) {
+  for (const char* shape : {"(-1,)", "(-2, -2)", "(99999999999999999999,)", "(1.5,)", "(x,)",
+                            "(1 2)", "(,)", "5", "[5]", "(True,)"})
+    EXPECT_NE(refusal_of(npy_of(shaped(shape), 16)).find("shape"), std::string::npos) << shape;
+  std::string many = "(";
+  for (int i = 0; i < 100; ++i) many += "1,";
+  EXPECT_NE(refusal_of(npy_of(shaped(many + ")"), 8)).find("more than 64"), std::string::npos);
+}
+
+TEST(Npy, AHeaderThatIsNoDictionaryOfThreeKeysIsRefused) {
+  for (const char* header :
+       {"", "{", "{}", "[]", "{'descr': '<f8', 'fortran_order': False, }",
+        "{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (), }",
+        "{'descr': '<f8', 'descr': '<f8', 'fortran_order': False, 'shape': (), }",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (), 'more': 1, }",
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (), } and more", "{'descr': '<f8",
+        "{'descr' '<f8'}", "{'descr': '<f8', 'fortran_order': Maybe, 'shape': (), }"})
+    EXPECT_NE(refusal_of(npy_of(header, 8)), "") << header;
+  EXPECT_EQ(refusal_of(npy_of(shaped("()"), 8)), "") << "one number of no index";
+  EXPECT_EQ(refusal_of(npy_of("{\"shape\":(1,),\"descr\":\"<f8\",\"fortran_order\":False}", 8)),
+            "");
 }
 
 TEST(Csv, IsReadWithOrWithoutAHeaderAndRefusesHoles) {

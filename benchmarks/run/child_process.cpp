@@ -1,0 +1,46 @@
+// Limits and leave of child processes.
+#include "benchmarks/run/child_process.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "benchmarks/run/processes.h"
+
+namespace isoline::benchmarks {
+
+void limit_memory([[maybe_unused]] std::int64_t bytes) {
+#ifndef ISOLINE_SANITIZE  // the sanitizers' shadow memory does not fit under an address-space limit
+  const auto figures = figures_of(getpid());
+  const auto most = static_cast<rlim_t>(bytes + (figures ? figures->address_space_bytes : 0));
+  const rlimit both{most, most};
+  setrlimit(RLIMIT_AS, &both);
+#endif
+  std::set_new_handler([] { throw std::bad_alloc(); });
+}
+
+void leave() {
+  std::fflush(stdout);
+  _exit(0);
+}
+
+bool is_from_outside(int signal) {
+  switch (signal) {
+    case SIGKILL:
+    case SIGTERM:
+    case SIGINT:
+    case SIGQUIT:
+    case SIGHUP:
+    case SIGXCPU:
+    case SIGUSR1:
+    case SIGUSR2:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace isoline::benchmarks

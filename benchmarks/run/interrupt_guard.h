@@ -1,0 +1,26 @@
+// While it lives, who asks this process to end is heard in order. Ctrl-C asks to finish what runs;
+// a second one, a polite kill (of a scheduler, say) or a closed terminal ask to stop it; one more
+// ends this process and all its cells at once. Ctrl-Z stops the cells too, until they all go on.
+#pragma once
+
+#include <csignal>
+
+namespace isoline::benchmarks {
+
+enum class Asked { nothing, finish, stop };
+
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  Asked asked() const;  // so far; a cell that asks its parent is not heard
+
+ private:
+  struct sigaction old_int_ {
+  }, old_term_{}, old_hup_{}, old_stop_{};
+};
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,79 @@
+// Returned points judged where no cell has had its hands: by a process a problem, which makes the
+// problem afresh, judges one point after another, and is replaced when it dies of one.
+#pragma once
+
+#include <poll.h>
+
+#include <deque>
+#include <list>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/process_group.h"
+
+namespace isoline::benchmarks {
+
+// What a run is judged by, as a trace has it.
+struct Judged {
+  double loss = 0, x_error = 0;
+  double minimum = 0, scale = 0, x_scale = 0, x_floor = 0;
+};
+
+// What it is judged by as the cell itself wrote it down.
+Judged told_by(const Trace& trace);
+
+// The first of these numbers in which they differ by more than rounding, in words; "" where none
+// does. Whatever is not finite must be so in both.
+std::string contradiction(const Judged& told, const Judged& judged);
+
+struct Verdict {
+  std::size_t slot;
+  std::optional<Judged> judged;
+  std::string failure;  // why there is none: "it was ended by signal 11 (Segmentation fault)"
+};
+
+class Judges {
+ public:
+  // `workers` are those whose returned points are to be judged; they are made before the first
+  // judge is started, which sees their shared memory.
+  Judges(const Catalog& catalog, const std::vector<Worker>& workers, double patience_seconds);
+  ~Judges();
+  Judges(const Judges&) = delete;
+  Judges& operator=(const Judges&) = delete;
+
+  // Has the point judged that the worker of this slot returned.
+  void ask(std::size_t slot, const Request& request);
+  std::vector<Verdict> collect();  // those that have come by now
+  void add_to(std::vector<pollfd>& waiting) const;
+
+ private:
+  struct Question {
+    std::size_t slot;
+    const Request* request;
+    std::int64_t asked;           // monotonic nanoseconds
+    bool is_asked_again = false;  // a judge has died of it, or was killed over it
+  };
+  struct Judge {
+    std::string problem;  // its specification
+    ProcessGroup group = {};
+    int socket = -1;
+    std::deque<Question> open = {};
+  };
+  Judge& judge_of(const Component& problem);
+  void start(Judge& judge, const Component& problem);
+  void send(Judge& judge, const Question& question);
+  std::string end(Judge& judge);  // how it ended
+  void lose(Judge& judge, std::string reason, std::vector<Verdict>& verdicts);
+  void collect(Judge& judge, std::vector<Verdict>& verdicts);
+
+  const Catalog& catalog_;
+  const std::vector<Worker>& workers_;
+  double patience_seconds_;
+  std::list<Judge> judges_;  // the last asked first
+};
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,65 @@
+// When a process that computes is ended: by its processor time, its wall time, its idleness and its
+// memory.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "benchmarks/run/process_group.h"
+#include "core/records/request.h"
+#include "core/status.h"
+
+namespace isoline::benchmarks {
+
+// Processor time is that of the whole group, divided by the threads asked for; wall time, five
+// times that, is for those who wait. What a machine spends on others counts for neither limit but
+// the second.
+struct Limits {
+  double startup_seconds = 30;  // of processor time, from the fork to the first oracle call
+  double hard_seconds = 60;     // of processor time, from the first oracle call
+  double idle_seconds = 60;     // with less than 1 % of a core, and no other process to wait for
+  std::int64_t memory_bytes = std::int64_t{4} << 30;
+
+  static constexpr double kWallFactor = 5;
+};
+
+// Of one request: twice its soft time limit, where it has one; else what its suite says; else ten
+// times the prediction, where that is more than the standard.
+Limits limits_of(const Request& request, const Limits& standard, double predicted_seconds = 0);
+
+// What a child process has used up, held against its limits. Time in which nobody looked, because
+// this process was itself stopped, does not count.
+class LimitWatch {
+ public:
+  struct Breach {
+    Status status;  // timeout or memory
+    std::string message;
+  };
+
+  LimitWatch() = default;
+  LimitWatch(const Limits& limits, int threads, std::int64_t now_nanoseconds)
+      : limits_(limits), threads_(threads), last_nanoseconds_(now_nanoseconds) {}
+
+  const Limits& limits() const { return limits_; }
+  // Whether it is time to look again: each look reads files of the system.
+  bool is_due(std::int64_t now_nanoseconds) const;
+  std::optional<Breach> check(const ProcessGroup::Usage& usage, bool has_asked_oracle,
+                              std::int64_t now_nanoseconds);
+
+ private:
+  struct Mark {
+    double awake = 0, processor = 0;  // seconds
+  };
+  std::optional<Breach> check_time(bool has_asked_oracle, const Mark& now);
+  bool is_idle(const ProcessGroup::Usage& usage, const Mark& now);
+
+  Limits limits_;
+  int threads_ = 1;
+  std::int64_t last_nanoseconds_ = 0;
+  double awake_ = 0;        // seconds in which somebody looked
+  bool has_begun_ = false;  // with its first oracle call
+  Mark begun_, active_;     // at the first oracle call; when it last did something
+};
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,76 @@
+// What is left of a plan, looked up in the store, and looked up again where others work on it too.
+#include "benchmarks/run/pending.h"
+
+#include <algorithm>
+
+#include "core/clock.h"
+
+namespace isoline::benchmarks {
+
+Pending::Pending(const std::vector<Request>& requests, Store& store, const RunOptions& options,
+                 Outcome& outcome)
+    : store_(store), options_(options), outcome_(outcome), holds_(store.folder()) {
+  std::vector<std::pair<std::size_t, const Request*>> rounds;
+  std::optional<RecordsOfAnyBuild> earlier;  // times of two builds make no list
+  if (options.reuse && !options.force && options.repeat == 1) earlier.emplace(store.folder());
+  for (const Request& request : requests) {
+    if (earlier && is_reused(request, *earlier)) continue;
+    const std::size_t wanted = runs_wanted(request);
+    for (std::size_t i = 0; i < wanted; ++i) rounds.emplace_back(i, &request);
+  }
+  // Repetitions go round all cells, so that those of one cell see how the machine drifts.
+  std::ranges::stable_sort(rounds, {}, [](const auto& entry) { return entry.first; });
+  for (const auto& [round, request] : rounds) queue_.push_back(request);
+}
+
+// How often it is still to be run; one that is done is counted.
+std::size_t Pending::runs_wanted(const Request& request) {
+  std::optional<Record> done = store_.find(request);
+  if (is_repeated_anyway(done)) done.reset();
+  const std::size_t have = done ? done->repeat_wall_seconds.size() : 0;
+  const bool is_timed = !done || done->status != Status::inapplicable;
+  const auto wanted = static_cast<std::size_t>(is_timed ? options_.repeat : 1);
+  if (!done || (have < wanted && !is_failure(done->status))) return wanted - have;
+  count_reused(*done);
+  return 0;
+}
+
+// Whether the record that is there stands in nobody's way.
+bool Pending::is_repeated_anyway(const std::optional<Record>& done) const {
+  return options_.force || (done && options_.retry.contains(done->status));
+}
+
+bool Pending::is_reused(const Request& request, const RecordsOfAnyBuild& earlier) {
+  if (store_.find(request)) return false;  // by this build
+  const std::optional<Record> done = earlier.find(request);
+  if (!done || is_repeated_anyway(done)) return false;
+  ++outcome_.reused_from_other_builds;
+  count_reused(*done);
+  return true;
+}
+
+void Pending::count_reused(const Record& done) {
+  ++outcome_.reused;
+  outcome_.count(done);
+}
+
+const Request* Pending::next() {
+  constexpr std::int64_t kPatience = 200'000'000;  // nanoseconds between looks at what others hold
+  if (monotonic_nanoseconds() < look_again_) return nullptr;
+  for (std::size_t left = queue_.size(); left > 0; --left) {
+    const Request& request = *queue_.front();
+    queue_.pop_front();
+    if (!holds_.take(store_.name_of(request))) {
+      queue_.push_back(&request);
+      continue;
+    }
+    if (options_.force || runs_wanted(request) > 0) return &request;
+    release(request);  // it was done elsewhere meanwhile
+  }
+  if (!queue_.empty()) look_again_ = monotonic_nanoseconds() + kPatience;
+  return nullptr;
+}
+
+void Pending::release(const Request& request) { holds_.release(store_.name_of(request)); }
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,72 @@
+// A child process and all that descends from it, as one: started, measured, asked to end, killed
+// and reaped together. What descends cannot get away by a session of its own or by outliving its
+// parent: this process is a subreaper, and every descendant carries the mark of its group.
+//
+// What has its user's rights can still end this process by SIGKILL; docs/running-a-matrix.md says
+// what holds and what does not.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "benchmarks/run/control_group.h"
+
+namespace isoline::benchmarks {
+
+class ProcessGroup {
+ public:
+  struct End {
+    int wait_status = 0;                 // of the child itself, as wait() has it
+    std::int64_t peak_memory_bytes = 0;  // of the child, or of all together where that was more
+  };
+  struct Usage {
+    std::size_t processes = 0;
+    double processor_seconds = 0;  // of those that have ended too, once their parent has waited
+    std::int64_t resident_bytes = 0;
+  };
+
+  ProcessGroup() = default;
+  ~ProcessGroup();  // kills what still runs
+  ProcessGroup(const ProcessGroup&) = delete;
+  ProcessGroup& operator=(const ProcessGroup&) = delete;
+
+  // The child does `work`, then leaves by _exit(0): it must not throw. Its input is empty, Ctrl-C
+  // does not reach it, and it dies with this process.
+  void start(const std::function<void()>& work);
+  bool is_running() const { return leader_ > 0; }
+  pid_t leader() const { return leader_; }
+  int descriptor() const { return descriptor_; }  // readable when the child has ended
+
+  Usage usage(std::int64_t exact_above_bytes);  // memory is shared out exactly where it is more
+  void ask_to_end() const;                      // the child alone: the others end with it
+  void kill();                                  // all, at once; to be collected as any that ended
+  // How the child ended, once it has and all that it left behind is killed and reaped.
+  std::optional<End> collect();
+
+ private:
+  std::vector<pid_t> strays();
+  std::vector<pid_t> members();
+  void gather(const std::vector<pid_t>& members);
+  void reap_strays();
+  void leave_table();
+
+  pid_t leader_ = 0;
+  int descriptor_ = -1;
+  std::size_t slot_ = 0;
+  std::uint64_t mark_ = 0;
+  std::unique_ptr<ControlGroup> control_;  // once they are many
+  double reaped_seconds_ = 0;
+  std::int64_t peak_bytes_ = 0;
+};
+
+// To every group of this process; for handlers of signals.
+void signal_all_groups(int signal) noexcept;
+// Whether a process belongs to the process group of one of ours; for handlers of signals.
+bool is_of_a_group(pid_t process) noexcept;
+
+}  // namespace isoline::benchmarks

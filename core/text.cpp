@@ -1,0 +1,107 @@
+// Decodes UTF-8 by table 3-7 of the Unicode standard, which knows no overlong form, no surrogate
+// and nothing above U+10FFFF.
+#include "core/text.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace isoline {
+namespace {
+
+constexpr std::string_view kReplacement = "\uFFFD";
+
+struct Character {
+  char32_t code = 0;
+  std::size_t bytes = 1;  // of a broken one: those that begin none that could be whole
+  bool is_valid = true;
+};
+
+std::size_t bytes_after(unsigned char lead) {
+  if (lead >= 0xC2 && lead <= 0xDF) return 1;
+  if (lead >= 0xE0 && lead <= 0xEF) return 2;
+  if (lead >= 0xF0 && lead <= 0xF4) return 3;
+  return 0;
+}
+
+Character first_of(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char lead = byte(0);
+  if (lead < 0x80) return {.code = lead};
+  const std::size_t rest = bytes_after(lead);
+  unsigned low = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
+  unsigned high = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
+  char32_t code = lead & (0x3FU >> rest);
+  for (std::size_t i = 1; i <= rest; ++i) {
+    const bool is_next = i < text.size() && byte(i) >= low && byte(i) <= high;
+    if (!is_next) return {.bytes = i, .is_valid = false};
+    code = code << 6 | (byte(i) & 0x3FU);
+    low = 0x80;
+    high = 0xBF;
+  }
+  return {.code = code, .bytes = rest + 1, .is_valid = rest > 0};
+}
+
+// Calls visit(character, its bytes) from the first to the last.
+template <class Visit>
+void for_each_character(std::string_view text, Visit visit) {
+  while (!text.empty()) {
+    const Character character = first_of(text);
+    visit(character, text.substr(0, character.bytes));
+    text.remove_prefix(character.bytes);
+  }
+}
+
+// Control characters of both sets, the marks that turn the direction of writing, and the line ends
+// that are none of a file's.
+bool is_harmful(char32_t code) {
+  if (code == '\n' || code == '\t') return false;
+  const auto is_within = [&](char32_t first, char32_t last) {
+    return code >= first && code <= last;
+  };
+  return code < 0x20 || is_within(0x7F, 0x9F) || code == 0x061C || is_within(0x200E, 0x200F) ||
+         is_within(0x2028, 0x202E) || is_within(0x2066, 0x2069);
+}
+
+}  // namespace
+
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  for_each_character(text, [&](const Character& character, std::string_view bytes) {
+    valid += character.is_valid ? bytes : kReplacement;
+  });
+  return valid;
+}
+
+std::string_view cut(std::string_view text, std::size_t most_bytes) {
+  if (text.size() <= most_bytes) return text;
+  constexpr std::size_t kLongest = 4;
+  std::size_t end = most_bytes;
+  const auto is_inside = [&] { return (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U; };
+  while (end > 0 && most_bytes - end < kLongest && is_inside()) --end;
+  return text.substr(0, is_inside() ? most_bytes : end);  // of no character: it is cut anywhere
+}
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  for_each_character(text, [&](const Character& character, std::string_view bytes) {
+    if (!character.is_valid)
+      shown += kReplacement;
+    else if (is_harmful(character.code))
+      shown += fmt::format("\\u{:04x}", static_cast<unsigned>(character.code));
+    else
+      shown += bytes;
+  });
+  return shown;
+}
+
+void say(std::FILE* out, std::string_view text) {
+  const std::string shown = printable(text);
+  if (std::fwrite(shown.data(), 1, shown.size(), out) < shown.size())
+    throw std::system_error(errno, std::generic_category(), "cannot write what is to be read");
+}
+
+}  // namespace isoline

@@ -1,0 +1,126 @@
+// Texts put into a trace, and the laws that hold for all of it.
+#include "core/trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "core/text.h"
+
+namespace isoline {
+namespace {
+
+bool is_amount(std::int64_t count) { return count >= 0; }
+bool is_amount(double seconds) { return std::isfinite(seconds) && seconds >= 0; }
+
+bool are_amounts(const OracleCounts& counts) {
+  return std::ranges::all_of(counts, [](std::int64_t count) { return is_amount(count); });
+}
+
+bool is_within(int value, int most) { return value >= 0 && value <= most; }
+
+// A byte that is neither 0 nor 1 must not be read as a bool.
+template <class Flag>
+bool is_flag(const Flag& flag) {
+  static_assert(sizeof flag == 1);
+  unsigned char byte = 0;
+  std::memcpy(&byte, reinterpret_cast<const unsigned char*>(&flag), 1);
+  return byte <= 1;
+}
+
+bool ends(const char (&text)[Trace::kText]) {
+  return std::memchr(text, '\0', sizeof text) != nullptr;
+}
+
+bool is_sound(const TracePoint& point) {
+  return is_amount(point.iteration) && are_amounts(point.counts) && is_amount(point.work) &&
+         is_amount(point.wall_seconds) && is_amount(point.processor_seconds);
+}
+
+bool are_points_sound(const Trace& trace) {
+  const int points = trace.points;
+  if (!is_within(points, Trace::kPoints)) return false;
+  for (int i = 0; i < points; ++i) {
+    if (!is_sound(trace.point[i])) return false;
+    if (i > 0 && trace.point[i].iteration <= trace.point[i - 1].iteration) return false;
+    if (i > 0 && trace.point[i].work < trace.point[i - 1].work) return false;
+  }
+  return is_sound(trace.last);
+}
+
+// Targets are met from the first on, one after the other.
+bool are_hits_sound(const Trace& trace) {
+  std::int64_t last = 0;
+  for (const TraceHit& hit : trace.hit) {
+    if (hit.iteration == -1) {
+      last = std::numeric_limits<std::int64_t>::max();
+      continue;
+    }
+    const bool is_next = hit.iteration >= last;
+    if (!is_next || !is_amount(hit.work) || !are_amounts(hit.counts) ||
+        !is_amount(hit.wall_seconds))
+      return false;
+    last = hit.iteration;
+  }
+  return true;
+}
+
+bool is_sound(const Trace::Exhibit& shown) {
+  return is_within(shown.rows, Trace::kExhibit) && is_within(shown.columns, Trace::kExhibit) &&
+         is_within(shown.rows * shown.columns, Trace::kExhibit);
+}
+
+bool are_exhibits_sound(const Trace& trace) {
+  return is_within(trace.shown_grid, Trace::kExhibit) && is_sound(trace.shown_target) &&
+         is_sound(trace.shown_x) && is_sound(trace.shown_truth);
+}
+
+bool are_texts_sound(const Trace& trace) {
+  return ends(trace.series_names) && ends(trace.message) && ends(trace.privileges) &&
+         ends(trace.claimed);
+}
+
+// As many as there are numbers of a point, and no two alike.
+bool are_series_sound(const Trace& trace) {
+  std::vector<std::string_view> names;
+  std::string_view left = trace.series_names;
+  while (!left.empty()) {
+    const std::size_t end = std::min(left.find('\n'), left.size());
+    names.push_back(left.substr(0, end));
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
+  std::ranges::sort(names);
+  return names.size() <= Trace::kSeries && std::ranges::adjacent_find(names) == names.end();
+}
+
+bool are_choices_sound(const Trace& trace) {
+  return is_flag(trace.is_finished) && is_flag(trace.is_learned) &&
+         is_flag(trace.stopped_by_clock) &&
+         is_within(static_cast<int>(trace.status), static_cast<int>(kStatusNames.size()) - 1) &&
+         is_within(static_cast<int>(trace.aim), static_cast<int>(kAimNames.size()) - 1);
+}
+
+}  // namespace
+
+void set_text(char (&out)[Trace::kText], std::string_view text) {
+  const std::string_view kept = cut(text, Trace::kText - 1);
+  out[kept.copy(out, Trace::kText - 1)] = '\0';
+}
+
+std::string defect_of(const Trace& trace) {
+  if (!are_choices_sound(trace)) return "a choice that there is not";
+  if (!are_points_sound(trace)) return "iterations, counts or times that cannot be";
+  if (!are_hits_sound(trace)) return "targets met in an order that cannot be";
+  if (!is_within(trace.path_inputs, Trace::kInputs) ||
+      !is_within(trace.path_outputs, Trace::kOutputs))
+    return "a path of a size that cannot be";
+  if (!are_exhibits_sound(trace)) return "samples of a size that cannot be";
+  if (!are_texts_sound(trace)) return "a text without an end";
+  if (!are_series_sound(trace)) return "more series than there is room for";
+  if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps))
+    return "counts that cannot be";
+  return "";
+}
+
+}  // namespace isoline

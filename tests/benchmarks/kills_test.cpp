@@ -1,0 +1,276 @@
+// A kill that this program did not send is an interruption: nothing is lost, and the cell runs
+// again.
+#include <sys/wait.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/execute.h"
+#include "benchmarks/run/processes.h"
+#include "benchmarks/run/run_plan.h"
+#include "core/exit.h"
+#include "core/files.h"
+#include "core/json.h"
+#include "tests/benchmarks/hostile_cells.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Kills : public HostileCells {
+ protected:
+  Kills() { options.limits.hard_seconds = 60; }
+
+  bool has_checkpoint(const Request& request) const {
+    return fs::exists(store.checkpoint_path(request));
+  }
+};
+
+TEST_F(Kills, OfACellByOthersIsAnInterruptionAndItRunsAgain) {
+  const Record record = record_after("kill");
+  EXPECT_EQ(record.status, Status::interrupted) << record.message;
+  EXPECT_NE(record.message.find("signal 9"), std::string::npos) << record.message;
+  EXPECT_EQ(ran.interrupted, 1);
+  EXPECT_TRUE(ran.failures.empty());
+  EXPECT_FALSE(ran.is_interrupted) << "nobody asked the run to end";
+  EXPECT_EQ(run_all(catalog, {hostile("kill")}, store, options).run, 1) << "it runs again";
+}
+
+TEST_F(Kills, OfACellThatIsRunningFromOutside) {
+  for (const int signal : {SIGKILL, SIGTERM, SIGINT, SIGHUP, SIGXCPU}) {
+    Worker worker;
+    worker.start(
+        [](Trace& trace) {
+          std::signal(SIGINT, SIG_DFL);
+          trace.first_oracle_nanoseconds = 1;
+          for (;;) pause();
+        },
+        {}, 1);
+    while (worker.trace().first_oracle_nanoseconds == 0) usleep(1000);
+    kill(children_of(getpid()).at(0), signal);
+    while (!worker.poll()) usleep(1000);
+    EXPECT_EQ(worker.trace().status, Status::interrupted) << signal;
+  }
+}
+
+TEST_F(Kills, ByAFaultOfItsOwnAreCrashes) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) {
+    Worker worker;
+    worker.start([=](Trace&) { std::raise(signal); }, {}, 1);
+    while (!worker.poll()) usleep(1000);
+    EXPECT_EQ(worker.trace().status, Status::crashed) << signal;
+  }
+}
+
+// It was written as `running`, its checkpoint deleted, and counted as done.
+TEST_F(Kills, ThatAreTerminationsKeepTheCheckpointAndGoOnThere) {
+  const Request request = hostile("terminate");
+  const Record stopped = record_after("terminate");
+  EXPECT_EQ(stopped.status, Status::interrupted) << stopped.message;
+  EXPECT_TRUE(has_checkpoint(request));
+  const Record whole = record_after("terminate");
+  EXPECT_EQ(whole.status, Status::budget) << whole.message;
+  EXPECT_EQ(whole.curve.iteration.size(), 51U);
+  EXPECT_FALSE(has_checkpoint(request));
+  EXPECT_EQ(whole.counts, record_after("none").counts) << "as if nobody had stopped it";
+}
+
+TEST_F(Kills, LeaveNoRecordThatIsRunning) {
+  const auto trace = std::make_unique<Trace>();
+  ASSERT_EQ(trace->status, Status::running);
+  EXPECT_EQ(benchmarks::record_of(hostile("none"), *trace).status, Status::interrupted);
+}
+
+// --- the run, by its user
+
+class Interrupts : public HostileCells {
+ protected:
+  Interrupts() { options.limits = {.hard_seconds = 600, .idle_seconds = 600}; }
+  void wait_until_told() const {
+    while (told() == 0) usleep(1000);
+  }
+  static int status_of(pid_t runner) {
+    int status = 0;
+    EXPECT_EQ(waitpid(runner, &status, 0), runner);
+    return status;
+  }
+  bool has_record(const Request& request) const {
+    for (const auto& entry : fs::directory_iterator(folder.path() / "runs"))
+      if (entry.path().filename().string().starts_with(request.cell)) return true;
+    return false;
+  }
+};
+
+TEST_F(Interrupts, ByOneCtrlCFinishWhatRunsAndStartNoMore) {
+  const Request running = hostile("linger"), next = hostile("none");
+  const pid_t runner = run_apart({running, next});
+  wait_until_told();
+  kill(runner, SIGINT);
+  EXPECT_TRUE(WIFEXITED(status_of(runner)));
+  EXPECT_EQ(record_of(running).status, Status::budget);
+  EXPECT_FALSE(has_record(next));
+}
+
+TEST_F(Interrupts, ByTwoStopWhatRunsAndKeepItsState) {
+  const Request running = hostile("sleep");
+  const pid_t runner = run_apart({running});
+  wait_until_told();
+  kill(runner, SIGINT);
+  usleep(100'000);  // two at once are one
+  kill(runner, SIGINT);
+  EXPECT_TRUE(WIFEXITED(status_of(runner)));
+  const Record record = record_of(running);
+  EXPECT_EQ(record.status, Status::interrupted) << record.message;
+  EXPECT_EQ(record.curve.iteration.size(), 3U) << "what it had come to";
+}
+
+TEST_F(Interrupts, ByThreeEndAllAtOnce) {
+  const Request running = hostile("spin");  // hears nothing
+  const pid_t runner = run_apart({running});
+  wait_until_told();
+  const pid_t cell = children_of(runner).at(0);
+  for (int i = 0; i < 3; ++i) {
+    kill(runner, SIGINT);
+    usleep(100'000);
+  }
+  const int status = status_of(runner);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), kInterrupted);
+  while (figures_of(cell)) waitpid(-1, nullptr, WNOHANG);  // dead, and ours to reap
+}
+
+TEST_F(Interrupts, ByASchedulerStopWhatRuns) {
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    told() = 0;
+    const Request running = hostile("sleep");
+    const pid_t runner = run_apart({running});
+    wait_until_told();
+    kill(runner, signal);
+    EXPECT_TRUE(WIFEXITED(status_of(runner))) << signal;
+    EXPECT_EQ(record_of(running).status, Status::interrupted) << signal;
+  }
+}
+
+TEST_F(Interrupts, ByCtrlZStopTheCellsTooUntilAllGoOn) {
+  const Request running = hostile("linger");
+  const pid_t runner = run_apart({running});
+  wait_until_told();
+  kill(runner, SIGTSTP);
+  int status = 0;
+  ASSERT_EQ(waitpid(runner, &status, WUNTRACED), runner);
+  ASSERT_TRUE(WIFSTOPPED(status));
+  const auto seconds_of_cell = [&] {
+    return figures_of(children_of(runner).at(0))->processor_seconds;
+  };
+  const double before = seconds_of_cell();
+  usleep(200'000);
+  EXPECT_EQ(seconds_of_cell(), before);
+  kill(runner, SIGCONT);
+  EXPECT_TRUE(WIFEXITED(status_of(runner)));
+  EXPECT_EQ(record_of(running).status, Status::budget);
+}
+
+// --- the program, killed
+
+// Kills come where the folder holds so many files: the number is the moment, so that a failure can
+// be repeated.
+std::size_t count_files(const fs::path& folder) {
+  std::size_t count = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end;
+       at.increment(error))
+    ++count;
+  return count;
+}
+
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder / "runs", missing))
+    if (entry.path().extension() == ".json") all[entry.path().filename()] = read_text(entry.path());
+  return all;
+}
+
+class KilledRuns : public testing::Test {
+ protected:
+  KilledRuns() {
+    const Suite suite{.name = "test",
+                      .title = "",
+                      .blocks = {{.problems = {"square", "rosenbrock"},
+                                  .optimizers = {"gd", "adam", "momentum", "newton", "hig"},
+                                  .seeds = {0, 1, 2, 3, 4, 5, 6},
+                                  .budget = {.iterations = 20}}}};
+    requests = expand(catalog, suite, {});
+  }
+  Outcome run(const fs::path& out) { return run_plan(catalog, "test", requests, out, {.jobs = 2}); }
+  pid_t run_apart() {
+    const pid_t child = fork();
+    if (child == 0) {
+      run(folder.path());
+      _exit(0);
+    }
+    return child;
+  }
+  void wait_for(pid_t child, std::size_t files) {
+    while (count_files(folder.path()) < files) {
+      siginfo_t ended{};
+      waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
+      if (ended.si_pid != 0) return;
+    }
+  }
+  static std::map<std::string, Json> results_of(const fs::path& folder) {
+    std::map<std::string, Json> results;
+    for (const auto& [name, text] : files_of(folder)) {
+      Json record = without_timings(parse_json(text, name));
+      results[name] = std::move(record);
+    }
+    return results;
+  }
+
+  Catalog catalog = builtin_catalog();
+  std::vector<Request> requests;
+  TemporaryFolder undisturbed, folder;
+};
+
+TEST_F(KilledRuns, AtFiftyMomentsLoseNothing) {
+  constexpr int kKills = 50;
+  constexpr std::size_t kFilesBetween = 2;
+  run(undisturbed.path());
+  std::size_t moment = 1;
+  for (int i = 0; i < kKills; ++i) {
+    const auto before = files_of(folder.path());
+    const pid_t runner = run_apart();
+    wait_for(runner, moment);
+    kill(runner, SIGKILL);
+    waitpid(runner, nullptr, 0);
+    const auto after = files_of(folder.path());
+    for (const auto& [name, text] : before)
+      EXPECT_EQ(after.contains(name) ? after.at(name) : "", text)
+          << name << " was lost by the kill at " << moment << " files";
+    moment = std::max(moment, count_files(folder.path())) + kFilesBetween;
+  }
+  EXPECT_FALSE(run(folder.path()).is_interrupted);
+  EXPECT_EQ(results_of(folder.path()), results_of(undisturbed.path()));
+}
+
+// What a scheduler sends to all processes of a job at once, half a minute before it kills them.
+TEST_F(KilledRuns, ByASchedulersTerminationGoOnWhereTheyWere) {
+  run(undisturbed.path());
+  const pid_t runner = run_apart();
+  wait_for(runner, 40);
+  const std::vector<pid_t> cells = children_of(runner);
+  kill(runner, SIGTERM);
+  for (const pid_t cell : cells) kill(cell, SIGTERM);
+  int status = 0;
+  waitpid(runner, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status)) << "it ends in order";
+  const auto kept = files_of(folder.path());
+  EXPECT_LT(kept.size(), requests.size());
+  run(folder.path());
+  EXPECT_EQ(results_of(folder.path()), results_of(undisturbed.path()));
+}
+
+}  // namespace
+}  // namespace isoline::benchmarks
