@@ -185,6 +185,7 @@ void CommandLine::add_run() {
   option(verb, "--retry", given.retry, "Repeat cells that ended so: failed,crashed,timeout,memory")
       ->delimiter(',');
   flag(verb, "--allow-large", given.allow_large, "Plan more than a million cells");
+  flag(verb, "--keep-output", given.keep_output, "Keep what cells print in their records");
   CLI::Option* dry =
       flag(verb, "--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
   flag(verb, "--all", given.lists_all, "With --dry-run: every cell, not the first 20")->needs(dry);

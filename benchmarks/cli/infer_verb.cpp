@@ -3,10 +3,11 @@
 
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/trained.h"
 #include "core/errors.h"
 #include "core/records/number_file.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 
@@ -51,12 +52,12 @@ int infer_verb(const InferArguments& given, Session& session) {
   const std::int64_t memory = given.memory_bytes > 0 ? given.memory_bytes : Limits{}.memory_bytes;
   const auto [text, failure] = isolated_text(work, given.seconds, memory);
   if (!text || text->empty()) {
-    fmt::print(stderr, "isoline: {} was not written: {}\n", given.output,
-               text ? "the process said nothing" : failure);
+    say(stderr, fmt::format("isoline: {} was not written: {}\n", given.output,
+                            text ? "the process said nothing" : failure));
     return kWorse;
   }
   require(text->front() != kMistaken, [&] { return text->substr(1); });
-  fmt::print("{}\n", text->substr(1));
+  say(stdout, text->substr(1) + "\n");
   return kGood;
 }
 

@@ -12,6 +12,7 @@
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/same_result.h"
 #include "core/errors.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -66,15 +67,18 @@ std::string difference_of_builds(const Record& record, const Request& request) {
   return "another build answered, which differs in: " + parts;
 }
 
-// One run of the request; nothing where the user stopped it.
-std::optional<Record> run_again(const Request& request, const ReplayArguments& given,
-                                Session& session) {
+// One run of the request; no record where the user stopped it, or somebody ended it.
+struct Rerun {
+  std::optional<Record> record;
+  bool is_interrupted = false;
+};
+Rerun run_again(const Request& request, const ReplayArguments& given, Session& session) {
   const PassingFolder folder;
   Store store(folder.path());
   RunOptions options{.force = true, .command = session.command()};
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
   const Outcome outcome = run_all(session.catalog(), {request}, store, options);
-  return outcome.is_interrupted ? std::nullopt : store.find(request);
+  return {store.find(request), outcome.is_interrupted};
 }
 
 std::string words_of(const Comparison& found) {
@@ -97,18 +101,23 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   try {
     request = request_of(record, session.catalog());
   } catch (const UsageError& error) {
-    fmt::print("{}: not comparable: {}\n", title, error.what());
+    say(stdout, fmt::format("{}: not comparable: {}\n", title, error.what()));
     return kNotComparable;
   }
   const std::string builds = difference_of_builds(record, request);
-  const std::optional<Record> again = run_again(request, given, session);
-  if (!again) return kInterrupted;
+  const auto [again, is_interrupted] = run_again(request, given, session);
+  if (is_interrupted) return kInterrupted;
+  if (!again) {
+    say(stdout, fmt::format("{}: not comparable: somebody ended it\n", title));
+    return kNotComparable;
+  }
   Record same_asked = *again;
   same_asked.cell = record.cell;  // told apart above
   same_asked.request = record.request;
   const Comparison found = compare_results(record, same_asked);
-  fmt::print("{}: {}{}\n", title, builds.empty() ? "" : "not comparable: " + builds + "; ",
-             words_of(found));
+  say(stdout,
+      fmt::format("{}: {}{}\n", title, builds.empty() ? "" : "not comparable: " + builds + "; ",
+                  words_of(found)));
   if (!builds.empty()) return kNotComparable;
   return found.difference.empty() ? kGood : kWorse;
 }
@@ -120,7 +129,7 @@ int replay_verb(const ReplayArguments& given, Session& session) {
   for (const std::string& path : given.records) {
     const int code = replay(path, given, session);
     if (code == kInterrupted) {
-      fmt::print(stderr, "interrupted\n");
+      say(stderr, "interrupted\n");
       return kInterrupted;
     }
     if (worst != kWorse && code != kGood) worst = code;

@@ -155,6 +155,7 @@ int run_verb(const RunArguments& given, Session& session) {
                      .retry = statuses_of(given.retry),
                      .exclusive = given.exclusive,
                      .repeat = given.repeat,
+                     .keeps_output = given.keep_output,
                      .command = session.command()};
   if (given.exclusive) options.jobs = 1;
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;

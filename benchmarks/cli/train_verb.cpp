@@ -16,6 +16,7 @@
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/trained.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -115,12 +116,14 @@ int train_verb(const TrainArguments& given, Session& session) {
                        trace.message);
   });
   if (!is_trained(trace)) {
-    fmt::print(stderr, "isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message);
+    say(stderr,
+        fmt::format("isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message));
     return kWorse;
   }
-  fmt::print("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n", given.out,
-             request.problem.spec, request.optimizer.spec, trace.last.iteration, trace.last.loss,
-             trace.last.x_error);
+  say(stdout,
+      fmt::format("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n",
+                  given.out, request.problem.spec, request.optimizer.spec, trace.last.iteration,
+                  trace.last.loss, trace.last.x_error));
   return kGood;
 }
 

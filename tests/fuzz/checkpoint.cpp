@@ -27,7 +27,10 @@ void restore_from(const std::string& path) {
                           needs_of(entry, request.optimizer.options, problem), trace);
   Vector theta = problem.start();
   constexpr double kNever = 1e9;
-  benchmarks::Checkpoint(path, "cell", kNever).restore(*method, meter, theta);
+  try {
+    benchmarks::Checkpoint(path, "cell", kNever).restore(*method, meter, theta);
+  } catch (const benchmarks::DamagedCheckpoint&) {  // the cell begins anew
+  }
 }
 
 }  // namespace
