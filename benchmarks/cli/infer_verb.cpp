@@ -57,7 +57,7 @@ int infer_verb(const InferArguments& given, Session& session) {
     return kWorse;
   }
   require(text->front() != kMistaken, [&] { return text->substr(1); });
-  say(stdout, fmt::format("{}\n", text->substr(1)));
+  say(stdout, text->substr(1) + "\n");
   return kGood;
 }
 
