@@ -11,7 +11,7 @@
 
 #include "benchmarks/audit/audit_problems.h"
 #include "benchmarks/audit/audit_subject.h"
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "core/json.h"
 
 namespace isoline::benchmarks {

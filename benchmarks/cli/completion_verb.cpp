@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "benchmarks/cli/verbs.h"
+#include "core/status.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
@@ -18,6 +19,7 @@ _isoline() {
     --problem) list=$("$program" list problems --names 2>/dev/null) ;;
     --optimizer) list=$("$program" list optimizers --names 2>/dev/null) ;;
     --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
+    --retry) list="@STATUSES@" ;;
     --rates) COMPREPLY=($(compgen -W "builtin none" -- "$word") $(compgen -f -- "$word")); return ;;
   esac
   if [[ -n $list ]]; then
@@ -46,13 +48,19 @@ _isoline() {
 complete -o nosort -F _isoline isoline ./isoline
 )";
 
+void put(std::string& script, std::string_view place, const std::string& text) {
+  script.replace(script.find(place), place.size(), text);
+}
+
 }  // namespace
 
 int completion_verb(const CompletionArguments& given, Session&) {
-  constexpr std::string_view kPlace = "@VERBS@";
-  std::string verbs, script = kBash;
+  std::string verbs, statuses, script = kBash;
   for (const std::string& verb : given.verbs) verbs += verb + " ";
-  script.replace(script.find(kPlace), kPlace.size(), verbs);
+  for (const std::string_view status : kStatusNames)
+    if (status != name_of(Status::running)) statuses += fmt::format("{} ", status);
+  put(script, "@VERBS@", verbs);
+  put(script, "@STATUSES@", statuses);
   say(stdout, script);
   return kGood;
 }

@@ -3,7 +3,7 @@
 
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/trained.h"
 #include "core/errors.h"
 #include "core/records/number_file.h"
@@ -57,7 +57,7 @@ int infer_verb(const InferArguments& given, Session& session) {
     return kWorse;
   }
   require(text->front() != kMistaken, [&] { return text->substr(1); });
-  say(stdout, fmt::format("{}\n", text->substr(1)));
+  say(stdout, text->substr(1) + "\n");
   return kGood;
 }
 

@@ -67,15 +67,18 @@ std::string difference_of_builds(const Record& record, const Request& request) {
   return "another build answered, which differs in: " + parts;
 }
 
-// One run of the request; nothing where the user stopped it.
-std::optional<Record> run_again(const Request& request, const ReplayArguments& given,
-                                Session& session) {
+// One run of the request; no record where the user stopped it, or somebody ended it.
+struct Rerun {
+  std::optional<Record> record;
+  bool is_interrupted = false;
+};
+Rerun run_again(const Request& request, const ReplayArguments& given, Session& session) {
   const PassingFolder folder;
   Store store(folder.path());
   RunOptions options{.force = true, .command = session.command()};
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
   const Outcome outcome = run_all(session.catalog(), {request}, store, options);
-  return outcome.is_interrupted ? std::nullopt : store.find(request);
+  return {store.find(request), outcome.is_interrupted};
 }
 
 std::string words_of(const Comparison& found) {
@@ -102,8 +105,12 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
     return kNotComparable;
   }
   const std::string builds = difference_of_builds(record, request);
-  const std::optional<Record> again = run_again(request, given, session);
-  if (!again) return kInterrupted;
+  const auto [again, is_interrupted] = run_again(request, given, session);
+  if (is_interrupted) return kInterrupted;
+  if (!again) {
+    say(stdout, fmt::format("{}: not comparable: somebody ended it\n", title));
+    return kNotComparable;
+  }
   Record same_asked = *again;
   same_asked.cell = record.cell;  // told apart above
   same_asked.request = record.request;

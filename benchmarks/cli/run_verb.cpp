@@ -11,6 +11,7 @@
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/filter.h"
+#include "benchmarks/plan/plan_size.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/run_plan.h"
@@ -62,8 +63,12 @@ Undertaking undertaking_of(const RunArguments& given, const Catalog& catalog) {
   }
   override_blocks(given, suite);
   Rates rates = Rates::named(given.rates);
-  Undertaking all{suite.name, expand(catalog, suite, rates, given.allow_large), given.out,
-                  std::move(rates)};
+  const std::uint64_t most = given.allow_large ? kMostWhereLarge : kMostCells;
+  const PlanSize size = size_of(catalog, suite);
+  require(size.cells <= most, [&] {
+    return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
+  });
+  Undertaking all{suite.name, expand(catalog, suite, rates, most), given.out, std::move(rates)};
   if (is_suite && is_limited)
     all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
   if (!all.folder.empty()) return all;
@@ -153,6 +158,7 @@ int run_verb(const RunArguments& given, Session& session) {
                      .retry = statuses_of(given.retry),
                      .exclusive = given.exclusive,
                      .repeat = given.repeat,
+                     .keeps_output = given.keeps_output,
                      .command = session.command()};
   if (given.exclusive) options.jobs = 1;
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;

@@ -23,9 +23,11 @@ struct Expansion {
 };
 
 std::vector<Request> expanded(const Expansion& from, Json block) {
+  constexpr std::uint64_t kMost = 10'000;  // cells that one claim is decided by
   for (const char* own : {"long", "deviation"}) block.erase(own);
   const Json suite{{"schema", "isoline.suite/1"}, {"name", "claims"}, {"matrix", {block}}};
-  return expand(from.catalog, suite_from_json(suite, "the claim " + from.claim), from.rates);
+  const std::string origin = "the claim " + from.claim;
+  return expand(from.catalog, suite_from_json(suite, origin), from.rates, kMost);
 }
 
 // The one problem of the set, unless the term names its own.

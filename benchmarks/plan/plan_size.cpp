@@ -7,7 +7,6 @@
 
 #include "benchmarks/plan/filter.h"
 #include "core/count.h"
-#include "core/errors.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -100,11 +99,9 @@ PlanSize size_of(const Catalog& catalog, const Suite& suite) {
   return all;
 }
 
-void require_ordinary(const PlanSize& size) {
-  require(size.cells <= kMostCells, [&] {
-    return fmt::format("the plan has {} cells, more than {}: {}; --allow-large lifts the limit",
-                       count_text(size.cells), count_text(kMostCells), size.largest);
-  });
+std::string too_large(const PlanSize& size, std::uint64_t most) {
+  return fmt::format("the plan has {} cells, more than {}: {}", count_text(size.cells),
+                     count_text(most), size.largest);
 }
 
 }  // namespace isoline::benchmarks

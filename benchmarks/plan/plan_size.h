@@ -8,8 +8,6 @@
 
 namespace isoline::benchmarks {
 
-inline constexpr std::uint64_t kMostCells = 1'000'000;
-
 struct PlanSize {
   std::uint64_t cells = 0;  // at most: a cell that two blocks have is run once
   std::string largest;  // the factors of the largest block: "50,000 seeds × 400 settings of sine"
@@ -17,7 +15,7 @@ struct PlanSize {
 
 PlanSize size_of(const Catalog& catalog, const Suite& suite);
 
-// UsageError over kMostCells, with the size and what makes it so large.
-void require_ordinary(const PlanSize& size);
+// "the plan has 20,000,000 cells, more than 1,000,000: 50,000 seeds × 400 settings of sine"
+std::string too_large(const PlanSize& size, std::uint64_t most);
 
 }  // namespace isoline::benchmarks

@@ -188,9 +188,10 @@ Suite read_suite(const std::string& name_or_path) {
 }
 
 std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,
-                            bool allows_large) {
-  if (!allows_large) require_ordinary(size_of(catalog, suite));
-  Expansion expansion(catalog, rates, allows_large ? kMostWhereLarge : kMostSettings);
+                            std::uint64_t most) {
+  const PlanSize size = size_of(catalog, suite);
+  require(size.cells <= most, [&] { return too_large(size, most); });
+  Expansion expansion(catalog, rates, most);
   for (const MatrixBlock& block : suite.blocks) expansion.add(block);
   return std::move(expansion).requests();
 }

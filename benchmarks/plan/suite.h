@@ -40,9 +40,11 @@ Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row*
 Suite read_suite(const std::string& name_or_path);
 Suite suite_from_json(const Json& json, const std::string& origin);
 
+inline constexpr std::uint64_t kMostCells = 1'000'000;
+
 // Every cell, in order, each once. Options not given are filled in from the rates, then defaults.
-// UsageError where the plan is large (benchmarks/plan/plan_size.h), unless that is meant.
+// UsageError, before anything is made, where the plan has more than `most` cells.
 std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,
-                            bool allows_large = false);
+                            std::uint64_t most = kMostCells);
 
 }  // namespace isoline::benchmarks

@@ -5,7 +5,7 @@
 #include <functional>
 #include <set>
 
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/prices.h"
 #include "benchmarks/run/sheets.h"
 #include "core/errors.h"

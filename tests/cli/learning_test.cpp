@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
 
 #include "core/files.h"
 #include "core/records/number_file.h"
@@ -84,6 +86,116 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
     EXPECT_TRUE(contains(result.err, sentence)) << command << "\n" << result.err;
     for (const char* file : {"x", "x.npy", "x.txt"})
       EXPECT_FALSE(fs::exists(shell.folder() / file)) << command;
+  }
+}
+
+// A file of a network, read as JSON and written in another form.
+void rewrite(const Shell& shell, const char* name, const std::function<void(Json&)>& change,
+             int indent = -1) {
+  Json network = read_json(shell.folder() / "net.json");
+  change(network);
+  write_text(shell.folder() / name, network.dump(indent));
+}
+
+TEST(Network, IsReadHoweverItsJsonIsLaidOut) {
+  const Shell shell;
+  ASSERT_EQ(shell("./isoline train sine --iterations 5 --out net.json").exit_code, 0);
+  shell("printf '1,2\n' > y.csv");
+  rewrite(shell, "one-line.json", [](Json&) {});
+  rewrite(
+      shell, "pretty.json", [](Json&) {}, 2);
+  shell("(cat net.json; echo; echo) > blank-lines.json");
+  ASSERT_EQ(shell("./isoline infer net.json --input y.csv --output x.csv").exit_code, 0);
+  for (const std::string name : {"one-line.json", "pretty.json", "blank-lines.json"}) {
+    const Finished inferred = shell("./isoline infer " + name + " --input y.csv --output z.csv");
+    EXPECT_EQ(inferred.exit_code, 0) << name << ": " << inferred.err;
+    EXPECT_EQ(read_text(shell.folder() / "x.csv"), read_text(shell.folder() / "z.csv")) << name;
+  }
+  EXPECT_EQ(shell("./isoline validate net.json pretty.json").exit_code, 0);
+}
+
+TEST(Network, OfSizesThatCannotBeIsRefusedBeforeThereIsRoomForThem) {
+  const Shell shell;
+  ASSERT_EQ(shell("./isoline train sine --iterations 5 --out net.json").exit_code, 0);
+  ASSERT_EQ(shell("./isoline train sine --iterations 5 --out net.bin").exit_code, 0);
+  shell("printf '1,2\n' > y.csv");
+  const std::string binary = read_text(shell.folder() / "net.bin");
+  const std::size_t end = binary.find('\n');
+  for (const char* size : {"-5", "1000000000000000", "2305843009213693952", "18446744073709551615",
+                           "1000000000000000000000000000000", "\"many\""})
+    for (const char* name : {"parameters", "statistics"}) {
+      rewrite(shell, "x.json", [&](Json& json) { json[name] = parse_json(size, "size"); });
+      Json header = parse_json(binary.substr(0, end), "header");
+      header[name] = parse_json(size, "size");
+      write_text(shell.folder() / "x.bin", header.dump() + binary.substr(end));
+      for (const std::string file : {"x.json", "x.bin"}) {
+        const Finished refused = shell("./isoline infer " + file + " --input y.csv --output x.npy");
+        EXPECT_EQ(refused.exit_code, 1) << file << " " << name << " " << size << refused.err;
+        EXPECT_EQ(count_lines(refused.err), 1U) << refused.err;
+        EXPECT_TRUE(contains(refused.err, file + " is no trained network: ")) << refused.err;
+        EXPECT_TRUE(contains(refused.err, name) || contains(refused.err, "cut short"))
+            << refused.err;
+        for (const char* foreign : {"stoll", "bad_alloc", "max_size", "json.exception"})
+          EXPECT_FALSE(contains(refused.err, foreign)) << refused.err;
+      }
+    }
+}
+
+TEST(Network, WithStatisticsOfAnotherNetworkIsRefused) {
+  const Shell shell;
+  const std::string train =
+      "./isoline train 'poisson[N=16,batch=4,network=unet[levels=2]]' --iterations 2 --out ";
+  ASSERT_EQ(shell(train + "net.json").exit_code, 0);
+  write_npy(shell.folder() / "y.npy", {{1, 16, 16}, std::vector<Real>(256, 0.1)});
+  rewrite(shell, "x.json", [](Json& json) {
+    json["statistics"] = 1;
+    json["mean_statistics"] = {0.5};
+  });
+  const Finished refused = shell("./isoline infer x.json --input y.npy --output x.npy");
+  EXPECT_EQ(refused.exit_code, 1) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "1 statistics and its network has")) << refused.err;
+}
+
+TEST(Infer, IsEndedAtItsLimitsAndSaysSo) {
+  const Shell shell;
+  ASSERT_EQ(shell("./isoline train sine --iterations 5 --out net.json").exit_code, 0);
+  write_npy(shell.folder() / "y.npy", {{2'000'000, 2}, std::vector<Real>(4'000'000, 0.1)});
+  const std::string infer = "./isoline infer net.json --input y.npy --output x.npy ";
+  const Finished late = shell(infer + "--time 1ms");
+  EXPECT_EQ(late.exit_code, 2) << late.err;
+  EXPECT_TRUE(contains(late.err, "x.npy was not written: it took more than")) << late.err;
+#ifndef ISOLINE_SANITIZE  // which the address space is not limited under
+  const Finished large = shell(infer + "--memory 16MB");
+  EXPECT_EQ(large.exit_code, 2) << large.err;
+  EXPECT_TRUE(contains(large.err, "x.npy was not written: it ran out of memory")) << large.err;
+#endif
+  EXPECT_FALSE(fs::exists(shell.folder() / "x.npy"));
+  EXPECT_EQ(shell(infer).exit_code, 0);
+}
+
+TEST(Train, IsEndedAtItsLimitsLikeACell) {
+  const Shell shell;
+  const Finished timed =
+      shell("./isoline train sine --iterations 1000000000 --time 500ms --out n.json");
+  EXPECT_EQ(timed.exit_code, 0) << timed.err;
+  EXPECT_TRUE(fs::exists(shell.folder() / "n.json")) << "what was learned by then is kept";
+#ifndef ISOLINE_SANITIZE
+  const Finished large = shell(
+      "./isoline train 'poisson[N=64,batch=64,network=unet[levels=3]]' --iterations 5 "
+      "--memory 16MB --out m.json");
+  EXPECT_EQ(large.exit_code, 2) << large.err;
+  EXPECT_TRUE(contains(large.err, "nothing written: memory: ")) << large.err;
+#endif
+  EXPECT_FALSE(fs::exists(shell.folder() / "m.json"));
+}
+
+TEST(Train, DoesNotBeginWhatCannotBeWritten) {
+  const Shell shell;
+  for (const char* out : {"nowhere/net.json", "."}) {
+    const Finished refused =
+        shell(std::string("./isoline train sine --iterations 1000000000 --out ") + out);
+    EXPECT_EQ(refused.exit_code, 1) << refused.err;
+    EXPECT_TRUE(contains(refused.err, std::string("cannot write ") + out)) << refused.err;
   }
 }
 

@@ -15,7 +15,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
        {"run", "report", "compare", "baseline", "merge", "best", "claims", "list", "describe",
-        "check", "audit", "validate", "tune", "train", "infer", "completion"}) {
+        "check", "audit", "validate", "replay", "tune", "train", "infer", "completion"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
@@ -26,9 +26,10 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
 
 TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   const std::string completion = Shell()("./isoline completion bash").out;
-  EXPECT_TRUE(contains(completion,
-                       "\"run report compare baseline merge best claims list describe check audit "
-                       "validate tune train infer completion  --help --version\""))
+  EXPECT_TRUE(
+      contains(completion,
+               "\"run report compare baseline replay merge best claims list describe check audit "
+               "validate tune train infer completion  --help --version\""))
       << completion;
 }
 
@@ -64,7 +65,42 @@ const std::vector<Mistake> kMistakes = {
     {"run --problem square --optimizer gd --seeds many", "many"},
     {"run --problem square --optimizer gd --time soon", "soon"},
     {"run --problem square --optimizer gd --memory lots", "2GB, got 'lots'"},
-    {"run --problem square --optimizer gd --jobs 0", "--jobs"},
+    {"run --problem square --optimizer gd --memory=-1",
+     "from 16MB to 1024TB, such as 2GB, got '-1'"},
+    {"run --problem square --optimizer gd --memory=0", "got '0'"},
+    {"run --problem square --optimizer gd --memory nan", "got 'nan'"},
+    {"run --problem square --optimizer gd --memory 999999999999TB", "got '999999999999TB'"},
+    {"run --problem square --optimizer gd --time ''", "such as 10s, 2m or 1h, got ''"},
+    {"run --problem square --optimizer gd --time -3", "--time: a time must be above 0"},
+    {"run --problem square --optimizer gd --time 1e300", "--time: a time must be above 0"},
+    {"run --problem square --optimizer gd --seeds ''", "--seeds: it must not be empty"},
+    {"run --problem square --optimizer gd --out ''", "--out: it must not be empty"},
+    {"run --problem square --optimizer gd --seeds 0..18446744073709551615",
+     "more than 10^19 seeds"},
+    {"run --seeds 0..999999", "1,000,000 seeds × "},
+    {"run --problem 'sine[xi=1|2],square' --optimizer gd --seeds 1000000",
+     "the plan has 3,000,000 cells, more than 1,000,000: 1,000,000 seeds × 3 settings of 2 problems"},
+    {"run --problem square --optimizer gd,newton --seeds 1000000", "--allow-large lifts the limit"},
+    {"run --problem square --optimizer gd --jobs 0",
+     "--jobs must be a whole number from 1 to 1,024"},
+    {"run --problem square --optimizer gd --jobs 2.5", "--jobs must be a whole number"},
+    {"run --problem square --optimizer gd --threads 0x2", "--threads must be a whole number"},
+    {"run --problem square --optimizer gd --repeat 0", "--repeat must be a whole number"},
+    {"run --problem square --optimizer gd --iterations 99999999999999999999999",
+     "--iterations must be a whole number from 1 to 1,000,000,000,000,000"},
+    {"run --problem square --optimizer gd --iterations 1e23", "got '1e23'"},
+    {"run --problem square --optimizer gd --iterations 0", "--iterations must be"},
+    {"run --problem square --optimizer gd --work -1", "--work must be"},
+    {"run --problem square --optimizer gd --target nan", "--target must be a number in [0, 1]"},
+    {"run --problem square --optimizer gd --retry failed,crashd", "did you mean 'crashed'"},
+    {"check square --seed -1", "--seed must be a whole number from 0"},
+    {"check square --seed 18446744073709551616", "--seed must be a whole number from 0"},
+    {"report . --tolerance nan", "--tolerance must be a number in [1e-10, 1]"},
+    {"compare . . --noise inf", "--noise must be a number in [0, 10]"},
+    {"tune square --tuning-seeds 0..9999999", "at most 1,000,000"},
+    {"tune square --optimizer gd --grid rate=1e-2..1e-1x2000000000", "at most 1,000 values"},
+    {"replay nowhere.json", "nowhere.json"},
+    {"replay .", "is a folder"},
     {"run --problem square --optimizer gd --target 2", "--target"},
     {"run --problem square --optimizer gd --iterations -1", "--iterations"},
     {"run --problem square --optimizer gd --itertions 5", "--itertions"},
@@ -183,6 +219,10 @@ TEST(Completion, IsValidBashAndCompletesNames) {
   EXPECT_EQ(complete("run note"), "notebook\n");
   EXPECT_EQ(complete("describe saddle"), "saddle-free-newton\n");
   EXPECT_EQ(complete("val"), "validate\n");
+  EXPECT_EQ(complete("repl"), "replay\n");
+  EXPECT_EQ(complete("list netw"), "networks\n");
+  EXPECT_EQ(complete("describe fn"), "fno\n");
+  EXPECT_EQ(complete("run --retry f"), "failed\n");
   EXPECT_EQ(complete("run --dry"), "--dry-run\n");
 }
 

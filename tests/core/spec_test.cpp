@@ -1,8 +1,12 @@
 // Specs, sweeps, seeds and durations are read as the command line says.
 #include "core/spec.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "core/count.h"
 #include "core/errors.h"
 
 namespace isoline {
@@ -70,13 +74,61 @@ TEST(Seeds, CountsRangesAndSingles) {
     EXPECT_THROW(parse_seeds(wrong), UsageError) << wrong;
 }
 
+TEST(Seeds, TheLargestOneIsASeedLikeOthers) {
+  constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_EQ(parse_seeds("=18446744073709551615"), (std::vector<std::uint64_t>{kLargest}));
+  EXPECT_EQ(parse_seeds("18446744073709551614..18446744073709551615"),
+            (std::vector<std::uint64_t>{kLargest - 1, kLargest}));
+}
+
+TEST(Seeds, AreCountedBeforeTheyAreListed) {
+  for (const char* many : {"0..18446744073709551615", "1000001", "0..999999,=7"})
+    EXPECT_THROW(parse_seeds(many), UsageError) << many;
+  EXPECT_EQ(parse_seeds("0..999999").size(), 1'000'000U);
+  EXPECT_THROW(parse_seeds("0..9", 9), UsageError);
+}
+
+TEST(Sweeps, AreCountedBeforeTheyAreMade) {
+  std::string values = "1";
+  for (int i = 1; i < 1000; ++i) values += "|1";
+  const std::string sweep = fmt::format("a[x={0},y={0},z={0}],b", values);
+  const std::vector<SweepSize> sizes = sweep_sizes(sweep);
+  ASSERT_EQ(sizes.size(), 2U);
+  EXPECT_EQ(sizes[0].settings, 1'000'000'000U);
+  EXPECT_EQ(sizes[1].settings, 1U);
+  try {
+    parse_specs(sweep);
+    FAIL() << "a billion specs were made";
+  } catch (const UsageError& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("1,000 of x × 1,000 of y × 1,000 of z"),
+              std::string::npos)
+        << refusal.what();
+  }
+}
+
+// 1,000 to the power of seven is more than a count of 64 bits holds.
+TEST(Sweeps, OfMoreThanCanBeCountedAreRefused) {
+  std::string values = "1", sweep = "a[k=1";
+  for (int i = 1; i < 1000; ++i) values += "|1";
+  for (int i = 0; i < 7; ++i) sweep += fmt::format(",x{}={}", i, values);
+  EXPECT_EQ(sweep_sizes(sweep + "]")[0].settings, kUncountable);
+  EXPECT_THROW(parse_specs(sweep + "]"), UsageError);
+}
+
+TEST(Counts, AreWrittenInGroupsOfThree) {
+  EXPECT_EQ(count_text(0), "0");
+  EXPECT_EQ(count_text(999), "999");
+  EXPECT_EQ(count_text(50'000), "50,000");
+  EXPECT_EQ(count_text(1'000'000), "1,000,000");
+}
+
 TEST(Duration, UnitsAreRead) {
   EXPECT_EQ(parse_duration("10s"), 10);
   EXPECT_EQ(parse_duration("2m"), 120);
   EXPECT_EQ(parse_duration("1.5h"), 5400);
   EXPECT_EQ(parse_duration("250ms"), 0.25);
   EXPECT_EQ(parse_duration("3"), 3);
-  for (const char* wrong : {"", "s", "-1s", "0", "1x", "inf"})
+  for (const char* wrong : {"", "s", "-1s", "0", "1x", "inf", "nan", "1e308h", "1e10"})
     EXPECT_THROW(parse_duration(wrong), UsageError) << wrong;
 }
 

@@ -1,0 +1,10 @@
+// What libFuzzer calls with each input: the target that the build names.
+#include <cstddef>
+#include <cstdint>
+
+#include "tests/fuzz/targets.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  isoline::fuzz::ISOLINE_FUZZ_TARGET({reinterpret_cast<const char*>(data), size});
+  return 0;
+}

@@ -1,0 +1,53 @@
+// What the targets share.
+#include "tests/fuzz/targets.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "benchmarks/plan/catalog.h"
+#include "core/errors.h"
+
+namespace isoline::fuzz {
+namespace {
+
+// What std::stoll, std::bad_alloc, std::vector and std::regex call their errors.
+bool is_a_sentence(const std::string& message) {
+  for (const char* foreign : {"bad_alloc", "stoll", "stod", "max_size", "length_error", "regex",
+                              "json.exception.type_error", "basic_string", "_M_"})
+    if (message == foreign || message.starts_with(foreign)) return false;
+  return !message.empty();
+}
+
+}  // namespace
+
+void expect_read_or_refused(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const UsageError& refusal) {
+    if (!is_a_sentence(refusal.what()))
+      throw std::logic_error("refused without a sentence: " + std::string(refusal.what()));
+  }
+}
+
+const benchmarks::Catalog& catalog() {
+  static const benchmarks::Catalog all = benchmarks::builtin_catalog();
+  return all;
+}
+
+MemoryFile::MemoryFile(std::string_view bytes)
+    : descriptor_(memfd_create("isoline-fuzz", MFD_CLOEXEC)) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written <= 0) throw std::runtime_error("a file in memory cannot be written");
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+MemoryFile::~MemoryFile() { ::close(descriptor_); }
+
+std::string MemoryFile::path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+}  // namespace isoline::fuzz
