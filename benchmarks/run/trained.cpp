@@ -100,6 +100,16 @@ TrainedNetwork from_json(Json json) {
   return network;
 }
 
+// A line that is an object without "theta" is a header: raw numbers follow it.
+Json header_in(const std::string& line) {
+  try {
+    Json header = parse_json(line, "its header");
+    return header.is_object() && !header.contains("theta") ? header : Json();
+  } catch (const UsageError&) {  // the beginning of a document of many lines
+    return {};
+  }
+}
+
 TrainedNetwork from_raw(const Json& header, std::string_view numbers) {
   TrainedNetwork network = from_header(header);
   const auto said = header.at("parameters").get<std::uint64_t>();
@@ -153,15 +163,12 @@ void write_network(const TrainedNetwork& network, const std::filesystem::path& p
   write_text(path, text);
 }
 
-// A first line that is a header alone has raw numbers behind it. All else is one JSON document,
-// however it is laid out.
+// However a JSON document is laid out.
 TrainedNetwork network_from_text(const std::string& text) {
   const std::size_t end = text.find('\n');
-  if (end != std::string::npos && end + 1 < text.size()) {
-    const Json header = Json::parse(text.substr(0, end), nullptr, false);
-    if (header.is_object() && !header.contains("theta"))
-      return from_raw(header, std::string_view(text).substr(end + 1));
-  }
+  const bool has_more = end != std::string::npos && end + 1 < text.size();
+  const Json header = has_more ? header_in(text.substr(0, end)) : Json();
+  if (header.is_object()) return from_raw(header, std::string_view(text).substr(end + 1));
   return from_json(parse_json(text, "it"));
 }
 
