@@ -167,16 +167,17 @@ bool is_there(const fs::path& path) {
   return ::lstat(path.c_str(), &found) == 0;
 }
 
-std::vector<fs::path> entries_of(const fs::path& folder) {
-  std::vector<fs::path> paths;
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
   std::error_code error;
   fs::directory_iterator at(folder, error);
-  if (error == std::errc::no_such_file_or_directory) return paths;
-  for (; !error && at != fs::directory_iterator(); at.increment(error)) paths.push_back(at->path());
+  if (error == std::errc::no_such_file_or_directory) return names;
+  for (; !error && at != fs::directory_iterator(); at.increment(error))
+    names.push_back(at->path().filename().string());
   require(!error,
           [&] { return fmt::format("cannot list {}: {}", folder.string(), error.message()); });
-  std::ranges::sort(paths);
-  return paths;
+  std::ranges::sort(names);
+  return names;
 }
 
 fs::path temporary_of(const fs::path& path) {

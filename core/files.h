@@ -22,9 +22,9 @@ std::string read_text(const std::filesystem::path& path, std::size_t most_bytes 
 // Whether anything stands under that name, be it a link that leads nowhere.
 bool is_there(const std::filesystem::path& path);
 
-// What stands in a folder, sorted, whatever it is; nothing where there is no such folder.
+// The names of what stands in a folder, sorted, whatever it is; none where there is no such folder.
 // UsageError where it cannot be listed.
-std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
+std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 // By a temporary file, fsync and rename: whoever looks finds the old file or the new one.
 void write_text(const std::filesystem::path& path, std::string_view text);

@@ -11,7 +11,7 @@
 
 #include "benchmarks/audit/audit_problems.h"
 #include "benchmarks/audit/audit_subject.h"
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "core/json.h"
 
 namespace isoline::benchmarks {
@@ -187,7 +187,7 @@ std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
   std::vector<AuditedOptimizer> all;
   for (const std::string& name : names) {
     const auto [text, failure] = isolated_text(
-        [&] { return to_json(audit_optimizer(catalog, name)).dump(); }, kAuditSeconds);
+        [&] { return json_text(to_json(audit_optimizer(catalog, name))); }, kAuditSeconds);
     if (text)
       all.push_back(audited_from_json(parse_json(*text, name)));
     else

@@ -7,6 +7,7 @@
 #include "benchmarks/audit/audit.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
+#include "core/text.h"
 #include "reports/report.h"
 
 namespace isoline::benchmarks {
@@ -23,7 +24,7 @@ int audit_verb(const AuditArguments& given, Session& session) {
     std::filesystem::create_directories(given.out);
     write_audit(all, std::filesystem::path(given.out) / "audit.json");
   }
-  fmt::print("{}", given.as_json ? audit_text(all) : terminal_section(properties_section(all)));
+  say(stdout, given.as_json ? audit_text(all) : terminal_section(properties_section(all)));
   const bool has_flags = std::ranges::any_of(
       all, [](const AuditedOptimizer& audited) { return !audited.flags.empty(); });
   return has_flags ? kWorse : kGood;

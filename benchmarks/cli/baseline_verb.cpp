@@ -9,6 +9,7 @@
 #include "benchmarks/run/perturbed_runs.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/text.h"
 #include "reports/compare/baseline.h"
 #include "reports/read/study.h"
 
@@ -42,18 +43,18 @@ int baseline_verb(const BaselineArguments& given, Session& session) {
   require(!study.runs.empty(), "there are no records to remember");
   const std::vector<Study> perturbed = perturbed_studies(given, session, study);
   if (perturbed.size() < static_cast<std::size_t>(given.perturbations)) {
-    fmt::print(stderr, "interrupted; no baseline was written\n");
+    say(stderr, "interrupted; no baseline was written\n");
     return kInterrupted;
   }
   const std::string text = baseline_json(study, perturbed);
   if (given.out.empty()) {
-    fmt::print("{}", text);
+    say(stdout, text);
     return kGood;
   }
   const std::filesystem::path folder = std::filesystem::path(given.out).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
   write_text(given.out, text);
-  fmt::print("{}: {} cells\n", given.out, study.runs.size());
+  say(stdout, fmt::format("{}: {} cells\n", given.out, study.runs.size()));
   return kGood;
 }
 

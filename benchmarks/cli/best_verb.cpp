@@ -12,6 +12,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -32,8 +33,9 @@ std::vector<Record> records_under(const std::vector<std::string>& folders) {
 // Rows stand each on a line, so that a change of the table is read in its difference.
 std::string text_of(const Json& table) {
   std::string rows;
-  for (const Json& row : table.at("rows")) rows += (rows.empty() ? "" : ",\n") + row.dump();
-  return fmt::format("{{\"schema\": {}, \"rows\": [\n{}\n]}}\n", table.at("schema").dump(), rows);
+  for (const Json& row : table.at("rows")) rows += (rows.empty() ? "" : ",\n") + json_text(row);
+  return fmt::format("{{\"schema\": {}, \"rows\": [\n{}\n]}}\n", json_text(table.at("schema")),
+                     rows);
 }
 
 }  // namespace
@@ -51,7 +53,7 @@ int best_verb(const BestArguments& given, Session& session) {
     if (!known->second) improved += best.add(record);
   }
   write_text(given.out, text_of(best.to_json()));
-  fmt::print("{}: {} losses are new or less than before\n", given.out, improved);
+  say(stdout, fmt::format("{}: {} losses are new or less than before\n", given.out, improved));
   return kGood;
 }
 

@@ -9,6 +9,7 @@
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
 #include "core/spec.h"
+#include "core/text.h"
 #include "problems/conformance.h"
 
 namespace isoline::benchmarks {
@@ -34,8 +35,8 @@ Json findings_of(const Catalog& catalog, const Component& component, std::uint64
 
 // The findings, from a process of its own: a broken problem costs its own check alone.
 Json isolated_findings(const Catalog& catalog, const Component& component, std::uint64_t seed) {
-  const auto [text, failure] =
-      isolated_text([&] { return findings_of(catalog, component, seed).dump(); }, kCheckSeconds);
+  const auto [text, failure] = isolated_text(
+      [&] { return json_text(findings_of(catalog, component, seed)); }, kCheckSeconds);
   if (text) return parse_json(*text, component.spec);
   return Json::array({{{"property", "the problem can be made and examined"},
                        {"figure", "nan"},
@@ -57,13 +58,13 @@ std::vector<Component> chosen(const Catalog& catalog, const std::string& text) {
 }
 
 void print(const std::string& spec, const Json& findings) {
-  fmt::print("{}\n", spec);
+  say(stdout, fmt::format("{}\n", spec));
   for (const Json& finding : findings) {
     const bool holds = finding.at("holds").get<bool>();
-    fmt::print("  {} {:66} {:9.2e} (at most {:.1e})\n", holds ? "pass" : "FAIL",
-               finding.at("property").get<std::string>(), real_of(finding.at("figure")),
-               real_of(finding.at("limit")));
-    if (!holds) fmt::print("       {}\n", finding.at("reason").get<std::string>());
+    say(stdout, fmt::format("  {} {:66} {:9.2e} (at most {:.1e})\n", holds ? "pass" : "FAIL",
+                            finding.at("property").get<std::string>(),
+                            real_of(finding.at("figure")), real_of(finding.at("limit"))));
+    if (!holds) say(stdout, fmt::format("       {}\n", finding.at("reason").get<std::string>()));
   }
 }
 
@@ -80,9 +81,9 @@ int check_verb(const CheckArguments& given, Session& session) {
     all[component.spec] = findings;
   }
   if (given.as_json)
-    fmt::print("{}\n", all.dump(2));
+    say(stdout, fmt::format("{}\n", json_text(all, 2)));
   else
-    fmt::print("{} checks, {} failed\n", total, failed);
+    say(stdout, fmt::format("{} checks, {} failed\n", total, failed));
   return failed > 0 ? kWorse : kGood;
 }
 

@@ -11,6 +11,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 
@@ -24,14 +25,14 @@ namespace {
 
 int list_claims(const std::vector<Claim>& claims, bool as_json) {
   if (as_json) {
-    fmt::print("{}\n", json_text(json_of(claims), 2));
+    say(stdout, fmt::format("{}\n", json_text(json_of(claims), 2)));
     return kGood;
   }
   std::string group;
   for (const Claim& claim : claims) {
-    if (claim.group != group) fmt::print("{}\n", claim.group);
+    if (claim.group != group) say(stdout, fmt::format("{}\n", claim.group));
     group = claim.group;
-    fmt::print("  {:38} {}\n", claim.id, claim.sentence);
+    say(stdout, fmt::format("  {:38} {}\n", claim.id, claim.sentence));
   }
   return kGood;
 }
@@ -43,7 +44,7 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
   if (!given.as_json) options.progress = Progress::style_of(STDERR_FILENO);
   const Outcome outcome =
       run_plan(session.catalog(), "claims", cells_of(claims, given.with_long), given.out, options);
-  for (const std::string& failure : outcome.failures) fmt::print(stderr, "{}\n", failure);
+  for (const std::string& failure : outcome.failures) say(stderr, fmt::format("{}\n", failure));
   return outcome;
 }
 
@@ -64,8 +65,8 @@ int claims_verb(const ClaimArguments& given, Session& session) {
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
   const std::vector<Judgement> judgements = judged(claims, read_study({given.out}).runs);
-  fmt::print("{}", given.as_json ? json_text(claims_json(judgements), 2) + "\n"
-                                 : terminal_section(claims_section(judgements)));
+  say(stdout, given.as_json ? json_text(claims_json(judgements), 2) + "\n"
+                            : terminal_section(claims_section(judgements)));
   const int of_runs = exit_code_of(outcome);
   return of_runs == kGood ? exit_code_of(judgements) : of_runs;
 }

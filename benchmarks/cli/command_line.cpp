@@ -166,7 +166,7 @@ void CommandLine::add_run() {
   option(verb, "--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
   whole(verb, "--iterations", given.iterations, "Most iterations of a cell");
   whole(verb, "--work", given.work, "Most work of a cell, in forward solves");
-  time(verb, given.seconds, "Most time of a cell: 10s, 2m; twice that kills it");
+  time(verb, given.seconds, "Most time of a cell: 10s, 2m; twice that of a processor kills it");
   real(verb, "--target", given.target, between(0, 1),
        "Stop at f_L + TARGET s, s the scale of the loss; where x is sought, at "
        "TARGET of its error (default: 1e-10)");
@@ -185,11 +185,12 @@ void CommandLine::add_run() {
   option(verb, "--retry", given.retry, "Repeat cells that ended so: failed,crashed,timeout,memory")
       ->delimiter(',');
   flag(verb, "--allow-large", given.allow_large, "Plan more than a million cells");
-  flag(verb, "--keep-output", given.keep_output, "Keep what cells print in their records");
   CLI::Option* dry =
       flag(verb, "--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
   flag(verb, "--all", given.lists_all, "With --dry-run: every cell, not the first 20")->needs(dry);
   flag(verb, "--no-report", given.no_report, "Leave the report out");
+  flag(verb, "--keep-output", given.keeps_output,
+       "Keep in each record what its cell wrote to the terminal, up to 64 KiB");
   flag(verb, "--quiet", given.quiet, "Print failures only");
 }
 

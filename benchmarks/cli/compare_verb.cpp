@@ -4,6 +4,7 @@
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
+#include "core/text.h"
 #include "reports/compare/gate.h"
 
 namespace isoline::benchmarks {
@@ -30,10 +31,10 @@ int compare_verb(const CompareArguments& given, Session&) {
   options.listener = on_terminal("reading records");
   const GateResult result = compare_results(given.before, given.after, options);
   const auto text = given.as_json ? gate_json : given.as_markdown ? gate_markdown : gate_terminal;
-  fmt::print("{}", text(result));
+  say(stdout, text(result));
   const bool is_fault = result.exit_code == kWorse || result.exit_code == kNotComparable;
   if (is_fault && (given.as_json || given.as_markdown))
-    fmt::print(stderr, "{}\n", result.verdict);  // the terminal's text ends with it
+    say(stderr, fmt::format("{}\n", result.verdict));  // the terminal's text ends with it
   return result.exit_code;
 }
 

@@ -5,6 +5,7 @@
 
 #include "benchmarks/cli/verbs.h"
 #include "core/status.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -60,7 +61,7 @@ int completion_verb(const CompletionArguments& given, Session&) {
     if (status != name_of(Status::running)) statuses += fmt::format("{} ", status);
   put(script, "@VERBS@", verbs);
   put(script, "@STATUSES@", statuses);
-  fmt::print("{}", script);
+  say(stdout, script);
   return kGood;
 }
 

@@ -10,6 +10,7 @@
 #include "core/json.h"
 #include "core/option_json.h"
 #include "core/spec.h"
+#include "core/text.h"
 #include "networks/network.h"
 
 namespace isoline::benchmarks {
@@ -50,11 +51,12 @@ std::string law_of(const OptionField& field) {
 }
 
 void print_options(const OptionTable& table, const OptionValues& values) {
-  fmt::print("{}", table.empty() ? "\nIt has no options.\n" : "\nOptions\n");
+  say(stdout, table.empty() ? "\nIt has no options.\n" : "\nOptions\n");
   for (const OptionField& field : table) {
     const std::string value = text_of(values.at(field.name)), standard = text_of(field.standard);
-    fmt::print("  {:20} {:>12}  {:22} {}{}\n", field.name, value, law_of(field), field.doc,
-               value == standard ? "" : fmt::format(" (default: {})", standard));
+    say(stdout,
+        fmt::format("  {:20} {:>12}  {:22} {}{}\n", field.name, value, law_of(field), field.doc,
+                    value == standard ? "" : fmt::format(" (default: {})", standard)));
   }
 }
 
@@ -63,10 +65,11 @@ void print(const NetworkEntry& network, const OptionValues& options, bool as_jso
     const Json json{{"kind", "network"},      {"name", network.name},
                     {"title", network.title}, {"source", network.source},
                     {"note", network.note},   {"options", describe_options(network.options)}};
-    return fmt::print("{}\n", json.dump(2));
+    return say(stdout, fmt::format("{}\n", json_text(json, 2)));
   }
-  fmt::print("{}: {} (network)\n\nSource      {}\n", network.name, network.title, network.source);
-  if (!network.note.empty()) fmt::print("Note        {}\n", network.note);
+  say(stdout, fmt::format("{}: {} (network)\n\nSource      {}\n", network.name, network.title,
+                          network.source));
+  if (!network.note.empty()) say(stdout, fmt::format("Note        {}\n", network.note));
   print_options(network.options, options);
 }
 
@@ -77,22 +80,25 @@ const char* words_of(Aim aim) {
 
 void print(const Sheet& sheet) {
   const bool is_problem = sheet.kind == "problem";
-  fmt::print("{}: {} ({})\n\n  {}\n\nSource      {}\n", sheet.name, sheet.title, sheet.kind,
-             sheet.formula, sheet.source);
-  if (!sheet.note.empty()) fmt::print("Note        {}\n", sheet.note);
+  say(stdout, fmt::format("{}: {} ({})\n\n  {}\n\nSource      {}\n", sheet.name, sheet.title,
+                          sheet.kind, sheet.formula, sheet.source));
+  if (!sheet.note.empty()) say(stdout, fmt::format("Note        {}\n", sheet.note));
   if (is_problem)
-    fmt::print("Size        {} unknowns, {} residuals\nInverse     {}\nAim         {}\n",
-               sheet.unknowns, sheet.residuals, sheet.inverse,
-               words_of(sheet.aim.value_or(Aim::loss)));
+    say(stdout,
+        fmt::format("Size        {} unknowns, {} residuals\nInverse     {}\nAim         {}\n",
+                    sheet.unknowns, sheet.residuals, sheet.inverse,
+                    words_of(sheet.aim.value_or(Aim::loss))));
   else
-    fmt::print("Family      {}\n", sheet.family);
-  fmt::print("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", "));
+    say(stdout, fmt::format("Family      {}\n", sheet.family));
+  say(stdout,
+      fmt::format("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", ")));
   if (!is_problem)
-    fmt::print("Tuned by    {}\n", sheet.tunable.empty() ? "nothing" : sheet.tunable);
+    say(stdout, fmt::format("Tuned by    {}\n", sheet.tunable.empty() ? "nothing" : sheet.tunable));
   if (!is_problem)
-    fmt::print("Privileges  {}\n", sheet.privileges.empty()
-                                       ? "none"
-                                       : fmt::format("{}", fmt::join(sheet.privileges, "; ")));
+    say(stdout, fmt::format("Privileges  {}\n",
+                            sheet.privileges.empty()
+                                ? "none"
+                                : fmt::format("{}", fmt::join(sheet.privileges, "; "))));
 }
 
 }  // namespace
@@ -106,7 +112,7 @@ int describe_verb(const DescribeArguments& given, Session& session) {
   }
   const Described found = described(session.catalog(), spec);
   if (given.as_json) {
-    fmt::print("{}\n", to_json(found.sheet).dump(2));
+    say(stdout, fmt::format("{}\n", json_text(to_json(found.sheet), 2)));
     return kGood;
   }
   print(found.sheet);

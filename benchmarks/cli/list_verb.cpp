@@ -9,6 +9,7 @@
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/plan/suite.h"
 #include "core/json.h"
+#include "core/text.h"
 #include "networks/network.h"
 
 namespace isoline::benchmarks {
@@ -38,17 +39,17 @@ Json listing(Session& session, const std::string& kind) {
 
 void print(const Json& all, bool names_only) {
   for (const auto& [kind, entries] : all.items()) {
-    if (!names_only) fmt::print("{} {}\n", entries.size(), kind);
+    if (!names_only) say(stdout, fmt::format("{} {}\n", entries.size(), kind));
     for (const Json& entry : entries) {
       const auto name = entry.at("name").get<std::string>();
       if (names_only)
-        fmt::print("{}\n", name);
+        say(stdout, fmt::format("{}\n", name));
       else
-        fmt::print("  {:24} {}\n", name, entry.at("title").get<std::string>());
+        say(stdout, fmt::format("  {:24} {}\n", name, entry.at("title").get<std::string>()));
     }
-    if (!names_only) fmt::print("\n");
+    if (!names_only) say(stdout, "\n");
   }
-  if (!names_only) fmt::print("isoline describe NAME tells more of each.\n");
+  if (!names_only) say(stdout, "isoline describe NAME tells more of each.\n");
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ void print(const Json& all, bool names_only) {
 int list_verb(const ListArguments& given, Session& session) {
   const Json all = listing(session, given.kind);
   if (given.as_json)
-    fmt::print("{}\n", all.dump(2));
+    say(stdout, fmt::format("{}\n", json_text(all, 2)));
   else
     print(all, given.names_only);
   return kGood;

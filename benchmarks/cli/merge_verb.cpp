@@ -4,19 +4,26 @@
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/merge/merge.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 
 int merge_verb(const MergeArguments& given, Session&) {
   const std::vector<std::filesystem::path> folders(given.folders.begin(), given.folders.end());
   const MergeOutcome outcome = merge_folders(folders, given.out, on_terminal("files"));
-  for (const std::string& sentence : outcome.conflicts)
-    fmt::print(stderr, "conflict: {}\n", sentence);
+  if (outcome.is_interrupted) {
+    say(stderr, fmt::format("interrupted; nothing is left of {}\n", given.out));
+    return kInterrupted;
+  }
+  say(stderr, told(outcome.conflicts));
+  if (!outcome.conflicts.empty())
+    say(stderr, fmt::format("all conflicts: {}/conflicts.json\n", given.out));
   for (const std::string& sentence : outcome.unreadable)
-    fmt::print(stderr, "unreadable: {}\n", sentence);
-  for (const std::string& sentence : outcome.remarks) fmt::print("{}\n", sentence);
-  fmt::print("{} records in {}: {} with timings of several folders, {} left out\n", outcome.records,
-             given.out, outcome.united, outcome.conflicts.size() + outcome.unreadable.size());
+    say(stderr, fmt::format("left out: {}\n", sentence));
+  for (const std::string& sentence : outcome.remarks) say(stdout, sentence + "\n");
+  say(stdout, fmt::format("{} records in {}: {} with timings of several folders, {} left out\n",
+                          outcome.records, given.out, outcome.united,
+                          outcome.conflicts.size() + outcome.unreadable.size()));
   return outcome.conflicts.empty() && outcome.unreadable.empty() ? kGood : kWorse;
 }
 

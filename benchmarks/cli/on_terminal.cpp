@@ -24,35 +24,36 @@ Listener on_terminal(const char* what) {
 void print_outcome(const Outcome& outcome, bool quiet) {
   constexpr std::size_t kMost = 20;
   for (std::size_t i = 0; i < std::min(kMost, outcome.failures.size()); ++i)
-    fmt::print(stderr, "{}\n", outcome.failures[i]);
+    say(stderr, fmt::format("{}\n", outcome.failures[i]));
   if (outcome.failures.size() > kMost)
-    fmt::print(stderr, "… and {} more\n", outcome.failures.size() - kMost);
+    say(stderr, fmt::format("… and {} more\n", outcome.failures.size() - kMost));
   for (const std::string& name : outcome.conflicts)
-    fmt::print(stderr, "{}: its repetition gave another result\n", name);
+    say(stderr, fmt::format("{}: its repetition gave another result\n", name));
   for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
   if (!outcome.missing.empty())
     say(stderr, fmt::format("the records of {} of {} cells have vanished while the run went on, as "
                             "that of {}; the same command runs these cells again\n",
                             outcome.missing.size(), outcome.planned, outcome.missing.front()));
   if (outcome.reused_from_other_builds > 0)
-    fmt::print(stderr, "{} of the reused cells were run by another build\n",
-               outcome.reused_from_other_builds);
+    say(stderr, fmt::format("{} of the reused cells were run by another build\n",
+                            outcome.reused_from_other_builds));
   if (quiet) return;
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));
-  fmt::print("{} cells: {} run, {} reused ({})\n", outcome.planned, outcome.run, outcome.reused,
-             counts);
+  say(stdout, fmt::format("{} cells: {} run, {} reused ({})\n", outcome.planned, outcome.run,
+                          outcome.reused, counts));
 }
 
 int exit_code_of(const Outcome& outcome) {
   if (outcome.is_interrupted) {
-    fmt::print(stderr, "interrupted; the same command goes on where it stopped\n");
+    say(stderr, "interrupted; the same command goes on where it stopped\n");
     return kInterrupted;
   }
   if (outcome.interrupted > 0) {
-    fmt::print(stderr, "{} of the cells were killed by others; the same command runs them again\n",
-               outcome.interrupted);
+    say(stderr,
+        fmt::format("{} of the cells were killed by others; the same command runs them again\n",
+                    outcome.interrupted));
     return kInterrupted;
   }
   const bool is_whole = outcome.missing.empty();

@@ -13,6 +13,7 @@
 #include "core/exit.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
+#include "core/text.h"
 #include "core/threads.h"
 
 namespace isoline {
@@ -22,7 +23,15 @@ namespace {
 std::string command_of(const std::string& program, int count, char** arguments) {
   std::string command = program;
   for (int i = 1; i < count; ++i) command += " " + shell_word(arguments[i]);
-  return command;
+  return valid_utf8(command);
+}
+
+int left_with(int code, const std::string& program, const char* what) {
+  try {
+    say(stderr, program + ": " + what + "\n");
+  } catch (const std::exception&) {  // there is nobody to tell
+  }
+  return code;
 }
 
 }  // namespace
@@ -37,14 +46,11 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
   try {
     return benchmarks::parse_and_run(program, count, arguments, session);
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return kUsage;
+    return left_with(kUsage, program, error.what());
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "%s: there is not enough memory for this\n", program.c_str());
-    return kWorse;
+    return left_with(kWorse, program, "there is not enough memory for this");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
-    return kWorse;
+    return left_with(kWorse, program, error.what());
   }
 }
 

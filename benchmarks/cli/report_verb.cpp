@@ -8,6 +8,7 @@
 #include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
+#include "core/text.h"
 #include "reports/read/yardstick.h"
 
 namespace isoline::benchmarks {
@@ -24,8 +25,8 @@ reports::Yardstick yardstick_of(const ReportArguments& given) {
   const reports::Tolerance& taken = yardstick.tightest();
   constexpr double kRounding = 1e-9;
   if (taken.tau < given.tolerance * (1 - kRounding))
-    fmt::print(stderr, "--tolerance {}: taken as {}, the next stricter one of the 51\n",
-               given.tolerance, taken.name);
+    say(stderr, fmt::format("--tolerance {}: taken as {}, the next stricter one of the 51\n",
+                            given.tolerance, taken.name));
   return yardstick;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/cli/session.h"
+#include "core/text.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -36,7 +37,8 @@ void write_and_print(const Study& study, const std::filesystem::path& out, Sessi
   const Document document = document_of(compare_optimizers(study, yardstick), std::move(claims));
   write_report(document, out);
   if (!quiet)
-    fmt::print("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string());
+    say(stdout,
+        fmt::format("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string()));
 }
 
 }  // namespace isoline::benchmarks

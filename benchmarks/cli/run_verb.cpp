@@ -110,20 +110,23 @@ void print_plan(const Undertaking& all, const RunOptions& options, const RunArgu
     inapplicable += !cell.is_cached && !cell.why_inapplicable.empty();
     seconds += cell.seconds;
   }
-  fmt::print("{} cells: {} cached, {} inapplicable, {} to run, about {} with {} at a time\n",
-             cells.size(), cached, inapplicable, cells.size() - cached - inapplicable,
-             duration_text(seconds / jobs), jobs);
+  say(stdout,
+      fmt::format("{} cells: {} cached, {} inapplicable, {} to run, about {} with {} at a time\n",
+                  cells.size(), cached, inapplicable, cells.size() - cached - inapplicable,
+                  duration_text(seconds / jobs), jobs));
   if (likened > 0)
-    fmt::print("{} of the problems' settings were not looked at: taken to be like others\n",
-               likened);
-  fmt::print("result folder: {}\n", all.folder.string());
+    say(stdout,
+        fmt::format("{} of the problems' settings were not looked at: taken to be like others\n",
+                    likened));
+  say(stdout, fmt::format("result folder: {}\n", all.folder.string()));
   const std::size_t listed = given.lists_all ? cells.size() : std::min(kMost, cells.size());
   for (std::size_t i = 0; i < listed; ++i) {
     const Request& request = *cells[i].request;
-    fmt::print("{:28} {:44} seed {:<4} {}\n", request.problem.spec, request.optimizer.spec,
-               request.seed, fate_of(cells[i]));
+    say(stdout, fmt::format("{:28} {:44} seed {:<4} {}\n", request.problem.spec,
+                            request.optimizer.spec, request.seed, fate_of(cells[i])));
   }
-  if (listed < cells.size()) fmt::print("… and {} more; --all lists them\n", cells.size() - listed);
+  if (listed < cells.size())
+    say(stdout, fmt::format("… and {} more; --all lists them\n", cells.size() - listed));
 }
 
 // The properties at default options of all optimizers that ever ran in this folder.
@@ -140,7 +143,7 @@ void report_on(const fs::path& out, bool quiet, Session& session) {
   if (study.runs.empty()) return;  // interrupted before the first record
   study.audits = audit_of(session.catalog(), study);
   write_audit(study.audits, out / "audit.json");
-  if (!quiet) fmt::print("\n");
+  if (!quiet) say(stdout, "\n");
   write_and_print(study, out / "report", session, quiet);
 }
 
@@ -155,7 +158,7 @@ int run_verb(const RunArguments& given, Session& session) {
                      .retry = statuses_of(given.retry),
                      .exclusive = given.exclusive,
                      .repeat = given.repeat,
-                     .keeps_output = given.keep_output,
+                     .keeps_output = given.keeps_output,
                      .command = session.command()};
   if (given.exclusive) options.jobs = 1;
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;

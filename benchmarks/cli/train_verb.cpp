@@ -83,8 +83,9 @@ void train_and_write(const Catalog& catalog, const Request& request, const std::
 }
 
 void show(const Trace& trace, std::int64_t iterations, const char* end) {
-  fmt::print(stderr, "\riteration {} of {}, loss {:.3g}, error in x {:.3g}   {}",
-             trace.last.iteration, iterations, trace.last.loss, trace.last.x_error, end);
+  say(stderr,
+      fmt::format("\riteration {} of {}, loss {:.3g}, error in x {:.3g}   {}", trace.last.iteration,
+                  iterations, trace.last.loss, trace.last.x_error, end));
 }
 
 // How far it has come, as a line that each call overwrites.

@@ -16,6 +16,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/spec.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 
@@ -73,11 +74,11 @@ Json joined(const Json& old_rows, const Json& new_rows) {
 
 // Rows stand one a line, so that a change of one reads as one.
 std::string text_of(const Json& grid, const Json& rows) {
-  std::string text =
-      fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [", grid.dump());
+  std::string text = fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [",
+                                 json_text(grid));
   const char* separator = "\n";
   for (const Json& row : rows) {
-    text += separator + row.dump();
+    text += separator + json_text(row);
     separator = ",\n";
   }
   return text + "\n]}\n";
@@ -105,9 +106,9 @@ int tune_verb(const TuneArguments& given, Session& session) {
   const TuningResult result = tune(catalog, plan, given.folder, options);
   if (result.outcome.is_interrupted) return exit_code_of(result.outcome);
   for (const Json& row : *result.rows)
-    fmt::print("{:28} {:24} {}; best of 1, 2, …: {}\n", row["problem"].get<std::string>(),
-               row["optimizer"].get<std::string>(), row["options"].dump(),
-               row["source"]["best_of"].dump());
+    say(stdout, fmt::format("{:28} {:24} {}; best of 1, 2, …: {}\n",
+                            row["problem"].get<std::string>(), row["optimizer"].get<std::string>(),
+                            json_text(row["options"]), json_text(row["source"]["best_of"])));
   if (!given.table.empty()) write_table(given, plan, *result.rows);
   return kGood;
 }

@@ -12,9 +12,11 @@
 #include "benchmarks/merge/contradictions.h"
 #include "benchmarks/plan/resources.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/record.h"
 #include "core/records/schema.h"
+#include "core/text.h"
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
@@ -37,7 +39,7 @@ struct Examined {
   std::optional<RecordIdentity> identity;
 };
 
-Examined examined_record(const Json& record, const fs::path& path) {
+Examined examined_record(const Json& record, const std::string& path) {
   Examined examined;
   if (std::string violation = cell_violation(record); !violation.empty())
     examined.violations.push_back(std::move(violation));
@@ -45,7 +47,7 @@ Examined examined_record(const Json& record, const fs::path& path) {
   return examined;
 }
 
-Examined examined(const fs::path& path) {
+Examined examined(const std::string& path) {
   try {
     const Json document = read_json(path);
     if (document.is_object() && document.contains("$schema")) return {};  // a schema itself
@@ -60,22 +62,40 @@ Examined examined(const fs::path& path) {
     const bool is_sound_record = violations.empty() && claimed == kRunSchema;
     if (is_sound_record) return examined_record(document, path);
     return {std::move(violations), {}};
-  } catch (const UsageError& error) {
+  } catch (const std::exception& error) {
     return {{error.what()}, {}};
   }
 }
 
-std::vector<fs::path> files_under(const std::vector<std::string>& paths) {
-  std::vector<fs::path> files;
+// Records come by the hundred thousand, and a path for each would be a kilobyte.
+using Wrong = std::map<std::string, std::vector<std::string>>;
+
+// Whatever stands in a folder, or below it, under the name of JSON; no link leads to another
+// folder.
+void add_files(const fs::path& folder, std::vector<std::string>& files, Wrong& wrong) {
+  try {
+    for (const std::string& name : names_in(folder)) {
+      const fs::path path = folder / name;
+      std::error_code unknown;
+      const bool is_folder = fs::is_directory(fs::symlink_status(path, unknown));
+      if (is_folder) add_files(path, files, wrong);
+      if (name.ends_with(".json")) files.push_back(path.string());
+    }
+  } catch (const UsageError& error) {
+    wrong[folder.string()].emplace_back(error.what());
+  }
+}
+
+std::vector<std::string> files_under(const std::vector<std::string>& paths, Wrong& wrong) {
+  std::vector<std::string> files;
   for (const fs::path path : paths) {
-    require(fs::exists(path),
+    require(is_there(path),
             [&] { return fmt::format("no such file or folder: {}", path.string()); });
-    if (!fs::is_directory(path))
-      files.push_back(path);
+    std::error_code unknown;
+    if (fs::is_directory(path, unknown))
+      add_files(path, files, wrong);
     else
-      for (const auto& entry : fs::recursive_directory_iterator(path))
-        if (entry.is_regular_file() && entry.path().extension() == ".json")
-          files.push_back(entry.path());
+      files.push_back(path.string());
   }
   std::ranges::sort(files);
   return files;
@@ -84,11 +104,11 @@ std::vector<fs::path> files_under(const std::vector<std::string>& paths) {
 }  // namespace
 
 int validate_verb(const ValidateArguments& given, Session&) {
-  const std::vector<fs::path> files = files_under(given.paths);
+  Wrong wrong;
+  const std::vector<std::string> files = files_under(given.paths, wrong);
   std::vector<Examined> all(files.size());
   share(
       files.size(), [&](std::size_t i) { all[i] = examined(files[i]); }, on_terminal("files"));
-  std::map<fs::path, std::vector<std::string>> wrong;
   std::vector<RecordIdentity> records;
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!all[i].violations.empty()) wrong[files[i]] = std::move(all[i].violations);
@@ -98,8 +118,8 @@ int validate_verb(const ValidateArguments& given, Session&) {
     wrong[record.file].push_back(std::move(record.violation));
   for (const auto& [file, violations] : wrong)
     for (const std::string& violation : violations)
-      fmt::print("{}: {}\n", file.string(), violation);
-  fmt::print("{} files, {} wrong\n", files.size(), wrong.size());
+      say(stdout, fmt::format("{}: {}\n", file, violation));
+  say(stdout, fmt::format("{} files, {} wrong\n", files.size(), wrong.size()));
   return wrong.empty() ? kGood : kWorse;
 }
 

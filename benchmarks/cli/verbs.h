@@ -19,7 +19,7 @@ struct RunArguments {
   std::vector<std::string> retry;                           // statuses
   int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
   bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
-  bool no_report = false, quiet = false, allow_large = false, keep_output = false;
+  bool no_report = false, quiet = false, allow_large = false, keeps_output = false;
 };
 int run_verb(const RunArguments& given, Session& session);
 

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <tuple>
 
 #include "benchmarks/merge/join.h"
@@ -15,7 +17,9 @@ namespace isoline::benchmarks {
 namespace {
 
 auto place_of(const RecordIdentity& record) {
-  return std::tuple(record.file.parent_path(), record.cell, record.build);
+  const std::string_view folder =
+      std::string_view(record.file).substr(0, record.file.find_last_of('/') + 1);
+  return std::tuple(folder, std::string_view(record.cell), std::string_view(record.build));
 }
 
 }  // namespace
@@ -29,7 +33,7 @@ std::string cell_violation(const Json& record) {
 
 std::vector<DoubleRecord> double_records(std::vector<RecordIdentity> records) {
   std::ranges::sort(records, {}, [](const RecordIdentity& record) {
-    return std::tuple_cat(place_of(record), std::tuple(record.file));
+    return std::tuple_cat(place_of(record), std::tuple(std::string_view(record.file)));
   });
   std::vector<DoubleRecord> all;
   for (std::size_t i = 1; i < records.size(); ++i) {
@@ -38,7 +42,8 @@ std::vector<DoubleRecord> double_records(std::vector<RecordIdentity> records) {
     const JoinedRecord both = join_records(read_json(first.file), read_json(second.file));
     if (!both.difference.empty())
       all.push_back({second.file, fmt::format("{} is of the same cell and build and differs at {}",
-                                              first.file.filename().string(), both.difference)});
+                                              std::filesystem::path(first.file).filename().string(),
+                                              both.difference)});
   }
   return all;
 }

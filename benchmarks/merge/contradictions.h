@@ -1,7 +1,6 @@
 // Is a record the one that its cell and build name, and the only one in its folder?
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -15,14 +14,12 @@ std::string cell_violation(const Json& record);
 
 // What a record is known by, and where it stands.
 struct RecordIdentity {
-  std::filesystem::path file;
-  std::string cell, build;
+  std::string file, cell, build;
 };
 
 // A record that differs from another one of its folder, cell and build in more than timings.
 struct DoubleRecord {
-  std::filesystem::path file;
-  std::string violation;  // names the other one, and the first places where they differ
+  std::string file, violation;  // names the other one, and the first places where they differ
 };
 std::vector<DoubleRecord> double_records(std::vector<RecordIdentity> records);
 

@@ -12,8 +12,8 @@
 #include <tuple>
 
 #include "core/json.h"
-#include "core/records/plan.h"
 #include "core/records/record.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -34,7 +34,7 @@ auto rank_of(const Json& record) {
   const Json run = record.at("provenance").value("run", Json::object());
   return std::tuple(!is_nondeterministic(record),
                     run.is_object() ? run.value("started", std::string()) : std::string(),
-                    rest.dump(-1, ' ', false, Json::error_handler_t::replace));
+                    json_text(rest));
 }
 
 // Sorted; a value as often as in the list that has it most often.
@@ -49,8 +49,8 @@ Json joined_timings(const Json& a, const Json& b) {
 
 std::string shown(const Json& value) {
   constexpr std::size_t kMost = 60;
-  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return text.size() > kMost ? text.substr(0, kMost) + "…" : text;
+  const std::string text = json_text(value);
+  return text.size() > kMost ? std::string(cut(text, kMost)) + "…" : text;
 }
 
 // "/summary/loss (1.5, 1.6), /status (…), and 3 more places".
@@ -83,14 +83,13 @@ JoinedRecord join_records(const Json& a, const Json& b) {
           build_provenance(a) != build_provenance(b)};
 }
 
-Json join_plans(const Json& a, const Json& b) {
+Plan join_plans(const Plan& a, const Plan& b) {
   using Place = std::tuple<std::string, std::string, std::uint64_t>;
   std::set<std::string> suites;
   std::map<std::string, Place> place;  // by cell; the least where a digest has two
-  for (const Json* one : {&a, &b}) {
-    const Plan plan = plan_from_json(*one);
-    suites.insert(plan.suites.begin(), plan.suites.end());
-    for (const PlannedCell& cell : plan.cells) {
+  for (const Plan* plan : {&a, &b}) {
+    suites.insert(plan->suites.begin(), plan->suites.end());
+    for (const PlannedCell& cell : plan->cells) {
       const Place here(cell.problem, cell.optimizer, cell.seed);
       const auto [at, is_first] = place.emplace(cell.cell, here);
       if (!is_first) at->second = std::min(at->second, here);
@@ -101,7 +100,7 @@ Json join_plans(const Json& a, const Json& b) {
   Plan plan{.suites = {suites.begin(), suites.end()}, .cells = {}};
   for (const auto& [where, cell] : sorted)
     plan.cells.push_back({cell, std::get<0>(where), std::get<1>(where), std::get<2>(where)});
-  return to_json(plan);
+  return plan;
 }
 
 Json join_rates(const Json& a, const Json& b) {
@@ -109,7 +108,7 @@ Json join_rates(const Json& a, const Json& b) {
   for (const Json* one : {&a, &b})
     for (const Json& row : one->at("rows")) {
       const auto [at, is_first] = rows.try_emplace({row.at("problem"), row.at("optimizer")}, row);
-      if (!is_first && row.dump() < at->second.dump()) at->second = row;
+      if (!is_first && json_text(row) < json_text(at->second)) at->second = row;
     }
   Json all = Json::array();
   for (const auto& [pair, row] : rows) all.push_back(row);
@@ -121,7 +120,7 @@ bool have_other_wordings(const std::vector<std::string>& sheets) {
   for (const std::string& text : sheets) {
     Json sheet = Json::parse(text, nullptr, false);
     if (sheet.is_object()) sheet.erase("prices");
-    wordings.insert(sheet.is_object() ? sheet.dump() : text);
+    wordings.insert(sheet.is_object() ? json_text(sheet) : text);
   }
   return wordings.size() > 1;
 }

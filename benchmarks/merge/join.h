@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace isoline::benchmarks {
+#include "core/records/plan.h"
 
-using Json = nlohmann::json;
+namespace isoline::benchmarks {
 
 // Associative, commutative and idempotent. Where the results differ `difference` tells the first
 // places, and what is returned means nothing.
@@ -19,8 +19,8 @@ struct JoinedRecord {
 };
 JoinedRecord join_records(const Json& a, const Json& b);
 
-// The union of two plans, sorted; suites and cells once each. Plan schema in, plan schema out.
-Json join_plans(const Json& a, const Json& b);
+// The union of two plans, sorted; suites and cells once each.
+Plan join_plans(const Plan& a, const Plan& b);
 
 // The union of two lists of the rates that plans used, sorted; of two wordings of one row the
 // lesser text stays.

@@ -4,21 +4,22 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <functional>
-#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
+#include "benchmarks/merge/copies.h"
+#include "benchmarks/merge/ending.h"
 #include "benchmarks/merge/join.h"
 #include "benchmarks/merge/merge_audits.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/records/file_text.h"
 #include "core/records/record.h"
 #include "core/threads.h"
 
@@ -27,25 +28,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Group = std::vector<fs::path>;          // the files of one name
-using Groups = std::map<std::string, Group>;  // by name
-
-Groups files_of(const std::vector<fs::path>& folders, const fs::path& part) {
-  Groups groups;
-  for (const fs::path& folder : folders) {
-    if (!fs::is_directory(folder / part)) continue;
-    for (const auto& entry : fs::directory_iterator(folder / part))
-      if (entry.is_regular_file() && entry.path().extension() != ".tmp")
-        groups[entry.path().filename()].push_back(entry.path());
-  }
-  return groups;
-}
-
-std::string title_of(const Json& record) {
-  const Request request = request_from_json(record.at("request"));
+std::string title_of(const Request& request) {
   return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
                      request.seed);
 }
+
+Json json_from(const std::string& text, const std::string& origin) {
+  return parse_json(text, origin);
+}
+std::string text_of(const Plan& plan) { return file_text(plan); }
+std::string text_of(const Json& json) { return json_text(json) + "\n"; }
 
 class Merge {
  public:
@@ -54,12 +46,14 @@ class Merge {
 
   MergeOutcome run() {
     read_old_conflicts();
-    merge_part("runs",
-               [this](const std::string& name, const Group& files) { record(name, files); });
-    merge_part("components",
-               [this](const std::string& name, const Group& files) { sheet(name, files); });
-    merge_lists("plan.json", join_plans);
-    merge_lists("rates.json", join_rates);
+    merge_part("runs", [this](const std::string& name, const std::vector<Copy>& copies) {
+      record(name, copies);
+    });
+    merge_part("components", [this](const std::string& name, const std::vector<Copy>& copies) {
+      sheet(name, copies);
+    });
+    merge_list<Plan>("plan.json", plan_from_text, join_plans);
+    merge_list<Json>("rates.json", json_from, join_rates);
     merge_audits();
     remark(other_provenance_,
            "records agree but for timings and provenance; the latest run's provenance is kept");
@@ -77,108 +71,104 @@ class Merge {
     if (count > 0) outcome_.remarks.push_back(fmt::format("{} {}", count, what));
   }
 
-  void merge_part(const char* part,
-                  const std::function<void(const std::string&, const Group&)>& one) {
+  template <class One>
+  void merge_part(const char* part, const One& one) {
     fs::create_directories(out_ / part);
-    const Groups groups = files_of(folders_, part);
-    const std::vector<std::pair<std::string, Group>> list(groups.begin(), groups.end());
-    share(
-        list.size(), [&](std::size_t i) { one(list[i].first, list[i].second); }, listener_);
+    const Part files(folders_, part, outcome_.unreadable);
+    const auto merge_one = [&](std::size_t i) {
+      go_on();
+      std::vector<std::string> damaged;
+      one(files.name(i), files.copies(i, damaged));
+      for (const std::string& sentence : damaged) tell(outcome_.unreadable, sentence);
+    };
+    share(files.size(), merge_one, listener_);
   }
 
-  // The texts of a group, once each, without those that are damaged.
-  std::vector<std::string> texts_of(const Group& files) {
-    std::vector<std::string> texts;
-    for (const fs::path& file : files) {
-      std::string text = read_text(file);
-      if (std::ranges::find(texts, text) != texts.end()) continue;
-      if (file.extension() == ".json" && !Json::accept(text))
-        tell(outcome_.unreadable, file.string() + " is no JSON");
-      else
-        texts.push_back(std::move(text));
-    }
-    return texts;
-  }
-
-  void record(const std::string& name, const Group& files) {
-    if (disputed_.contains(name)) return;
-    const std::vector<std::string> texts = texts_of(files);
-    if (texts.empty()) return;
+  void record(const std::string& name, const std::vector<Copy>& copies) {
+    if (disputed_.contains(name) || copies.empty()) return;
     const bool is_record = name.ends_with(".json");
-    if (texts.size() == 1) return keep(name, texts[0], is_record);
-    if (!is_record)
-      return dispute(name, fmt::format("{}: its copies differ in {}", name, parents(files)));
-    join(name, files, texts);
+    if (copies.size() == 1) return keep(name, copies[0].text, is_record);
+    if (is_record) return join(name, copies);
+    dispute(name, {"", fmt::format("{}: its copies differ in {}", name, places(copies))});
   }
 
-  void join(const std::string& name, const Group& files, const std::vector<std::string>& texts) {
+  void join(const std::string& name, const std::vector<Copy>& copies) {
     try {
-      Json joined = parse_json(texts[0], name);
-      for (std::size_t i = 1; i < texts.size(); ++i) {
-        const Json other = parse_json(texts[i], name);
-        JoinedRecord both = join_records(joined, other);
+      Json joined = parse_json(copies[0].text, name);
+      const Request request = request_from_json(joined.at("request"));
+      bool is_other = false;
+      for (const Copy& copy : copies) {
+        const JoinedRecord both = join_records(joined, parse_json(copy.text, name));
         if (!both.difference.empty())
           return dispute(
-              name, fmt::format("{} ({}): the results in {} differ at {}", title_of(joined), name,
-                                parents(files), both.difference));
-        other_provenance_ += i == 1 && both.is_provenance_other;
+              name, {request.optimizer.name,
+                     fmt::format("{} ({}): the results in {} differ at {}", title_of(request), name,
+                                 places(copies), both.difference)});
+        is_other = is_other || both.is_provenance_other;
         joined = *both.record;
       }
+      other_provenance_ += is_other;
       ++united_;
-      keep(name, joined.dump() + "\n", true);
+      keep(name, json_text(joined) + "\n", true);
     } catch (const std::exception& error) {
-      dispute(name, fmt::format("{}: its copies in {} differ and are no records: {}", name,
-                                parents(files), error.what()));
+      dispute(name, {"", fmt::format("{}: its copies in {} differ and are no records: {}", name,
+                                     places(copies), error.what())});
     }
   }
 
   // Sheets describe components and are no results: of two wordings the lesser text stays, and the
   // outcome says so.
-  void sheet(const std::string& name, const Group& files) {
-    const std::vector<std::string> texts = texts_of(files);
-    if (texts.empty()) return;
+  void sheet(const std::string& name, const std::vector<Copy>& copies) {
+    if (copies.empty()) return;
+    std::vector<std::string> texts;
+    for (const Copy& copy : copies) texts.push_back(copy.text);
     other_sheets_ += have_other_wordings(texts);
-    write_unflushed(out_ / "components" / name, *std::ranges::min_element(texts));
+    write_unflushed(out_ / "components" / name, texts[0]);
   }
 
-  // A file that each folder may have, united by `join` where several have it.
-  void merge_lists(const char* name, Json (*join)(const Json&, const Json&)) {
-    Group files;
-    for (const fs::path& folder : folders_)
-      if (const fs::path file = folder / name; fs::exists(file)) files.push_back(file);
-    const std::vector<std::string> texts = texts_of(files);
-    if (texts.empty()) return;
-    if (texts.size() == 1) return write_unflushed(out_ / name, texts[0]);
-    Json all = parse_json(texts[0], name);
-    for (const std::string& text : texts) all = join(all, parse_json(text, name));
-    write_unflushed(out_ / name, all.dump() + "\n");
+  // A file that each folder may have, united where several have it; a damaged one is
+  // named.
+  template <class List>
+  void merge_list(const char* name, List (*read)(const std::string&, const std::string&),
+                  List (*united)(const List&, const List&)) {
+    std::set<std::string> texts;
+    std::optional<List> all;
+    for (const fs::path& folder : folders_) {
+      const fs::path file = folder / name;
+      if (is_there(file)) try {
+          std::string text = read_text(file, kMostBytes, Links::refused);
+          const List one = read(text, file.string());
+          all = united(all ? *all : one, one);
+          texts.insert(std::move(text));
+        } catch (const std::exception& error) {
+          tell(outcome_.unreadable, fmt::format("{}: {}", file.string(), error.what()));
+        }
+    }
+    if (all) write_unflushed(out_ / name, texts.size() == 1 ? *texts.begin() : text_of(*all));
   }
 
   void merge_audits() {
     AuditUnion audits = unite_audits(folders_);
-    if (audits.json) write_unflushed(out_ / "audit.json", audits.json->dump(1) + "\n");
+    if (audits.json) write_unflushed(out_ / "audit.json", json_text(*audits.json, 1) + "\n");
     disputed_audits_ = std::move(audits.disputed);
     std::ranges::move(audits.conflicts, std::back_inserter(outcome_.conflicts));
     std::ranges::move(audits.unreadable, std::back_inserter(outcome_.unreadable));
   }
 
   void read_old_conflicts() {
-    for (const fs::path& folder : folders_) {
-      if (!fs::exists(folder / "conflicts.json")) continue;
-      const Json earlier = read_json(folder / "conflicts.json");
-      for (const Json& name : earlier.at("records"))
-        if (disputed_.insert(name.get<std::string>()).second)
-          outcome_.conflicts.push_back(fmt::format("{}: in conflict since an earlier merge ({})",
-                                                   name.get<std::string>(),
-                                                   (folder / "conflicts.json").string()));
-    }
+    for (const fs::path& folder : folders_)
+      for (const std::string& name : disputed_in(folder).records)
+        if (disputed_.insert(name).second)
+          outcome_.conflicts.push_back(
+              {"", fmt::format("{}: in conflict since an earlier merge ({})", name,
+                               (folder / "conflicts.json").string())});
   }
 
   void write_conflicts() {
     if (disputed_.empty() && disputed_audits_.empty()) return;
     Json json{{"schema", kConflictsSchema}, {"records", disputed_}};
     if (!disputed_audits_.empty()) json["audits"] = disputed_audits_;
-    write_unflushed(out_ / "conflicts.json", json.dump(1) + "\n");
+    write_unflushed(out_ / "conflicts.json", json_text(json, 1) + "\n");
   }
 
   void keep(const std::string& name, const std::string& text, bool is_record) {
@@ -187,9 +177,9 @@ class Merge {
     outcome_.records += is_record;
   }
 
-  void dispute(const std::string& name, const std::string& sentence) {
-    tell(outcome_.conflicts, sentence);
+  void dispute(const std::string& name, Conflict conflict) {
     const std::lock_guard lock(mutex_);
+    outcome_.conflicts.push_back(std::move(conflict));
     newly_disputed_.insert(name);
   }
 
@@ -198,9 +188,10 @@ class Merge {
     sentences.push_back(sentence);
   }
 
-  static std::string parents(const Group& files) {
+  std::string places(const std::vector<Copy>& copies) const {
     std::vector<std::string> names;
-    for (const fs::path& file : files) names.push_back(file.parent_path().parent_path().string());
+    for (const Copy& copy : copies) names.push_back(folders_[copy.folder].string());
+    std::ranges::sort(names);
     return fmt::format("{}", fmt::join(names, ", "));
   }
 
@@ -217,24 +208,31 @@ class Merge {
 
 }  // namespace
 
-MergeOutcome merge_folders(const std::vector<fs::path>& folders, const fs::path& out,
+MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& out,
                            const Listener& listener) {
+  const std::set<fs::path> sorted(given.begin(), given.end());  // their order decides nothing
+  const std::vector<fs::path> folders(sorted.begin(), sorted.end());
+  std::error_code unknown;
   for (const fs::path& folder : folders)
-    require(fs::is_directory(folder),
+    require(fs::is_directory(folder, unknown),
             [&] { return fmt::format("no result folder {}", folder.string()); });
-  require(!fs::exists(out) || (fs::is_directory(out) && fs::is_empty(out)),
+  require(!is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
           [&] { return fmt::format("{} exists already: merge into a new folder", out.string()); });
-  const fs::path place = fs::weakly_canonical(out);
-  const fs::path unfinished = place.string() + fmt::format(".{}.tmp", ::getpid());
+  const fs::path place = fs::weakly_canonical(out), unfinished = temporary_of(place);
+  const EndingGuard guard;
   try {
+    fs::remove_all(unfinished);
     fs::create_directories(unfinished);
     MergeOutcome outcome = Merge(folders, unfinished, listener).run();
     flush_all(unfinished);
+    go_on();
     fs::rename(unfinished, place);
     return outcome;
+  } catch (const EndingAsked&) {
+    fs::remove_all(unfinished, unknown);
+    return {.is_interrupted = true};
   } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(unfinished, ignored);
+    fs::remove_all(unfinished, unknown);
     throw;
   }
 }

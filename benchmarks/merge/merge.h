@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/merge/conflicts.h"
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
@@ -13,9 +14,10 @@ namespace isoline::benchmarks {
 struct MergeOutcome {
   std::size_t records = 0;              // written
   std::size_t united = 0;               // of them, found in several folders with other timings
-  std::vector<std::string> conflicts;   // a sentence a file whose copies differ; it is left out
+  std::vector<Conflict> conflicts;      // a file whose copies differ: it is left out
   std::vector<std::string> unreadable;  // a sentence a file that is no JSON; it is left out
   std::vector<std::string> remarks;     // what else a reader should know
+  bool is_interrupted = false;          // asked to end: nothing is written
 };
 
 // Writes `out` whole or not at all; a UsageError where it holds results already.
@@ -25,9 +27,10 @@ struct MergeOutcome {
 // run's stay; a record that a clock or a kill ended gives way to one that ended by itself. Any
 // other difference is a conflict: that record is left out, and `conflicts.json` remembers it, so
 // that a later merge does not choose by accident. So it is with what was audited of an optimizer.
+//
+// Only what stands in the folders themselves is read: symbolic links in them are named and left
+// out. Ctrl-C or a polite kill leaves no trace of `out`.
 MergeOutcome merge_folders(const std::vector<std::filesystem::path>& folders,
                            const std::filesystem::path& out, const Listener& listener = {});
-
-inline constexpr const char* kConflictsSchema = "isoline.conflicts/1";
 
 }  // namespace isoline::benchmarks

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/files.h"
 #include "core/json.h"
 #include "core/records/audited.h"
 
@@ -20,19 +21,17 @@ struct Source {
 };
 
 void read_old_disputes(const fs::path& folder, AuditUnion& out) {
-  const fs::path file = folder / "conflicts.json";
-  if (!fs::exists(file)) return;
-  for (const Json& name : read_json(file).value("audits", Json::array()))
-    if (out.disputed.insert(name.get<std::string>()).second)
+  for (const std::string& name : disputed_in(folder).audits)
+    if (out.disputed.insert(name).second)
       out.conflicts.push_back(
-          fmt::format("the audit of {}: in conflict since an earlier merge ({})",
-                      name.get<std::string>(), file.string()));
+          {name, fmt::format("its audit: in conflict since an earlier merge ({})",
+                             (folder / "conflicts.json").string())});
 }
 
 // As they are written again, so that equal measurements have equal text; none where it is damaged.
 std::vector<AuditedOptimizer> audits_in(const fs::path& file, AuditUnion& out) {
   try {
-    return audit_from_json(read_json(file));
+    return audit_from_json(parse_json(read_text(file, kMostBytes, Links::refused), file.string()));
   } catch (const std::exception& error) {
     out.unreadable.push_back(fmt::format("{} is no audit: {}", file.string(), error.what()));
     return {};
@@ -48,16 +47,16 @@ AuditUnion unite_audits(const std::vector<fs::path>& folders) {
   bool is_any = false;
   for (const fs::path& folder : folders) {
     const fs::path file = folder / "audit.json";
-    if (!fs::exists(file)) continue;
+    if (!is_there(file)) continue;
     is_any = true;
     for (const AuditedOptimizer& audited : audits_in(file, out)) {
       const auto [known, is_new] =
           by_name.try_emplace(audited.name, Source{to_json(audited), folder});
       if (is_new || known->second.audit == to_json(audited)) continue;
       if (out.disputed.insert(audited.name).second)
-        out.conflicts.push_back(fmt::format("the audit of {}: {} and {} measured different things",
-                                            audited.name, known->second.folder.string(),
-                                            folder.string()));
+        out.conflicts.push_back(
+            {audited.name, fmt::format("its audit: {} and {} measured different things",
+                                       known->second.folder.string(), folder.string())});
     }
   }
   if (!is_any) return out;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "benchmarks/merge/conflicts.h"
+
 namespace isoline::benchmarks {
 
 using Json = nlohmann::json;
@@ -15,7 +17,8 @@ using Json = nlohmann::json;
 struct AuditUnion {
   std::shared_ptr<const Json> json;  // the file; null where no folder has one
   std::set<std::string> disputed;    // optimizers left out, by this merge or an earlier one
-  std::vector<std::string> conflicts, unreadable;  // sentences
+  std::vector<Conflict> conflicts;
+  std::vector<std::string> unreadable;  // sentences
 };
 
 // Associative, commutative and idempotent. An optimizer of which two folders measured different

@@ -71,7 +71,7 @@ std::string BestLosses::text_of(const Component& problem) const {
   if (place == rows_.size()) return "";
   Json losses = Json::object();
   for (const auto& [seed, known] : rows_[place].losses) losses[std::to_string(seed)] = known.loss;
-  return losses.dump();
+  return json_text(losses);
 }
 
 bool BestLosses::add(const Record& record) {

@@ -60,7 +60,7 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
       const Spec problem = parse_spec(row.at("problem").get<std::string>());
       rates.rows_[{problem.name, row.at("optimizer")}].push_back(
           {options_of(problem), option_values_from(row.at("options")), origin,
-           row.value("source", Json::object()).dump(),
+           json_text(row.value("source", Json::object())),
            row.contains("source") && row["source"].contains("grid")});
     }
   } catch (const Json::exception& error) {

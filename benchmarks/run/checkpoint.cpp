@@ -86,7 +86,7 @@ void Checkpoint::save(Optimizer& method, Meter& meter, Vector& theta) const {
   meter.persist(archive);
   try {
     write_text(path_, identity_ + digest(archive.bytes()) + archive.bytes());
-  } catch (const std::runtime_error&) {  // a full disk costs the checkpoint, not the run
+  } catch (const std::exception&) {  // a full disk costs the checkpoint, not the run
   }
 }
 

@@ -2,12 +2,12 @@
 #include "benchmarks/run/preview.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <unordered_set>
 
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/prediction.h"
 #include "core/clock.h"
 #include "core/json.h"
 #include "core/threads.h"
@@ -90,7 +90,7 @@ std::vector<Probe> probes_together(const Catalog& catalog, const std::vector<Set
       if (all.size() >= kAtLeast && monotonic_nanoseconds() - begin > kNanoseconds) break;
       all.push_back(probe(catalog, setting));
     }
-    return all.dump();
+    return json_text(all);
   };
   const auto text = isolated_text(probe_some, kProbeSeconds).text;
   std::vector<Probe> probes;
@@ -106,7 +106,7 @@ std::vector<Probe> probes_apart(const Catalog& catalog, const std::vector<Settin
   for (const Setting& setting : settings) {
     if (probes.size() == kMost) break;
     const auto text =
-        isolated_text([&] { return probe(catalog, setting).dump(); }, kProbeSeconds).text;
+        isolated_text([&] { return json_text(probe(catalog, setting)); }, kProbeSeconds).text;
     probes.push_back(text ? probe_from(parse_json(*text, "probe")) : Probe());
   }
   return probes;
@@ -139,18 +139,9 @@ class Probes {
   std::size_t unknown_ = 0;
 };
 
-// Every unit of work costs a forward; a factorizing step costs about n³ besides.
 double estimate(const Catalog& catalog, const Request& request, const Probe& probed) {
-  constexpr double kWorkPerIteration = 3, kSecondsPerFlop = 1e-9;
-  const auto iterations = static_cast<double>(request.budget.iterations);
-  double work = std::min(static_cast<double>(request.budget.work), kWorkPerIteration * iterations);
-  const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
-  double seconds = work * (probed.forward_seconds + 1e-7);
-  if (entry.needs.contains(Oracle::jacobian) || entry.needs.contains(Oracle::hessian)) {
-    const double steps = std::min(iterations, work / std::max(1.0, probed.unknowns));
-    seconds += steps * kSecondsPerFlop * std::pow(probed.unknowns, 3);
-  }
-  return std::min(seconds, request.budget.seconds) + kProcessSeconds;
+  const ProblemCost cost{probed.forward_seconds, probed.unknowns};
+  return predicted_seconds(catalog, request, cost) + kProcessSeconds;
 }
 
 }  // namespace

@@ -39,11 +39,21 @@ std::size_t free_slot() {
   return static_cast<std::size_t>(free - leaders.begin());
 }
 
-// No two groups of one process, nor of two that may be each other's ancestors, share one.
+// A mark: that it is one of ours, who gave it, and a number that no other group of his has.
+constexpr std::uint64_t kOurs = 0x1501;
+constexpr int kProcessBits = 22, kCountBits = 24;  // the kernel's most, and enough
+
 std::uint64_t new_mark() {
   static std::uint64_t count = 0;
-  constexpr int kCountBits = 32;
-  return (static_cast<std::uint64_t>(getpid()) << kCountBits) | ++count;
+  const std::uint64_t number = ++count % (std::uint64_t{1} << kCountBits);
+  return (kOurs << kProcessBits | static_cast<std::uint64_t>(getpid())) << kCountBits | number;
+}
+
+// Who gave it; 0 where it is none of ours.
+pid_t giver_of(std::uint64_t mark) {
+  const std::uint64_t head = mark >> kCountBits;
+  const std::uint64_t process = head % (std::uint64_t{1} << kProcessBits);
+  return head >> kProcessBits == kOurs ? static_cast<pid_t>(process) : 0;
 }
 
 double seconds_of(const timeval& time) {
@@ -194,6 +204,14 @@ void ProcessGroup::reap_strays() {
     for (const pid_t stray : left) ::kill(stray, SIGKILL);
     if (monotonic_nanoseconds() - begin > kMostNanoseconds) return;
     usleep(kMicroseconds);
+  }
+}
+
+void end_what_killed_runs_left() {
+  for (const pid_t process : processes_of_this_namespace()) {
+    const pid_t giver = giver_of(mark_of(process));
+    const bool is_orphan = giver > 0 && ::kill(giver, 0) != 0 && errno == ESRCH;
+    if (is_orphan) ::kill(process, SIGKILL);
   }
 }
 

@@ -64,6 +64,9 @@ class ProcessGroup {
   std::int64_t peak_bytes_ = 0;
 };
 
+// Processes of cells whose program was itself killed by SIGKILL, and could end nothing.
+void end_what_killed_runs_left();
+
 // To every group of this process; for handlers of signals.
 void signal_all_groups(int signal) noexcept;
 // Whether a process belongs to the process group of one of ours; for handlers of signals.

@@ -46,15 +46,22 @@ void append_numbers(const std::string& text, std::vector<pid_t>& numbers) {
   }
 }
 
+std::vector<pid_t> all_processes() {
+  std::vector<pid_t> all;
+  std::error_code error;
+  for (fs::directory_iterator at("/proc", error), end; !error && at != end; at.increment(error))
+    if (const int process = std::atoi(at->path().filename().c_str()); process > 0)
+      all.push_back(process);
+  return all;
+}
+
 // The kernel may have been built without lists of children: then every process says its parent.
 std::vector<pid_t> children_by_their_parent(pid_t process) {
-  std::vector<pid_t> children;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator("/proc", error)) {
-    const auto one = static_cast<pid_t>(std::atoi(entry.path().filename().c_str()));
-    const auto figures = one > 0 ? figures_of(one) : std::nullopt;
-    if (figures && figures->parent == process) children.push_back(one);
-  }
+  std::vector<pid_t> children = all_processes();
+  std::erase_if(children, [=](pid_t child) {
+    const auto figures = figures_of(child);
+    return !figures || figures->parent != process;
+  });
   return children;
 }
 
@@ -105,6 +112,19 @@ std::vector<pid_t> children_of(pid_t process) {
        thread.increment(error))
     append_numbers(text_of(thread->path() / "children"), children);
   return children;
+}
+
+std::vector<pid_t> processes_of_this_namespace() {
+  const auto namespace_of = [](const std::string& process) {
+    std::error_code error;
+    return fs::read_symlink("/proc/" + process + "/ns/pid", error);  // empty where it is not told
+  };
+  const fs::path own = namespace_of("self");
+  std::vector<pid_t> all = all_processes();
+  std::erase_if(all, [&](pid_t process) {
+    return own.empty() || namespace_of(std::to_string(process)) != own;
+  });
+  return all;
 }
 
 void mark_this_process(std::uint64_t mark) {

@@ -20,6 +20,7 @@ std::optional<ProcessFigures> figures_of(pid_t process);  // nothing where it is
 std::int64_t proportional_bytes(pid_t process);
 
 std::vector<pid_t> children_of(pid_t process);  // of all its threads, those that ended included
+std::vector<pid_t> processes_of_this_namespace();
 
 // A mark that a process gives itself and all that descends from it inherit, whatever session or
 // group they move to and whatever program they become; 0 where there is none.

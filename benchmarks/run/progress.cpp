@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "core/clock.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -26,6 +27,9 @@ std::size_t terminal_width() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
+
+// The one control sequence that is ours.
+void clear_line() { std::fputs("\r\x1b[K", stderr); }
 
 }  // namespace
 
@@ -51,7 +55,7 @@ Progress::Progress(Style style, std::string what, std::int64_t total, std::int64
       shown_(begun_) {}
 
 Progress::~Progress() {
-  if (is_dirty_) std::fputs("\r\x1b[K", stderr);
+  if (is_dirty_) clear_line();
 }
 
 std::string Progress::line() const {
@@ -72,11 +76,12 @@ void Progress::show(bool now) {
   if (style_ == Style::silent || (!now && seconds_since(shown_) < pause)) return;
   shown_ = monotonic_nanoseconds();
   if (style_ == Style::live) {
-    fmt::print(stderr, "\r\x1b[K{}", line().substr(0, terminal_width() - 1));
+    clear_line();
+    say(stderr, cut(printable(line()), terminal_width() - 1));
     std::fflush(stderr);
     is_dirty_ = true;
   } else {
-    fmt::print(stderr, "{}\n", line());
+    say(stderr, line() + "\n");
   }
 }
 

@@ -210,6 +210,7 @@ int one_a_core() { return static_cast<int>(std::max(1U, std::thread::hardware_co
 
 Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                 const RunOptions& options) {
+  end_what_killed_runs_left();
   Outcome outcome = Runner(catalog, store, options).run(requests);
   if (outcome.is_interrupted) return outcome;
   const std::optional<RecordsOfAnyBuild> earlier =

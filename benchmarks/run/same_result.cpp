@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
+
 namespace isoline::benchmarks {
 namespace {
 
@@ -82,7 +84,7 @@ std::size_t common_points(const Curve& a, const Curve& b) {
 
 std::string short_text(const Json& value) {
   constexpr std::size_t kMost = 60;
-  std::string text = value.dump();
+  std::string text = json_text(value);
   return text.size() <= kMost ? text : text.substr(0, kMost) + "…";
 }
 

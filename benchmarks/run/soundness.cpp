@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -9,13 +9,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/json.h"
+#include "core/records/file_text.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
@@ -73,8 +72,11 @@ void Store::make_folders() const {
 // Only what our own writing leaves behind, where it writes: everything else is somebody's.
 void Store::sweep() const {
   for (const char* part : {"", "runs", "components", "checkpoints"})
-    for (const fs::path& path : entries_of(folder_ / part))
-      if (std::error_code error; is_abandoned(path)) fs::remove(path, error);
+    for (const std::string& name : names_in(folder_ / part))
+      if (const fs::path path = folder_ / part / name; is_abandoned(path)) {
+        std::error_code error;
+        fs::remove(path, error);
+      }
 }
 
 void Store::set_aside(const fs::path& path, const std::string& reason) {
@@ -119,7 +121,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
   for (const PlannedCell& cell : plan.cells) known.insert(cell.cell);
   for (const PlannedCell& cell : cells)
     if (known.insert(cell.cell).second) plan.cells.push_back(cell);
-  write_text(path, json_text(to_json(plan)) + "\n");
+  write_text(path, file_text(plan));
 }
 
 namespace {
@@ -155,10 +157,9 @@ std::optional<Record> Store::find_in(const fs::path& folder, const Request& requ
 }
 
 RecordsOfAnyBuild::RecordsOfAnyBuild(const fs::path& folder) {
-  for (const fs::path& path : entries_of(folder / "runs")) {
-    const std::string name = path.filename().string();
-    if (path.extension() == ".json") paths_[name.substr(0, name.find('-'))].push_back(path);
-  }
+  for (const std::string& name : names_in(folder / "runs"))
+    if (name.ends_with(".json"))
+      paths_[name.substr(0, name.find('-'))].push_back(folder / "runs" / name);
 }
 
 std::optional<Record> RecordsOfAnyBuild::find(const Request& request) const {
@@ -203,7 +204,7 @@ void Store::write_files(const Record& record) {
     write_pictures(*record.exhibit, pictures);
   }
   clear_way(path);
-  write_text(path, json_text(to_json(record)) + "\n");
+  write_text(path, file_text(record));
 }
 
 fs::path Store::checkpoint_path(const Request& request) const {
@@ -218,7 +219,7 @@ void Store::remove_checkpoint(const Request& request) const {
 void Store::write(const Sheet& sheet) {
   const fs::path path = folder_ / "components" / sheet.file_name();
   clear_way(path);
-  write_text(path, json_text(to_json(sheet)) + "\n");
+  write_text(path, file_text(sheet));
 }
 
 }  // namespace isoline::benchmarks

@@ -155,9 +155,9 @@ void write_network(const TrainedNetwork& network, const std::filesystem::path& p
   if (path.extension() == ".json") {
     json["theta"] = values_of(network.theta);
     json["mean_statistics"] = values_of(network.statistics);
-    return write_text(path, json.dump() + "\n");
+    return write_text(path, json_text(json) + "\n");
   }
-  std::string text = json.dump() + "\n";
+  std::string text = json_text(json) + "\n";
   text += bytes_of(network.theta);
   text += bytes_of(network.statistics);
   write_text(path, text);

@@ -114,7 +114,7 @@ OptionValues with_value(const Knob& knob, OptionValues given, Real value) {
 
 Real cauchy_step(const Catalog& catalog, const Component& problem) {
   const auto measured = [&] {
-    return json_number(measured_cauchy_step(make_problem(catalog, problem, 0))).dump();
+    return json_text(json_number(measured_cauchy_step(make_problem(catalog, problem, 0))));
   };
   const auto text = isolated_text(measured, kUnitSeconds).text;
   const Real step = text ? real_of(parse_json(*text, "Cauchy step")) : 1;

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/run/isolate.h"
+#include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/prices.h"
 #include "benchmarks/run/sheets.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/json.h"
+#include "core/records/file_text.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -41,8 +40,7 @@ class SheetWriter {
  private:
   // By the whole one, where that can be made.
   bool replace(Sheet& sheet, const std::function<Sheet()>& make) {
-    const IsolatedText made =
-        isolated_text([&] { return json_text(to_json(make())); }, kSheetSeconds);
+    const IsolatedText made = isolated_text([&] { return file_text(make()); }, kSheetSeconds);
     std::string reason = made.failure;
     if (made.text) try {
         sheet = sheet_from_text(*made.text, "what it wrote");
@@ -84,7 +82,7 @@ class SheetWriter {
       Sheet sheet;
       sheet.options_text = "[]";
       sheet.prices = measure_prices(make_problem(catalog_, component, 0), build);
-      return json_text(to_json(sheet));
+      return file_text(sheet);
     };
     const auto text = isolated_text(measured, kSheetSeconds).text;
     if (text) try {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
+#include "core/records/file_text.h"
 #include "core/records/forms.h"
 
 namespace isoline {
@@ -28,6 +29,8 @@ Json to_json(const Plan& plan) {
   Form<Plan>::write(plan, JsonPlace(json));
   return json;
 }
+
+std::string file_text(const Plan& plan) { return json_text(to_json(plan)) + "\n"; }
 
 Plan plan_from_text(const std::string& text, const std::string& origin) {
   JsonReader reader;

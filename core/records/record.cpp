@@ -9,12 +9,11 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/ladder.h"
+#include "core/records/file_text.h"
 #include "core/records/record_fields.h"
 
 namespace isoline {
 namespace {
-
-constexpr std::size_t kMostRecordBytes = std::size_t{64} << 20;  // ours have some tens of thousands
 
 template <class Column>
 void require_length(std::size_t length, const char* whose, const Column& column) {
@@ -54,6 +53,8 @@ Json to_json(const Record& record) {
   Form<Record>::write(record, JsonPlace(json));
   return json;
 }
+
+std::string file_text(const Record& record) { return json_text(to_json(record)) + "\n"; }
 
 Record record_from_text(const std::string& text, const std::string& origin) {
   static thread_local JsonReader reader;

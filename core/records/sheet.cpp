@@ -7,6 +7,7 @@
 
 #include "core/digest.h"
 #include "core/json.h"
+#include "core/records/file_text.h"
 #include "core/records/forms.h"
 
 namespace isoline {
@@ -94,6 +95,8 @@ Json to_json(const Sheet& sheet) {
   Form<Sheet>::write(sheet, JsonPlace(json));
   return json;
 }
+
+std::string file_text(const Sheet& sheet) { return json_text(to_json(sheet)) + "\n"; }
 
 Sheet sheet_from_text(const std::string& text, const std::string& origin) {
   JsonReader reader;

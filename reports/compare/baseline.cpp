@@ -20,14 +20,14 @@ namespace {
 class Rows {
  public:
   std::size_t place(const Json& row) {
-    const auto [at, is_new] = places_.emplace(row.dump(), rows_.size());
+    const auto [at, is_new] = places_.emplace(json_text(row), rows_.size());
     if (is_new) rows_.push_back(row);
     return at->second;
   }
   std::string text() const {
     std::string text = "[";
     for (std::size_t i = 0; i < rows_.size(); ++i)
-      text += (i == 0 ? "\n" : ",\n") + rows_[i].dump();
+      text += (i == 0 ? "\n" : ",\n") + json_text(rows_[i]);
     return text + "]";
   }
 
@@ -42,7 +42,7 @@ struct Tables {
 
 Json to_json(const Given& given) {
   Json json = {
-      {"name", given.name}, {"spec", given.spec}, {"options", isoline::to_json(given.options)}};
+      {"name", given.name}, {"spec", given.spec}, {"options", isoline::to_json(*given.options)}};
   if (given.asked != given.spec) json["asked"] = given.asked;
   return json;
 }
@@ -56,7 +56,8 @@ Json works_json(const Subject& subject, Aim aim) {
 }
 
 bool has_group(const Subject& subject, const std::string& group) {
-  return std::ranges::find(subject.quantities, group, &Quantity::group) != subject.quantities.end();
+  return std::ranges::any_of(subject.quantities,
+                             [&](const Quantity& quantity) { return *quantity.group == group; });
 }
 
 void add_figures(Json& cell, const Record& record, const Subject& subject) {
@@ -84,7 +85,7 @@ Json cell_json(const Record& record, const Subject& subject, Tables& tables) {
                {"terms", tables.terms.place(subject.terms.substr(seed.size()))},
                {"status", subject.state},
                {"build", record.build}};
-  for (const auto& [name, digest] : subject.parts)
+  for (const auto& [name, digest] : *subject.parts)
     cell["parts"].push_back(tables.parts.place(Json{name, digest}));
   if (record.aim != Aim::loss) cell["aim"] = name_of(record.aim);
   if (subject.is_cut) cell["nondeterministic"] = true;
@@ -151,13 +152,13 @@ std::string baseline_json(const Study& study, const std::vector<Study>& perturbe
     Json cell = cell_json(study.runs[i], subjects[i], tables);
     const Perturbed others = perturbed_of(remembered(subjects[i]), moved[subjects[i].key]);
     if (others.moved > 0) cell["perturbed"] = to_json(others);
-    cells += (i == 0 ? "\n" : ",\n") + cell.dump(-1, ' ', false, Json::error_handler_t::replace);
+    cells += (i == 0 ? "\n" : ",\n") + json_text(cell);
   }
   return fmt::format(
       "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n\"headline\": {},\n"
       "\"minima\": {},\n\"given\": {},\n\"terms\": {},\n\"parts\": {},\n\"cells\": [{}\n]}}\n",
-      kBaselineSchema, Json(study.plan.suites).dump(), perturbed.size(),
-      headline_json(headline_of("", subjects)).dump(), minima_json(study, best).dump(),
+      kBaselineSchema, json_text(Json(study.plan.suites)), perturbed.size(),
+      json_text(headline_json(headline_of("", subjects))), json_text(minima_json(study, best)),
       tables.given.text(), tables.terms.text(), tables.parts.text(), cells);
 }
 

@@ -33,8 +33,8 @@ bool is_set_in(const std::string& spec, const std::string& option) {
 
 // Paired by what was asked, two differ in an option only by a default or by a table of rates.
 std::string change_text(const Given& a, const Given& b, const std::string& option) {
-  const OptionValue* const old = a.options.find(option);
-  const OptionValue* const now = b.options.find(option);
+  const OptionValue* const old = a.options->find(option);
+  const OptionValue* const now = b.options->find(option);
   if (old == nullptr) return fmt::format("new option {} {}", option, option_text(*now));
   if (now == nullptr) return fmt::format("option {} is gone, it was {}", option, option_text(*old));
   if (is_set_in(a.spec, option) && is_set_in(b.spec, option))
@@ -45,11 +45,11 @@ std::string change_text(const Given& a, const Given& b, const std::string& optio
 void count_changes(const Given& a, const Given& b, std::map<std::string, std::size_t>& changes) {
   if (a.options == b.options) return;
   std::set<std::string> options;
-  for (const OptionValues* values : {&a.options, &b.options})
+  for (const OptionValues* values : {&*a.options, &*b.options})
     for (const NamedOption& each : *values) options.insert(each.name);
   for (const std::string& option : options) {
-    const OptionValue* const old = a.options.find(option);
-    const OptionValue* const now = b.options.find(option);
+    const OptionValue* const old = a.options->find(option);
+    const OptionValue* const now = b.options->find(option);
     if (old != nullptr && now != nullptr && *old == *now) continue;
     ++changes[a.name + ": " + change_text(a, b, option)];
   }
@@ -73,8 +73,8 @@ struct PartChange {
 
 void count_parts(const Subject& a, const Subject& b, std::map<std::string, PartChange>& changes) {
   for (const Part& part : kParts) {
-    const auto old = a.parts.find(part.name), now = b.parts.find(part.name);
-    const bool is_known = old != a.parts.end() && now != b.parts.end();
+    const auto old = a.parts->find(part.name), now = b.parts->find(part.name);
+    const bool is_known = old != a.parts->end() && now != b.parts->end();
     if (!is_known || old->second == now->second) continue;
     PartChange& change = changes[part.name];
     ++change.cells;
@@ -112,7 +112,7 @@ std::vector<std::string> changed_builds(const Pairs& pairs) {
   for (const auto& [a, b] : pairs.both) {
     if (a->builds == b->builds) continue;
     count_parts(*a, *b, changes);
-    silent += a->parts.empty() || b->parts.empty();
+    silent += a->parts->empty() || b->parts->empty();
   }
   std::vector<std::string> lines;
   for (const Part& part : kParts) {

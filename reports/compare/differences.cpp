@@ -70,10 +70,10 @@ void keep_largest(std::map<std::pair<std::string, Change>, std::pair<Difference,
 // Of each quantity that both have: it, before; its values before and after.
 template <class Visit>
 void compare_figures(const Subject& a, const Subject& b, Visit visit) {
-  std::map<std::string, const Quantity*> before;
-  for (const Quantity& quantity : a.quantities) before[quantity.name] = &quantity;
+  std::map<std::string_view, const Quantity*> before;
+  for (const Quantity& quantity : a.quantities) before[*quantity.name] = &quantity;
   for (const Quantity& quantity : b.quantities) {
-    const auto at = before.find(quantity.name);
+    const auto at = before.find(*quantity.name);
     if (at == before.end()) continue;
     visit(*at->second, finite_or_never(at->second->value), finite_or_never(quantity.value));
   }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include "core/errors.h"
 #include "reports/compare/changes.h"
@@ -40,13 +42,12 @@ Difference silent_difference(const Subject& a, const Subject& b) {
                         .after = b.trace,
                         .note = "the path differs, all compared figures agree"};
   if (a.trace != b.trace) return difference;
+  std::map<std::string_view, std::array<std::uint64_t, 2>> members;  // of none 0
+  for (const auto& [name, digest] : a.members) members[*name][0] = digest;
+  for (const auto& [name, digest] : b.members) members[*name][1] = digest;
   std::vector<std::string> names;
-  for (const auto& [name, digest] : a.members) {
-    const auto other = b.members.find(name);
-    if (other == b.members.end() || other->second != digest) names.push_back(name);
-  }
-  for (const auto& [name, digest] : b.members)
-    if (!a.members.empty() && !a.members.contains(name)) names.push_back(name);
+  for (const auto& [name, digests] : members)
+    if (digests[0] != digests[1]) names.emplace_back(name);
   difference.what = names.empty() || a.members.empty() ? "record" : joined(names);
   difference.before = a.rest;
   difference.after = b.rest;

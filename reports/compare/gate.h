@@ -1,6 +1,6 @@
 // What changed from one set of results to another: the gate of continuous integration.
 //
-//   subject, report_subjects   the two sides in one form
+//   subject, folder_subjects, report_subjects   the two sides in one form
 //   pairing       which of NEW answers which of BASE
 //   changes       options and parts of the build that differ
 //   differences   figures, exactly or within a tolerance

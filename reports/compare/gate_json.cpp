@@ -75,7 +75,7 @@ std::string gate_json(const GateResult& result) {
                   {"only_in_new", result.only_after},
                   {"trend", list_of(result.trend)},
                   {"remarks", result.remarks}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace isoline::reports

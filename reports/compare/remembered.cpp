@@ -76,10 +76,12 @@ void read_question(Subject& subject, const Json& cell, const Json& file) {
   subject.terms =
       fmt::format("seed {}, {}", seed,
                   file.at("terms").at(cell.at("terms").get<std::size_t>()).get<std::string>());
+  BuildParts parts;
   for (const Json& place : cell.value("parts", Json::array())) {
     const Json& part = file.at("parts").at(place.get<std::size_t>());
-    subject.parts[part.at(0).get<std::string>()] = part.at(1).get<std::string>();
+    parts[part.at(0).get<std::string>()] = part.at(1).get<std::string>();
   }
+  subject.parts = std::move(parts);
 }
 
 Subject subject_from_json(const Json& cell, const Json& file) {

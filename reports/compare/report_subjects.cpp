@@ -36,7 +36,7 @@ Subject subject_of_pair(const Json& cell) {
   subject.lost = cell.at("failed").get<std::size_t>();
   for (const auto& [status, count] : cell.at("statuses").items()) {
     subject.state +=
-        fmt::format("{}{} {}", subject.state.empty() ? "" : ", ", status, count.dump());
+        fmt::format("{}{} {}", subject.state.empty() ? "" : ", ", status, json_text(count));
     if (status == "inapplicable") subject.lost += count.get<std::size_t>();
   }
   subject.badness = static_cast<int>(subject.lost);

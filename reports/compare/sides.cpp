@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "reports/compare/baseline.h"
+#include "reports/compare/folder_subjects.h"
 #include "reports/compare/gate.h"
 #include "reports/formats/formats.h"
 
@@ -25,34 +27,31 @@ struct Side {
 };
 
 Side side_of(const fs::path& path) {
-  require(fs::exists(path),
+  require(is_there(path),
           [&] { return fmt::format("no result folder, baseline or report: {}", path.string()); });
-  return {path, fs::is_directory(path) ? Json() : read_json(path)};
+  std::error_code unknown;
+  return {path, fs::is_directory(path, unknown) ? Json() : read_json(path)};
 }
 
-void remark_on(const Study& study, const std::filesystem::path& path,
+void remark_on(const FolderSubjects& found, const fs::path& path,
                std::vector<std::string>& remarks) {
-  if (!study.unreadable.empty())
+  if (found.unreadable > 0)
     remarks.push_back(
-        fmt::format("{} files of {} could not be read", study.unreadable.size(), path.string()));
-  if (study.superseded > 0)
+        fmt::format("{} files of {} could not be read", found.unreadable, path.string()));
+  if (found.superseded > 0)
     remarks.push_back(
         fmt::format("{} older records of {} are left aside for newer builds of their "
                     "cells",
-                    study.superseded, path.string()));
+                    found.superseded, path.string()));
 }
 
 // Of the baselines in a folder, ordered by name; what is none is left out.
 std::vector<Headline> headlines_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".json") files.push_back(entry.path());
-  std::ranges::sort(files);
   std::vector<Headline> all;
-  for (const fs::path& file : files) try {
-      Baseline baseline = baseline_from_json(read_json(file));
-      baseline.headline.label = file.stem().string();
+  for (const fs::path name : names_in(folder)) try {
+      if (name.extension() != ".json") continue;
+      Baseline baseline = baseline_from_json(read_json(folder / name));
+      baseline.headline.label = name.stem().string();
       all.push_back(std::move(baseline.headline));
     } catch (const UsageError&) {  // of a time before this schema
     }
@@ -85,30 +84,22 @@ GateResult compare_reports(const Side& before, const Side& after, const GateOpti
 GateResult compare_with_baseline(const Side& before, const fs::path& after,
                                  const GateOptions& options) {
   const Baseline baseline = baseline_from_json(before.file);
-  const Study study = read_study({after}, options.listener);
-  const std::vector<Subject> subjects = subjects_of(study, baseline.minima);
-  GateResult result = compare_subjects(baseline.subjects, subjects, options);
-  add_trend(result, options, baseline.headline, headline_of("NEW", subjects));
+  const FolderSubjects found = read_subjects(after, baseline.minima, options.listener);
+  GateResult result = compare_subjects(baseline.subjects, found.subjects, options);
+  add_trend(result, options, baseline.headline, headline_of("NEW", found.subjects));
   result.remarks.push_back("a baseline holds no times: none is judged");
-  remark_on(study, after, result.remarks);
+  remark_on(found, after, result.remarks);
   return result;
 }
 
 GateResult compare_folders(const fs::path& before, const fs::path& after,
                            const GateOptions& options) {
-  std::vector<std::string> remarks;
-  std::optional<BestKnown> reference;
-  const auto subjects_in = [&](const fs::path& folder) {
-    const Study study = read_study({folder}, options.listener);  // one at a time is in memory
-    remark_on(study, folder, remarks);
-    if (!reference) reference.emplace(study);
-    return subjects_of(study, *reference);
-  };
-  const std::vector<Subject> old_subjects = subjects_in(before);
-  const std::vector<Subject> new_subjects = subjects_in(after);
-  GateResult result = compare_subjects(old_subjects, new_subjects, options);
-  add_trend(result, options, headline_of("BASE", old_subjects), headline_of("NEW", new_subjects));
-  result.remarks.insert(result.remarks.end(), remarks.begin(), remarks.end());
+  const FolderSubjects old = read_subjects(before, std::nullopt, options.listener);
+  const FolderSubjects now = read_subjects(after, old.best, options.listener);
+  GateResult result = compare_subjects(old.subjects, now.subjects, options);
+  add_trend(result, options, headline_of("BASE", old.subjects), headline_of("NEW", now.subjects));
+  remark_on(old, before, result.remarks);
+  remark_on(now, after, result.remarks);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "core/digest.h"
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/option_json.h"
 #include "core/threads.h"
 #include "reports/sections/words.h"
 
@@ -65,18 +66,7 @@ void add_x(Subject& subject, const Record& record) {
         found_quantity(tolerance.tau, work_until_found(record, tolerance.tau)));
 }
 
-void add_figures(Subject& subject, const Record& record, const BestKnown& reference) {
-  const Summary& summary = record.summary;
-  const Real scale = scale_of(record, reference);
-  subject.quantities = {loss_quantity("loss", summary.loss, scale),
-                        loss_quantity("best loss", summary.best_loss, scale)};
-  add_x(subject, record);
-  add_work(subject, record, reference);
-}
-
-std::string digest_of(const Json& json) {
-  return digest(json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
+std::string digest_of(const Json& json) { return digest(json_text(json)); }
 
 // The path apart from the rest, so that each is called by its name.
 void add_digests(Subject& subject, const Record& record) {
@@ -89,7 +79,8 @@ void add_digests(Subject& subject, const Record& record) {
       json.erase(name);
     }
   subject.trace = digest_of(path);
-  for (const auto& [name, value] : json.items()) subject.members[name] = digest_of(value);
+  for (const auto& [name, value] : json.items())
+    subject.members.emplace_back(name, fnv1a(json_text(value)));
   subject.rest = digest_of(json);
 }
 
@@ -102,7 +93,7 @@ Given given(const Component& component) {
 
 std::string terms_of(const Request& request) {
   return fmt::format("seed {}, budget {}, threads {}", request.seed,
-                     to_json(request).at("budget").dump(), request.threads);
+                     json_text(to_json(request).at("budget")), request.threads);
 }
 
 bool is_cut(const Record& record) {
@@ -119,6 +110,22 @@ void add_seconds(Subject& subject, const std::vector<Real>& seconds) {
 }
 
 Subject subject_of(const Record& record, const BestKnown& reference) {
+  Subject subject = subject_without_figures(record);
+  add_figures(subject, record, reference);
+  return subject;
+}
+
+}  // namespace
+
+std::string key_of(const OptionValues& options) { return json_text(isoline::to_json(options)); }
+
+std::string key_of(const std::map<std::string, std::string>& texts) {
+  std::string key;
+  for (const auto& [name, text] : texts) key += name + "=" + text + "\n";
+  return key;
+}
+
+Subject subject_without_figures(const Record& record) {
   const Request& request = record.request;
   Subject subject = subject_that_ended(record.status);
   subject.key = record.cell;
@@ -136,11 +143,19 @@ Subject subject_of(const Record& record, const BestKnown& reference) {
   if (record.status == Status::inapplicable) return subject;
   add_seconds(subject, record.repeat_wall_seconds);
   add_digests(subject, record);
-  add_figures(subject, record, reference);
   return subject;
 }
 
-}  // namespace
+void add_figures(Subject& subject, const Record& record, const BestKnown& reference) {
+  if (record.status == Status::inapplicable) return;
+  const Summary& summary = record.summary;
+  const Real scale = scale_of(record, reference);
+  subject.quantities = {loss_quantity("loss", summary.loss, scale),
+                        loss_quantity("best loss", summary.best_loss, scale)};
+  add_x(subject, record);
+  add_work(subject, record, reference);
+  subject.quantities.shrink_to_fit();
+}
 
 // Two that are equally bad may still differ: that is a change, and no verdict.
 int badness_of(Status status) {

@@ -3,23 +3,26 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/aim.h"
 #include "core/options.h"
 #include "core/records/record.h"
+#include "reports/compare/shared.h"
 #include "reports/read/reached.h"
 
 namespace isoline::reports {
 
 // Less is better.
 struct Quantity {
-  std::string group;  // "work" of "work to 1e-3"
-  std::string name;
+  Shared<std::string> group;  // "work" of "work to 1e-3"
+  Shared<std::string> name;
   Real value = kNever;
   Real scale = 0;  // of the problem: where rounding and what is too small to tell are measured from
 };
@@ -34,29 +37,30 @@ struct Perturbed {
 // A problem or an optimizer as a run was given it; what is not known is empty.
 struct Given {
   std::string name;
-  std::string asked;     // as typed: defaults and rates unfilled
-  std::string spec;      // the name and what differs from the defaults
-  OptionValues options;  // all of them
+  std::string asked;             // as typed: defaults and rates unfilled
+  std::string spec;              // the name and what differs from the defaults
+  Shared<OptionValues> options;  // all of them
 };
 
 struct Subject {
   std::string key;    // what joins two results
   std::string title;  // "heat × gd, seed 3"
   Given problem, optimizer;
-  std::string terms;                         // seed, budget and threads asked for; empty: unknown
-  std::string state;                         // "target"; "target 3, crashed 1"
-  int badness = 0;                           // of the state: the greater the worse
-  std::size_t lost = 0;                      // runs that went wrong or no longer apply
-  std::set<std::string> builds;              // of its records
-  std::map<std::string, std::string> parts;  // digests of its build's parts; empty: unknown
-  std::string asked;                         // digest of what a pair was asked in all its seeds
+  std::string terms;             // seed, budget and threads asked for; empty: unknown
+  std::string state;             // "target"; "target 3, crashed 1"
+  int badness = 0;               // of the state: the greater the worse
+  std::size_t lost = 0;          // runs that went wrong or no longer apply
+  std::set<std::string> builds;  // of its records
+  Shared<BuildParts> parts;      // digests of its build's parts; empty: unknown
+  std::string asked;             // digest of what a pair was asked in all its seeds
   Aim aim = Aim::loss;
   std::vector<Quantity> quantities;
-  std::string trace;                           // digest of its path; empty: unknown
-  std::map<std::string, std::string> members;  // digests of what else is deterministic, by name
-  std::string rest;                            // digest of those
-  std::vector<Real> seconds;                   // repetitions
-  std::size_t senseless_times = 0;             // of them, left out: infinite, or not a number
+  std::string trace;  // digest of its path; empty: unknown
+  // Digests of what else is deterministic, by name and in its order.
+  std::vector<std::pair<Shared<std::string>, std::uint64_t>> members;
+  std::string rest;                 // digest of those
+  std::vector<Real> seconds;        // repetitions
+  std::size_t senseless_times = 0;  // of them, left out: infinite, or not a number
   std::string processor;
   bool is_cut = false;                 // a clock or a kill ended it
   std::string doubt;                   // why its record cannot be trusted; empty: it can
@@ -75,7 +79,11 @@ Quantity found_quantity(Real tau, Real work);  // until x was found
 // What a run took to one of the targets, in the sense of an aim; infinite where it missed it.
 Real work_to(const Subject& subject, Aim aim, Real tau);
 
-// `reference` sets f_L where a problem declares none, so that both sides have the same targets.
+// All of a record but its figures; and those. `reference` sets f_L where a problem declares none,
+// so that both sides have the same targets.
+Subject subject_without_figures(const Record& record);
+void add_figures(Subject& subject, const Record& record, const BestKnown& reference);
+
 std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference);
 std::vector<Subject> subjects_of_report(const Json& report);  // schema isoline.report/1
 

@@ -220,7 +220,7 @@ std::string json_report(const Document& document) {
                   {"profiles", profiles_json(c)},
                   {"statistics", statistics_json(document)},
                   {"cells", cells}};
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace isoline::reports

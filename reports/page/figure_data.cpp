@@ -81,9 +81,7 @@ std::string figures_html(const Document& document) {
                       : "<div class=panels>" + html + "</div>";
 }
 
-std::string json_quoted(const std::string& text) {
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string json_quoted(const std::string& text) { return json_text(Json(text)); }
 
 std::string figures_json(const std::vector<Figure>& all) {
   Json list = Json::array();
@@ -97,7 +95,7 @@ std::string figures_json(const std::vector<Figure>& all) {
                     {"diagonal", figure.has_diagonal},
                     {"lines", lines_json(figure.lines)},
                     {"pictures", pictures_json(figure.pictures)}});
-  return list.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(list);
 }
 
 }  // namespace isoline::reports

@@ -97,7 +97,7 @@ std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet)
     if (at == option.end()) return std::string();
     return at->is_string()   ? at->get<std::string>()
            : at->is_number() ? figure(at->get<Real>())
-                             : at->dump();
+                             : json_text(*at);
   };
   std::string rows;
   for (const Json& option : options)

@@ -8,104 +8,50 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <tuple>
-#include <unordered_map>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "reports/read/newest.h"
+#include "reports/read/result_files.h"
 
 namespace isoline::reports {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> json_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  if (!fs::is_directory(folder)) return files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-void require_equal_columns(const Record& record) {
-  const Curve& curve = record.curve;
-  const std::size_t points = curve.iteration.size();
-  for (const std::size_t size :
-       {curve.work.size(), curve.wall_seconds.size(), curve.processor_seconds.size(),
-        curve.loss.size(), curve.x_error.size(), curve.gradient_norm.size(),
-        curve.step_norm.size()})
-    require(size == points, "the columns of its curve differ in length");
-  if (!record.hits) return;
-  const Hits& hits = *record.hits;
-  for (const std::size_t size : {hits.work.size(), hits.target.size(), hits.wall_seconds.size()})
-    require(size == hits.iteration.size(), "the columns of its hits differ in length");
-}
-
 // The record, or why it is none.
-std::string read_into(Record& record, const fs::path& file) {
+std::string read_into(Record& record, const std::string& file) {
   try {
     record = read_record(file);
-    require_equal_columns(record);
     return "";
   } catch (const std::exception& error) {
     return error.what();
   }
 }
 
-const std::string& started(const Record& record) { return record.provenance.run.started; }
-
-// ISO times sort as text; the file name decides where they are absent or equal.
-bool is_newer(const Record& a, const Record& b) {
-  return std::pair(started(a), a.file_name()) > std::pair(started(b), b.file_name());
-}
-
-// Where the record of each cell stands among the `kept` first ones of all.
-using Places = std::unordered_map<std::string, std::size_t>;
-
-// What no clock decides is the same in all records of one build.
-bool are_at_odds(const Record& a, const Record& b) {
-  return a.build == b.build && !a.is_nondeterministic && !b.is_nondeterministic &&
-         result_of(to_json(a)) != result_of(to_json(b));
-}
-
-void keep_newest(Study& study, Places& place, std::size_t index) {
-  Record& record = study.runs[index];
-  const std::size_t kept = place.size();
-  const auto [at, is_first] = place.emplace(record.cell, kept);
-  Record& known = study.runs[at->second];
-  if (!is_first) ++study.superseded;
-  if (!is_first && are_at_odds(record, known)) study.disputed.insert(record.cell);
-  if (&known != &record && (is_first || is_newer(record, known))) known = std::move(record);
-}
-
 void read_runs(Study& study, const std::vector<std::string>& folders, const Listener& listener) {
-  std::vector<fs::path> files;
-  for (const fs::path& folder : folders)
-    for (fs::path& file : json_files(folder / "runs")) files.push_back(std::move(file));
+  const std::vector<std::string> files = record_files(folders, study.unreadable);
   std::vector<std::string> reasons(files.size());
-  study.runs.resize(files.size());
+  std::vector<Record> runs(files.size());
   share(
-      files.size(), [&](std::size_t i) { reasons[i] = read_into(study.runs[i], files[i]); },
-      listener);
-  Places place;
+      files.size(), [&](std::size_t i) { reasons[i] = read_into(runs[i], files[i]); }, listener);
+  std::vector<RunMark> marks(files.size());
   for (std::size_t i = 0; i < files.size(); ++i)
     if (reasons[i].empty())
-      keep_newest(study, place, i);
+      marks[i] = mark_of(runs[i]);
     else
       study.unreadable.push_back({files[i], std::move(reasons[i])});
-  study.runs.resize(place.size());
-  const auto order = [](const Record& r) {
-    return std::tie(r.request.problem.spec, r.request.optimizer.spec, r.request.seed, r.cell);
-  };
-  std::sort(study.runs.begin(), study.runs.end(),
-            [&](const Record& a, const Record& b) { return order(a) < order(b); });
+  Newest newest =
+      newest_of(marks, [&](std::size_t i, std::size_t j) { return are_at_odds(runs[i], runs[j]); });
+  for (const std::size_t i : newest.kept) study.runs.push_back(std::move(runs[i]));
+  study.superseded = newest.superseded;
+  study.disputed = std::move(newest.disputed);
 }
 
 void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& known) {
-  for (const fs::path& file : json_files(folder / "components")) try {
-      Sheet sheet = sheet_from_text(read_text(file), file.string());
+  for (const std::string& file : json_files(folder / "components", study.unreadable)) try {
+      Sheet sheet = sheet_from_text(read_text(file), file);
       if (known.insert(sheet.file_name()).second) study.sheets.push_back(std::move(sheet));
     } catch (const std::exception& error) {
       study.unreadable.push_back({file, error.what()});
@@ -114,7 +60,7 @@ void read_sheets(Study& study, const fs::path& folder, std::set<std::string>& kn
 
 void read_plan(Study& study, const fs::path& folder, std::set<std::string>& known) {
   const fs::path file = folder / "plan.json";
-  if (fs::exists(file)) try {
+  if (is_there(file)) try {
       Plan plan = plan_from_text(read_text(file), file.string());
       for (std::string& suite : plan.suites)
         if (std::ranges::find(study.plan.suites, suite) == study.plan.suites.end())
@@ -128,7 +74,7 @@ void read_plan(Study& study, const fs::path& folder, std::set<std::string>& know
 
 void read_audit(Study& study, const fs::path& folder) {
   const fs::path file = folder / "audit.json";
-  if (fs::exists(file)) try {
+  if (is_there(file)) try {
       for (AuditedOptimizer& audited : audit_from_json(read_json(file)))
         if (std::ranges::find(study.audits, audited.name, &AuditedOptimizer::name) ==
             study.audits.end())
@@ -150,12 +96,12 @@ void read_rates_of(Study& study, const fs::path& folder) {
 
 std::optional<Exhibit> Study::pictures_of(const Record& record) const {
   Exhibit exhibit = *record.exhibit;
-  for (const fs::path& folder : folders) {
+  for (const fs::path folder : folders) {
     const fs::path file = (folder / "runs" / record.file_name()).replace_extension(".npy");
-    if (fs::exists(file)) try {
+    if (is_there(file)) try {
         read_pictures(exhibit, file);
         return exhibit;
-      } catch (const UsageError&) {
+      } catch (const std::exception&) {
         return std::nullopt;
       }
   }
@@ -163,12 +109,14 @@ std::optional<Exhibit> Study::pictures_of(const Record& record) const {
 }
 
 Study read_study(const std::vector<std::string>& folders, const Listener& listener) {
-  for (const fs::path& folder : folders)
-    require(fs::is_directory(folder), [&] { return "no result folder " + folder.string(); });
+  std::error_code unknown;
+  for (const fs::path folder : folders)
+    require(fs::is_directory(folder, unknown),
+            [&] { return "no result folder " + folder.string(); });
   Study study;
   study.folders = folders;
   std::set<std::string> cells, sheets;
-  for (const fs::path& folder : folders) {
+  for (const fs::path folder : folders) {
     read_plan(study, folder, cells);
     read_sheets(study, folder, sheets);
     read_audit(study, folder);

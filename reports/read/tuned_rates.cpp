@@ -59,7 +59,7 @@ std::vector<TunedRate> rates_from_text(const std::string& text, const std::strin
 
 std::vector<TunedRate> read_rates(const std::string& folder) {
   const std::filesystem::path file = std::filesystem::path(folder) / "rates.json";
-  if (!std::filesystem::exists(file)) return {};
+  if (!is_there(file)) return {};
   return rates_from_text(read_text(file), file.string());
 }
 

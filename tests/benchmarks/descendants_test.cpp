@@ -2,7 +2,6 @@
 #include <sys/wait.h>
 
 #include "benchmarks/run/isolate.h"
-#include "benchmarks/run/processes.h"
 #include "tests/benchmarks/hostile_cells.h"
 
 namespace isoline::benchmarks {
@@ -14,8 +13,6 @@ class Descendants : public HostileCells {
     while (!children_of(getpid()).empty()) waitpid(-1, nullptr, WNOHANG);
   }
 };
-
-bool lives(int process) { return figures_of(process).has_value(); }
 
 TEST_F(Descendants, ThatWentToASessionOfTheirOwnEndWithTheirCell) {
   options.limits.hard_seconds = 30;

@@ -3,11 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include "benchmarks/run/processes.h"
 #include "benchmarks/run/runner.h"
 #include "tests/benchmarks/hostile.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
+
+// A process that has ended, and is reaped by nobody, has no memory.
+inline bool lives(pid_t process) {
+  const auto figures = figures_of(process);
+  return figures && figures->resident_bytes > 0;
+}
 
 class HostileCells : public testing::Test {
  protected:

@@ -7,7 +7,6 @@
 
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
-#include "benchmarks/run/processes.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/exit.h"
 #include "core/files.h"
@@ -138,7 +137,7 @@ TEST_F(Interrupts, ByThreeEndAllAtOnce) {
   const int status = status_of(runner);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), kInterrupted);
-  while (figures_of(cell)) waitpid(-1, nullptr, WNOHANG);  // dead, and ours to reap
+  while (lives(cell)) usleep(1000);  // it is dying
 }
 
 TEST_F(Interrupts, ByASchedulerStopWhatRuns) {
@@ -233,6 +232,28 @@ class KilledRuns : public testing::Test {
   std::vector<Request> requests;
   TemporaryFolder undisturbed, folder;
 };
+
+TEST_F(KilledRuns, LeaveProcessesThatTheNextRunEnds) {
+  told() = 0;
+  const pid_t runner = fork();
+  if (runner == 0) {
+    Worker worker;
+    worker.start(
+        [](Trace&) {
+          leave_a_daemon_behind();
+          for (;;) pause();
+        },
+        {}, 1);
+    for (;;) pause();
+  }
+  while (told() == 0) usleep(1000);
+  kill(runner, SIGKILL);
+  waitpid(runner, nullptr, 0);
+  EXPECT_TRUE(lives(told())) << "nobody was there to end it";
+  requests.resize(1);
+  run(folder.path());
+  while (lives(told())) usleep(1000);
+}
 
 TEST_F(KilledRuns, AtFiftyMomentsLoseNothing) {
   constexpr int kKills = 50;

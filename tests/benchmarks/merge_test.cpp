@@ -157,7 +157,9 @@ TEST(Merge, AConflictNamesTheCellAndIsLeftOutForGood) {
   const fs::path out = merged({a.path(), b.path()});
   ASSERT_EQ(merged.last.conflicts.size(), 1U);
   for (const char* part : {"heat[N=8] × gd, seed 4", "/summary/loss", "differ"})
-    EXPECT_NE(merged.last.conflicts[0].find(part), std::string::npos) << merged.last.conflicts[0];
+    EXPECT_NE(merged.last.conflicts[0].sentence.find(part), std::string::npos)
+        << merged.last.conflicts[0].sentence;
+  EXPECT_EQ(merged.last.conflicts[0].optimizer, "gd");
   EXPECT_FALSE(fs::exists(out / "runs" / record.file_name()));
   EXPECT_EQ(merged.last.records, 1U);
   const Json schema = parse_json(std::string(builtin_schemas().at("conflicts")), "conflicts");
@@ -232,7 +234,8 @@ TEST(Merge, UnitesAuditsAndLeavesOutWhatWasMeasuredDifferently) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].name + all[1].name, "adamsip");
   ASSERT_EQ(merged.last.conflicts.size(), 1U);
-  EXPECT_NE(merged.last.conflicts[0].find("the audit of gd"), std::string::npos);
+  EXPECT_EQ(merged.last.conflicts[0].optimizer, "gd");
+  EXPECT_NE(merged.last.conflicts[0].sentence.find("its audit"), std::string::npos);
   const Json schema = parse_json(std::string(builtin_schemas().at("conflicts")), "conflicts");
   EXPECT_EQ(schema_violations(read_json(out / "conflicts.json"), schema),
             std::vector<std::string>());

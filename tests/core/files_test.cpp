@@ -85,15 +85,14 @@ TEST(Files, ALinkIsFollowedWhereThatIsAskedFor) {
 
 TEST(Files, AFolderIsListedWhateverStandsInIt) {
   const TemporaryFolder folder;
-  EXPECT_TRUE(entries_of(folder.path() / "absent").empty());
+  EXPECT_TRUE(names_in(folder.path() / "absent").empty());
   write_text(folder.path() / "b", "");
   mkfifo((folder.path() / "c").c_str(), 0600);
   fs::create_symlink(folder.path() / "a", folder.path() / "a");  // to itself
-  EXPECT_EQ(entries_of(folder.path()),
-            (std::vector<fs::path>{folder.path() / "a", folder.path() / "b", folder.path() / "c"}));
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"a", "b", "c"}));
   EXPECT_TRUE(is_there(folder.path() / "a"));
   EXPECT_FALSE(is_there(folder.path() / "d"));
-  EXPECT_THROW(entries_of(folder.path() / "b"), UsageError) << "a file is no folder";
+  EXPECT_THROW(names_in(folder.path() / "b"), UsageError) << "a file is no folder";
 }
 
 // The number of a process that has been and gone.
@@ -146,7 +145,7 @@ TEST(Files, MovedAsideNeverReplaceEachOther) {
     EXPECT_FALSE(is_there(file));
   }
   EXPECT_EQ(read_text(aside / "plan.json"), "first");
-  EXPECT_EQ(entries_of(aside).size(), 3U);
+  EXPECT_EQ(names_in(aside).size(), 3U);
   EXPECT_THROW(move_into(aside, file), UsageError) << "there is none left";
 }
 
