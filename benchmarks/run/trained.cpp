@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -210,11 +211,17 @@ Vector averaged_statistics(const Problem& problem, VectorRef theta, std::int64_t
 
 NumberArray infer(const Problem& problem, const TrainedNetwork& network, const NumberArray& input,
                   const std::string& origin) {
+  constexpr Index kAtOnce = 1024;  // samples: all layers of all of them need not be held
   Matrix in = samples_of(input, problem.network().inputs(), origin);
   turn_grids(in, problem.grid());
   Matrix x(problem.inputs(), in.cols());
   Workspace workspace;
-  problem.network().infer(network.theta, network.statistics, in, x, workspace);
+  for (Index first = 0; first < in.cols(); first += kAtOnce) {
+    const Matrix some = in.middleCols(first, std::min(kAtOnce, in.cols() - first));
+    Matrix inferred(x.rows(), some.cols());
+    problem.network().infer(network.theta, network.statistics, some, inferred, workspace);
+    x.middleCols(first, some.cols()) = inferred;
+  }
   turn_grids(x, problem.grid());
   NumberArray output{{x.cols()}, {x.data(), x.data() + x.size()}};
   const bool is_picture = problem.grid() > 0 && input.shape.size() > 2;

@@ -49,13 +49,20 @@ TEST(Suites, OfTheTreeBudgetByWorkAndIterationsNeverByTime) {
 TEST(Suites, WithNumbersThatNoTypeHoldsAreRefused) {
   for (const char* budget :
        {R"({"iterations": 99999999999999999999999})", R"({"iterations": 9223372036854775808})",
-        R"({"work": 1e15})", R"({"work": 2000000000000000})", R"({"iterations": 0})"}) {
+        R"({"work": 1e15})", R"({"work": 2000000000000000})", R"({"iterations": 0})",
+        R"({"seconds": 1e300})", R"({"target": 2})"}) {
     Json suite = parse_json(R"({"schema": "isoline.suite/1", "name": "s",
                                "matrix": [{"problems": ["square"], "optimizers": ["gd"]}]})",
                             "suite");
     suite["matrix"][0]["budget"] = parse_json(budget, "budget");
     EXPECT_THROW(suite_from_json(suite, "it"), UsageError) << budget;
   }
+  Json suite = parse_json(R"({"schema": "isoline.suite/1", "name": "s",
+                             "matrix": [{"problems": ["square"], "optimizers": ["gd"]}]})",
+                          "suite");
+  EXPECT_NO_THROW(suite_from_json(suite, "it"));
+  suite["matrix"][0]["threads"] = std::int64_t{1} << 40;
+  EXPECT_THROW(suite_from_json(suite, "it"), UsageError);
 }
 
 TEST(Quick, MeetsEveryProblemWithEveryOptimizerOnThreeSeeds) {
