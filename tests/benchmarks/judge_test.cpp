@@ -26,12 +26,11 @@ struct Cheat {
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
     if (deed == "target") const_cast<Matrix&>(f.target()) = s.at.y();
-    if (deed == "minimum") const_cast<Problem&>(f.problem()).set_minimum(s.at.loss());
     return Status::converged;
   }
 };
 void fields(Cheat& o, auto& field) {
-  field("deed", o.deed, Choices{"nothing", "target", "minimum"}, "what it does to its problem");
+  field("deed", o.deed, Choices{"nothing", "target"}, "what it does to its problem");
 }
 
 // How often the trap has been made, in whatever process.
@@ -104,12 +103,6 @@ TEST_F(Judging, APointThatIsNoneButInItsOwnProcessIsAFailure) {
   EXPECT_NE(record.message.find("its loss is 90 on a fresh problem"), std::string::npos)
       << record.message;
   for (const auto& [tau, is_verified] : record.verified) EXPECT_EQ(is_verified, false) << tau;
-}
-
-TEST_F(Judging, AMinimumThatWasMovedIsAFailure) {
-  const Record record = record_after(asked("square", {}, "cheat", {{"deed", "minimum"}}));
-  EXPECT_EQ(record.status, Status::failed);
-  EXPECT_NE(record.message.find("f_L"), std::string::npos) << record.message;
 }
 
 TEST_F(Judging, AnHonestPointStands) {
