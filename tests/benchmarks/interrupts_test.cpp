@@ -1,6 +1,9 @@
 // A run that is asked to end by its user, by a scheduler or by a closed terminal: in order, and
 // once more at once.
+#include <fmt/format.h>
 #include <sys/wait.h>
+
+#include <fstream>
 
 #include "core/exit.h"
 #include "tests/benchmarks/hostile_cells.h"
@@ -15,6 +18,20 @@ class Interrupts : public HostileCells {
   Interrupts() { options.limits = {.hard_seconds = 600, .idle_seconds = 600}; }
   void wait_until_told() const {
     while (told() == 0) usleep(1000);
+  }
+  // And waits until it is heard: of two that come together one is lost.
+  static void press_ctrl_c(pid_t runner) {
+    kill(runner, SIGINT);
+    const auto is_pending = [=] {
+      std::ifstream in(fmt::format("/proc/{}/status", runner));
+      for (std::string word; in >> word;)
+        if (word == "ShdPnd:") {
+          in >> word;
+          return (std::stoull(word, nullptr, 16) >> (SIGINT - 1)) % 2 == 1;
+        }
+      return false;
+    };
+    while (is_pending()) usleep(1000);
   }
   static int status_of(pid_t runner) {
     int status = 0;
@@ -32,7 +49,7 @@ TEST_F(Interrupts, ByOneCtrlCFinishWhatRunsAndStartNoMore) {
   const Request running = hostile("linger"), next = hostile("none");
   const pid_t runner = run_apart({running, next});
   wait_until_told();
-  kill(runner, SIGINT);
+  press_ctrl_c(runner);
   EXPECT_TRUE(WIFEXITED(status_of(runner)));
   EXPECT_EQ(record_of(running).status, Status::budget);
   EXPECT_FALSE(has_record(next));
@@ -42,9 +59,8 @@ TEST_F(Interrupts, ByTwoStopWhatRunsAndKeepItsState) {
   const Request running = hostile("sleep");
   const pid_t runner = run_apart({running});
   wait_until_told();
-  kill(runner, SIGINT);
-  usleep(100'000);  // two at once are one
-  kill(runner, SIGINT);
+  press_ctrl_c(runner);
+  press_ctrl_c(runner);
   EXPECT_TRUE(WIFEXITED(status_of(runner)));
   const Record record = record_of(running);
   EXPECT_EQ(record.status, Status::interrupted) << record.message;
@@ -56,25 +72,27 @@ TEST_F(Interrupts, ByThreeEndAllAtOnce) {
   const pid_t runner = run_apart({running});
   wait_until_told();
   const pid_t cell = children_of(runner).at(0);
-  for (int i = 0; i < 3; ++i) {
-    kill(runner, SIGINT);
-    usleep(100'000);
-  }
+  for (int i = 0; i < 3; ++i) press_ctrl_c(runner);
   const int status = status_of(runner);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), kInterrupted);
   while (lives(cell)) usleep(1000);  // it is dying
 }
 
-TEST_F(Interrupts, ByASchedulerStopWhatRuns) {
+TEST_F(Interrupts, ByASchedulerStopWhatRunsAndItGoesOnThere) {
   for (const int signal : {SIGTERM, SIGHUP}) {
     told() = 0;
-    const Request running = hostile("sleep");
+    const Request running = hostile("linger");
+    fs::remove_all(folder.path() / "runs");
+    fs::create_directory(folder.path() / "runs");
     const pid_t runner = run_apart({running});
     wait_until_told();
     kill(runner, signal);
     EXPECT_TRUE(WIFEXITED(status_of(runner))) << signal;
     EXPECT_EQ(record_of(running).status, Status::interrupted) << signal;
+    EXPECT_TRUE(fs::exists(store.checkpoint_path(running))) << signal;
+    run_all(catalog, {running}, store, options);
+    EXPECT_EQ(record_of(running).status, Status::budget) << signal;
   }
 }
 
