@@ -42,7 +42,8 @@ void CapturedOutput::redirect() const {
   const int out = write_end_ >= 0 ? write_end_ : ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   dup2(out, STDOUT_FILENO);
   dup2(out, STDERR_FILENO);
-  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // or a crash would take the last lines with it
+  static char lines[BUFSIZ];  // written line by line, or a crash would take the last ones with it
+  std::setvbuf(stdout, lines, _IOLBF, sizeof lines);
 }
 
 void CapturedOutput::close_child_end() { close_one(write_end_); }

@@ -59,7 +59,10 @@ TEST(BadTrace, OfAnyKindIsACrashThatSaysSo) {
       [](Trace& trace) { trace.point[3].iteration = 1; },
       [](Trace& trace) { trace.point[3].counts[0] = -4; },
       [](Trace& trace) { trace.point[3].wall_seconds = -1; },
-      [](Trace& trace) { trace.hit[7].iteration = std::int64_t{1} << 40; },
+      [](Trace& trace) {
+        trace.hit[0].iteration = std::int64_t{1} << 40;
+        trace.hit[1].iteration = 5;
+      },
       [](Trace& trace) { trace.rejected_steps = -1; },
       [](Trace& trace) { std::memset(&trace.is_learned, 0x5a, 1); },
       [](Trace& trace) { std::memset(static_cast<void*>(&trace.point), 0x5a, sizeof trace.point); },

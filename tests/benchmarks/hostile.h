@@ -1,7 +1,6 @@
 // Optimizers and problems that misbehave, each in its own way after two good steps.
 #pragma once
 
-#include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <unistd.h>

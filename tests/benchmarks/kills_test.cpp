@@ -2,13 +2,11 @@
 // again.
 #include <sys/wait.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/run_plan.h"
-#include "core/exit.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "tests/benchmarks/hostile_cells.h"
@@ -48,7 +46,8 @@ TEST_F(Kills, OfACellThatIsRunningFromOutside) {
         },
         {}, 1);
     while (worker.trace().first_oracle_nanoseconds == 0) usleep(1000);
-    kill(children_of(getpid()).at(0), signal);
+    for (const pid_t child : children_of(getpid()))
+      if (lives(child)) kill(child, signal);
     while (!worker.poll()) usleep(1000);
     EXPECT_EQ(worker.trace().status, Status::interrupted) << signal;
   }
@@ -80,95 +79,6 @@ TEST_F(Kills, LeaveNoRecordThatIsRunning) {
   const auto trace = std::make_unique<Trace>();
   ASSERT_EQ(trace->status, Status::running);
   EXPECT_EQ(benchmarks::record_of(hostile("none"), *trace).status, Status::interrupted);
-}
-
-// --- the run, by its user
-
-class Interrupts : public HostileCells {
- protected:
-  Interrupts() { options.limits = {.hard_seconds = 600, .idle_seconds = 600}; }
-  void wait_until_told() const {
-    while (told() == 0) usleep(1000);
-  }
-  static int status_of(pid_t runner) {
-    int status = 0;
-    EXPECT_EQ(waitpid(runner, &status, 0), runner);
-    return status;
-  }
-  bool has_record(const Request& request) const {
-    for (const auto& entry : fs::directory_iterator(folder.path() / "runs"))
-      if (entry.path().filename().string().starts_with(request.cell)) return true;
-    return false;
-  }
-};
-
-TEST_F(Interrupts, ByOneCtrlCFinishWhatRunsAndStartNoMore) {
-  const Request running = hostile("linger"), next = hostile("none");
-  const pid_t runner = run_apart({running, next});
-  wait_until_told();
-  kill(runner, SIGINT);
-  EXPECT_TRUE(WIFEXITED(status_of(runner)));
-  EXPECT_EQ(record_of(running).status, Status::budget);
-  EXPECT_FALSE(has_record(next));
-}
-
-TEST_F(Interrupts, ByTwoStopWhatRunsAndKeepItsState) {
-  const Request running = hostile("sleep");
-  const pid_t runner = run_apart({running});
-  wait_until_told();
-  kill(runner, SIGINT);
-  usleep(100'000);  // two at once are one
-  kill(runner, SIGINT);
-  EXPECT_TRUE(WIFEXITED(status_of(runner)));
-  const Record record = record_of(running);
-  EXPECT_EQ(record.status, Status::interrupted) << record.message;
-  EXPECT_EQ(record.curve.iteration.size(), 3U) << "what it had come to";
-}
-
-TEST_F(Interrupts, ByThreeEndAllAtOnce) {
-  const Request running = hostile("spin");  // hears nothing
-  const pid_t runner = run_apart({running});
-  wait_until_told();
-  const pid_t cell = children_of(runner).at(0);
-  for (int i = 0; i < 3; ++i) {
-    kill(runner, SIGINT);
-    usleep(100'000);
-  }
-  const int status = status_of(runner);
-  EXPECT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), kInterrupted);
-  while (lives(cell)) usleep(1000);  // it is dying
-}
-
-TEST_F(Interrupts, ByASchedulerStopWhatRuns) {
-  for (const int signal : {SIGTERM, SIGHUP}) {
-    told() = 0;
-    const Request running = hostile("sleep");
-    const pid_t runner = run_apart({running});
-    wait_until_told();
-    kill(runner, signal);
-    EXPECT_TRUE(WIFEXITED(status_of(runner))) << signal;
-    EXPECT_EQ(record_of(running).status, Status::interrupted) << signal;
-  }
-}
-
-TEST_F(Interrupts, ByCtrlZStopTheCellsTooUntilAllGoOn) {
-  const Request running = hostile("linger");
-  const pid_t runner = run_apart({running});
-  wait_until_told();
-  kill(runner, SIGTSTP);
-  int status = 0;
-  ASSERT_EQ(waitpid(runner, &status, WUNTRACED), runner);
-  ASSERT_TRUE(WIFSTOPPED(status));
-  const auto seconds_of_cell = [&] {
-    return figures_of(children_of(runner).at(0))->processor_seconds;
-  };
-  const double before = seconds_of_cell();
-  usleep(200'000);
-  EXPECT_EQ(seconds_of_cell(), before);
-  kill(runner, SIGCONT);
-  EXPECT_TRUE(WIFEXITED(status_of(runner)));
-  EXPECT_EQ(record_of(running).status, Status::budget);
 }
 
 // --- the program, killed
