@@ -79,7 +79,7 @@ class FieldParser {
 
 bool contains(const Range& range, Real value) {
   const bool above = range.low_is_open ? value > range.low : value >= range.low;
-  return above && value <= range.high;
+  return above && value <= range.high && std::isfinite(value);  // no range is closed at infinity
 }
 
 std::string text_of(const Range& range) {

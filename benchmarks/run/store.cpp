@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include "benchmarks/plan/build_parts.h"
@@ -54,11 +56,15 @@ bool Store::has(const Request& request) const {
 }
 
 void Store::make_folders() const {
-  for (const char* part : {"runs", "components", "checkpoints"}) {
+  for (const char* part : {"runs", "components", "checkpoints", ""}) {
     std::error_code error;
     fs::create_directories(folder_ / part, error);
     require(!error, [&] {
       return fmt::format("cannot create {}: {}", (folder_ / part).string(), error.message());
+    });
+    // Said before anything runs: a disk may be there to be read only.
+    require(::access((folder_ / part).c_str(), W_OK) == 0, [&] {
+      return fmt::format("cannot write to {}: {}", (folder_ / part).string(), strerror(errno));
     });
   }
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -100,6 +101,16 @@ TrainedNetwork from_json(Json json) {
   return network;
 }
 
+// A line that is an object without "theta" is a header: raw numbers follow it.
+Json header_in(const std::string& line) {
+  try {
+    Json header = parse_json(line, "its header");
+    return header.is_object() && !header.contains("theta") ? header : Json();
+  } catch (const UsageError&) {  // the beginning of a document of many lines
+    return {};
+  }
+}
+
 TrainedNetwork from_raw(const Json& header, std::string_view numbers) {
   TrainedNetwork network = from_header(header);
   const auto said = header.at("parameters").get<std::uint64_t>();
@@ -153,15 +164,12 @@ void write_network(const TrainedNetwork& network, const std::filesystem::path& p
   write_text(path, text);
 }
 
-// A first line that is a header alone has raw numbers behind it. All else is one JSON document,
-// however it is laid out.
+// However a JSON document is laid out.
 TrainedNetwork network_from_text(const std::string& text) {
   const std::size_t end = text.find('\n');
-  if (end != std::string::npos && end + 1 < text.size()) {
-    const Json header = Json::parse(text.substr(0, end), nullptr, false);
-    if (header.is_object() && !header.contains("theta"))
-      return from_raw(header, std::string_view(text).substr(end + 1));
-  }
+  const bool has_more = end != std::string::npos && end + 1 < text.size();
+  const Json header = has_more ? header_in(text.substr(0, end)) : Json();
+  if (header.is_object()) return from_raw(header, std::string_view(text).substr(end + 1));
   return from_json(parse_json(text, "it"));
 }
 
@@ -203,11 +211,17 @@ Vector averaged_statistics(const Problem& problem, VectorRef theta, std::int64_t
 
 NumberArray infer(const Problem& problem, const TrainedNetwork& network, const NumberArray& input,
                   const std::string& origin) {
+  constexpr Index kAtOnce = 1024;  // samples: all layers of all of them need not be held
   Matrix in = samples_of(input, problem.network().inputs(), origin);
   turn_grids(in, problem.grid());
   Matrix x(problem.inputs(), in.cols());
   Workspace workspace;
-  problem.network().infer(network.theta, network.statistics, in, x, workspace);
+  for (Index first = 0; first < in.cols(); first += kAtOnce) {
+    const Matrix some = in.middleCols(first, std::min(kAtOnce, in.cols() - first));
+    Matrix inferred(x.rows(), some.cols());
+    problem.network().infer(network.theta, network.statistics, some, inferred, workspace);
+    x.middleCols(first, some.cols()) = inferred;
+  }
   turn_grids(x, problem.grid());
   NumberArray output{{x.cols()}, {x.data(), x.data() + x.size()}};
   const bool is_picture = problem.grid() > 0 && input.shape.size() > 2;

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -18,6 +21,27 @@ using Adapter = valijson::adapters::NlohmannJsonAdapter;
 struct Schema::Parsed {
   valijson::Schema schema;
 };
+namespace {
+
+// valijson reads integers as signed ones: beyond them a seed would be below zero.
+bool is_beyond(const Json& value) {
+  return value.is_number_unsigned() &&
+         value.get<std::uint64_t>() > std::numeric_limits<std::int64_t>::max();
+}
+bool holds_beyond(const Json& value) {
+  if (value.is_structured()) return std::ranges::any_of(value, holds_beyond);
+  return is_beyond(value);
+}
+
+// What is beyond is given as the largest that it reads.
+void bring_within(Json& value) {
+  if (value.is_structured())
+    for (Json& each : value) bring_within(each);
+  else if (is_beyond(value))
+    value = std::numeric_limits<std::int64_t>::max();
+}
+
+}  // namespace
 
 Schema::Schema(const Json& schema) {
   auto parsed = std::make_unique<Parsed>();
@@ -28,6 +52,11 @@ Schema::Schema(const Json& schema) {
 Schema::~Schema() = default;
 
 std::vector<std::string> Schema::violations(const Json& document) const {
+  if (holds_beyond(document)) {
+    Json within = document;
+    bring_within(within);
+    return violations(within);
+  }
   valijson::ValidationResults results;
   valijson::Validator().validate(parsed_->schema, Adapter(document), &results);
   std::vector<std::string> violations;

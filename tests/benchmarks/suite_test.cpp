@@ -9,9 +9,7 @@
 #include <tuple>
 
 #include "benchmarks/plan/filter.h"
-#include "benchmarks/plan/plan_size.h"
 #include "benchmarks/plan/resources.h"
-#include "core/count.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
@@ -48,58 +46,23 @@ TEST(Suites, OfTheTreeBudgetByWorkAndIterationsNeverByTime) {
       EXPECT_TRUE(std::isinf(cell.budget.seconds)) << name << ": " << cell.problem.spec;
 }
 
-// --- how large a plan is
-
-Suite suite_of(const std::string& problems, const std::string& optimizers, const char* seeds) {
-  const MatrixBlock block{
-      .problems = {problems}, .optimizers = {optimizers}, .seeds = parse_seeds(seeds)};
-  return {.name = "own", .title = "", .blocks = {block}};
-}
-
-TEST(PlanSizes, AreWhatExpansionGives) {
-  for (const auto& [problems, optimizers] : std::vector<std::pair<std::string, std::string>>{
-           {"sine[xi=1|2|3],square", "gd[rate=1|2],newton"}, {"*", "@matrix-free"}}) {
-    const Suite suite = suite_of(problems, optimizers, "3");
-    EXPECT_EQ(size_of(catalog(), suite).cells, expand(catalog(), suite, {}).size()) << problems;
-  }
-}
-
-TEST(PlanSizes, SayWhatMakesThemSoLarge) {
-  const Suite suite = suite_of("sine[xi=1|2|3|4,phi=1|2]", "gd", "50000");
-  const PlanSize size = size_of(catalog(), suite);
-  EXPECT_EQ(size.cells, 400'000U);
-  EXPECT_EQ(too_large(size, 1000),
-            "the plan has 400,000 cells, more than 1,000: 50,000 seeds × 8 settings of sine");
-  const Suite wide = suite_of("sine[xi=1|2|3],square", "gd,newton", "2");
-  EXPECT_EQ(size_of(catalog(), wide).largest,
-            "2 seeds × 4 settings of 2 problems, 3 of them of sine × 2 optimizers");
-}
-
-TEST(PlanSizes, OverAMillionAreRefusedBeforeAnythingIsMade) {
-  EXPECT_THROW(expand(catalog(), suite_of("*", "*", "0..999999"), {}), UsageError);
-  std::string values = "1";
-  for (int i = 1; i < 1000; ++i) values += "|" + std::to_string(i);
-  const std::string sweep = "sine[xi=" + values + ",phi=" + values + ",gamma=" + values + "]";
-  EXPECT_EQ(size_of(catalog(), suite_of(sweep, sweep, "1000000")).cells, kUncountable);
-  EXPECT_THROW(expand(catalog(), suite_of(sweep, "gd", "1"), {}), UsageError);
-  EXPECT_THROW(expand(catalog(), suite_of("square", "gd", "11"), {}, 10), UsageError);
-}
-
 TEST(Suites, WithNumbersThatNoTypeHoldsAreRefused) {
   for (const char* budget :
        {R"({"iterations": 99999999999999999999999})", R"({"iterations": 9223372036854775808})",
-        R"({"work": 1e15})", R"({"work": 2000000000000000})", R"({"iterations": 0})"}) {
+        R"({"work": 1e15})", R"({"work": 2000000000000000})", R"({"iterations": 0})",
+        R"({"seconds": 1e300})", R"({"target": 2})"}) {
     Json suite = parse_json(R"({"schema": "isoline.suite/1", "name": "s",
                                "matrix": [{"problems": ["square"], "optimizers": ["gd"]}]})",
                             "suite");
     suite["matrix"][0]["budget"] = parse_json(budget, "budget");
     EXPECT_THROW(suite_from_json(suite, "it"), UsageError) << budget;
   }
-}
-
-TEST(Cells, OfOneRequestDifferInTheirSeedsAlone) {
-  const std::vector<Request> cells = expand(catalog(), suite_of("square", "gd", "5"), {});
-  for (const Request& cell : cells) EXPECT_EQ(cell.cell, cell_digest(cell));
+  Json suite = parse_json(R"({"schema": "isoline.suite/1", "name": "s",
+                             "matrix": [{"problems": ["square"], "optimizers": ["gd"]}]})",
+                          "suite");
+  EXPECT_NO_THROW(suite_from_json(suite, "it"));
+  suite["matrix"][0]["threads"] = std::int64_t{1} << 40;
+  EXPECT_THROW(suite_from_json(suite, "it"), UsageError);
 }
 
 TEST(Quick, MeetsEveryProblemWithEveryOptimizerOnThreeSeeds) {

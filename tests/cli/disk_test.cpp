@@ -30,7 +30,7 @@ class Disk : public testing::Test {
 
 // Room for the plan and some records. The second run has room for all of them.
 TEST_F(Disk, ThatIsFullEndsTheRunWithAMessageAndTheNextGoesOn) {
-  const Finished both = on_disk("size=160k", kRun +
+  const Finished both = on_disk("size=300k", kRun +
                                                  "--no-report 2>first.err; echo first $?\n"
                                                  "mount -o remount,size=64m disk\n" +
                                                  kRun +

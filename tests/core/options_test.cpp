@@ -70,6 +70,12 @@ TEST(Options, TheLawAndWhatWasGivenAreNamed) {
   EXPECT_EQ(complaint({{"rte", 1}}), "sample: unknown option 'rte'; did you mean 'rate'?");
 }
 
+TEST(Options, WithoutAnUpperBoundAreFiniteAllTheSame) {
+  EXPECT_EQ(complaint({{"rate", "inf"}}), "sample: rate must be in (0, inf), got inf");
+  EXPECT_NE(complaint({{"rate", "1e400"}}), "");
+  EXPECT_NE(complaint({{"rate", "nan"}}), "");
+}
+
 TEST(Options, AreEqualInWhateverOrderTheyWereGiven) {
   OptionValues one{{"b", 2}, {"a", 1.5}};
   EXPECT_EQ(one, OptionValues({{"a", 1.5}, {"b", 2}}));

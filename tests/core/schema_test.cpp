@@ -13,6 +13,13 @@ TEST(Schema, WhatConformsHasNoViolations) {
   EXPECT_TRUE(schema_violations({{"a", 1}}, schema).empty());
 }
 
+// As a seed is: what reads it as a signed number finds −1.
+TEST(Schema, TheLargestIntegerIsNotBelowZero) {
+  const Json schema{{"properties", {{"seed", {{"type", "integer"}, {"minimum", 0}}}}}};
+  EXPECT_TRUE(schema_violations({{"seed", std::uint64_t{18446744073709551615U}}}, schema).empty());
+  EXPECT_FALSE(schema_violations({{"seed", -1}}, schema).empty());
+}
+
 TEST(Schema, ViolationsNameTheirPlace) {
   const Json schema{{"type", "object"},
                     {"properties", {{"list", {{"items", {{"type", "integer"}}}}}}}};

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 
 namespace isoline::fuzz {
@@ -30,11 +29,6 @@ void expect_read_or_refused(const std::function<void()>& read) {
     if (!is_a_sentence(refusal.what()))
       throw std::logic_error("refused without a sentence: " + std::string(refusal.what()));
   }
-}
-
-const benchmarks::Catalog& catalog() {
-  static const benchmarks::Catalog all = benchmarks::builtin_catalog();
-  return all;
 }
 
 MemoryFile::MemoryFile(std::string_view bytes)

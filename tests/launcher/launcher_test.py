@@ -212,6 +212,12 @@ class Arguments(WithTree):
         self.assertIn("no row 'nobody'; there are: ", result.stderr)
         self.assertIn(' haswell ', result.stderr)
 
+    def test_fuzzers_are_built_apart_and_handed_to_ctest(self):
+        tree = Tree(self.folder)
+        tree.run('test', '--fuzz', '-R', 'npy')
+        self.assertIn('--preset fuzz', tree.calls('cmake')[0])
+        self.assertRegex(tree.calls('ctest')[0], 'build/fuzz .*-R npy$')
+
     def test_tests_once_on_stay_on(self):
         tree = Tree(self.folder)
         tree.run('test')
