@@ -26,8 +26,11 @@ std::size_t nesting_of(std::string_view text) {
     if (letter == '"') is_text = !is_text;
     if (is_text && letter == '\\') ++i;
     if (is_text) continue;
-    if (letter == '[' || letter == '{') most = std::max(most, ++depth);
-    if ((letter == ']' || letter == '}') && depth > 0) --depth;
+    const auto is_one_of = [&](const char(&two)[3]) {
+      return letter == two[0] || letter == two[1];
+    };
+    if (is_one_of("[{")) most = std::max(most, ++depth);
+    if (is_one_of("]}") && depth > 0) --depth;
   }
   return most;
 }

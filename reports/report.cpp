@@ -2,14 +2,18 @@
 #include "reports/report.h"
 
 #include "core/files.h"
+#include "core/text.h"
 #include "core/threads.h"
 
 namespace isoline::reports {
 
 void write_report(const Document& document, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
-  share(std::size(kFormats),
-        [&](std::size_t i) { write_text(out / kFormats[i].file, kFormats[i].text(document)); });
+  share(std::size(kFormats), [&](std::size_t i) {
+    const std::string file = kFormats[i].file, text = kFormats[i].text(document);
+    // What terminals and editors show; a page shows no control characters, and has scripts.
+    write_text(out / file, file.ends_with(".html") ? text : printable(text));
+  });
 }
 
 }  // namespace isoline::reports
