@@ -38,6 +38,7 @@ class Runner {
 
   Outcome run(const std::vector<Request>& requests) {
     const InterruptGuard guard;
+    seconds_per_tick();  // measured once here, or each cell would take a millisecond for it
     outcome_.planned = static_cast<std::int64_t>(requests.size());
     Pending pending(requests, store_, options_, outcome_);
     pending_ = &pending;

@@ -88,7 +88,7 @@ TEST(PerturbedRuns, LeaveTheRecordsOfTheFolderAsTheyWere) {
   perturbed(matrix.records);
   for (std::size_t i = 0; i < matrix.records.size(); ++i) {
     const Record& record = matrix.records[i];
-    const auto kept = matrix.store.find(matrix.requests[i]);
+    const auto kept = Store::find_in(matrix.folder.path(), matrix.requests[i]);
     ASSERT_TRUE(kept.has_value());
     EXPECT_EQ(kept->summary.start_loss, record.summary.start_loss);
     EXPECT_EQ(kept->repeat_wall_seconds, record.repeat_wall_seconds);
