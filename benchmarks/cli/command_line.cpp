@@ -158,9 +158,9 @@ int CommandLine::read(int count, char** arguments) {
 void CommandLine::add_run() {
   const auto [verb, given] = add(
       "run", "Run a suite or a matrix of your own; what is done already is not repeated", run_verb);
-  option(verb, "SUITE", given.suite,
-         "Name of a suite, or path of one (default: quick); --problem and --optimizer "
-         "keep its cells of these");
+  option(
+      verb, "SUITE", given.suite,
+      "Name of a suite, or path of one (default: quick); --problem and --optimizer keep its cells of these");
   option(verb, "--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'");
   option(verb, "--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'");
   option(verb, "--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
@@ -183,7 +183,8 @@ void CommandLine::add_run() {
   flag(verb, "--force", given.force, "Repeat cells that are done");
   flag(verb, "--reuse", given.reuse, "Keep cells that another build has done");
   option(verb, "--retry", given.retry, "Repeat cells that ended so: failed,crashed,timeout,memory")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   flag(verb, "--allow-large", given.allow_large, "Plan more than a million cells");
   CLI::Option* dry =
       flag(verb, "--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
@@ -370,8 +371,7 @@ void CommandLine::add_infer() {
       add("infer", "Apply a network that `isoline train` wrote to observations", infer_verb);
   option(verb, "NETWORK", given.network, "File of the trained network")->required();
   option(verb, "--input", given.input,
-         "Observations, one a row: .npy of shape (samples, numbers) or (samples, N, N), "
-         "or .csv")
+         "Observations, one a row: .npy of shape (samples, numbers) or (samples, N, N), or .csv")
       ->required();
   option(verb, "--output", given.output, "Where to write the inferred x: .npy or .csv")->required();
   time(verb, given.seconds, "When it is ended: 10s, 2m (default: 10m)");

@@ -104,7 +104,7 @@ TEST(Network, IsReadHoweverItsJsonIsLaidOut) {
   rewrite(shell, "one-line.json", [](Json&) {});
   rewrite(
       shell, "pretty.json", [](Json&) {}, 2);
-  shell("(cat net.json; echo; echo) > blank-lines.json");
+  write_text(shell.folder() / "blank-lines.json", read_text(shell.folder() / "net.json") + "\n\n");
   ASSERT_EQ(shell("./isoline infer net.json --input y.csv --output x.csv").exit_code, 0);
   for (const std::string name : {"one-line.json", "pretty.json", "blank-lines.json"}) {
     const Finished inferred = shell("./isoline infer " + name + " --input y.csv --output z.csv");

@@ -41,6 +41,8 @@ TEST_F(Retry, RepeatsCellsThatEndedSoAndNoOthers) {
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_FALSE(contains(again.err, "another result")) << again.err;
   EXPECT_TRUE(contains(shell(kMatrix + "--retry failed,crashed").out, "0 run, 4 reused"));
+  const Finished suite = shell("./isoline run --retry failed notebook --dry-run");
+  EXPECT_EQ(suite.exit_code, 0) << "the word behind is a suite: " << suite.err;
 }
 
 // Timings of a cell that went wrong are no timings of the one that takes its place.
