@@ -116,6 +116,7 @@ std::vector<pid_t> ProcessGroup::strays() {
     rusage used{};
     if (wait4(child, nullptr, WNOHANG, &used) <= 0) return false;
     reaped_seconds_ += seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
+    ++reaped_;
     return true;
   });
   return children;
@@ -194,16 +195,19 @@ void ProcessGroup::leave_table() {
   leader_ = 0;
 }
 
-// Round by round: the children of one that was killed come up in the next. A process that the
-// kernel cannot end, as one that waits for a dead network disk, is left to it after a while.
+// Round by round: the children of one that has ended come up in the next, until one finds nobody. A
+// process that the kernel cannot end, as one that waits for a dead network disk, is left to it
+// after a while.
 void ProcessGroup::reap_strays() {
   constexpr std::int64_t kMostNanoseconds = 5'000'000'000;
   constexpr useconds_t kMicroseconds = 200;
   const std::int64_t begin = monotonic_nanoseconds();
-  for (std::vector<pid_t> left = strays(); !left.empty(); left = strays()) {
+  while (monotonic_nanoseconds() - begin < kMostNanoseconds) {
+    const std::int64_t reaped = reaped_;
+    const std::vector<pid_t> left = strays();
+    if (left.empty() && reaped == reaped_) return;
     for (const pid_t stray : left) ::kill(stray, SIGKILL);
-    if (monotonic_nanoseconds() - begin > kMostNanoseconds) return;
-    usleep(kMicroseconds);
+    if (!left.empty()) usleep(kMicroseconds);
   }
 }
 

@@ -60,6 +60,7 @@ class ProcessGroup {
   std::size_t slot_ = 0;
   std::uint64_t mark_ = 0;
   std::unique_ptr<ControlGroup> control_;  // once they are many
+  std::int64_t reaped_ = 0;                // strays so far, and what they used
   double reaped_seconds_ = 0;
   std::int64_t peak_bytes_ = 0;
 };
