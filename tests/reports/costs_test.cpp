@@ -121,7 +121,7 @@ TEST(Costs, ChangeNoFigureThatResultsAreComparedBy) {
   ASSERT_EQ(left[0].quantities.size(), right[0].quantities.size());
   for (std::size_t i = 0; i < left[0].quantities.size(); ++i)
     EXPECT_EQ(left[0].quantities[i].value, right[0].quantities[i].value)
-        << left[0].quantities[i].name;
+        << *left[0].quantities[i].name;
 }
 
 // 30 forward solves and 30 pullbacks at 2.5: 105.
