@@ -14,6 +14,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/records/outline.h"
 #include "core/records/record.h"
 #include "core/records/schema.h"
 #include "core/text.h"
@@ -47,21 +48,38 @@ Examined examined_record(const Json& record, const std::string& path) {
   return examined;
 }
 
+// "isoline.run/1": what a document says it is.
+std::string claim_of(const Json& document) {
+  if (!document.is_object()) return "";
+  const auto claim = document.find("schema");
+  return claim != document.end() && claim->is_string() ? claim->get<std::string>() : "";
+}
+
+Examined examined_document(const Json& document, const std::string& path) {
+  if (document.is_object() && document.contains("$schema")) return {};  // a schema itself
+  const std::string claimed = claim_of(document);
+  if (claimed.empty()) return {{"it names no schema"}, {}};
+  const auto dot = claimed.find('.'), slash = claimed.find('/');
+  const std::string name = claimed.substr(dot + 1, slash - dot - 1);
+  const Schema* schema = schema_of(name);
+  if (schema == nullptr) return {{fmt::format("unknown schema '{}'", claimed)}, {}};
+  std::vector<std::string> violations = schema->violations(document);
+  const bool is_sound_record = violations.empty() && claimed == kRunSchema;
+  if (is_sound_record) return examined_record(document, path);
+  return {std::move(violations), {}};
+}
+
+// Of a record most is columns, and the schema's laws are on their elements alone: its outline is
+// sound where it is. Whatever is wrong is told of the whole.
 Examined examined(const std::string& path) {
   try {
-    const Json document = read_json(path);
-    if (document.is_object() && document.contains("$schema")) return {};  // a schema itself
-    if (!document.is_object() || !document.contains("schema") || !document["schema"].is_string())
-      return {{"it names no schema"}, {}};
-    const auto claimed = document["schema"].get<std::string>();  // "isoline.run/1"
-    const auto dot = claimed.find('.'), slash = claimed.find('/');
-    const std::string name = claimed.substr(dot + 1, slash - dot - 1);
-    const Schema* schema = schema_of(name);
-    if (schema == nullptr) return {{fmt::format("unknown schema '{}'", claimed)}, {}};
-    std::vector<std::string> violations = schema->violations(document);
-    const bool is_sound_record = violations.empty() && claimed == kRunSchema;
-    if (is_sound_record) return examined_record(document, path);
-    return {std::move(violations), {}};
+    const std::string text = read_text(path);
+    const Json outline = outline_of(text, path);
+    if (claim_of(outline) == kRunSchema) {
+      Examined found = examined_document(outline, path);
+      if (found.violations.empty()) return found;
+    }
+    return examined_document(parse_json(text, path), path);
   } catch (const std::exception& error) {
     return {{error.what()}, {}};
   }

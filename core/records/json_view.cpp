@@ -7,10 +7,14 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/records/outline.h"
 
 namespace isoline {
 namespace {
@@ -99,7 +103,53 @@ Json copy_of(const element& value) {
   return nullptr;
 }
 
+// Nothing where an element is neither number nor text.
+std::optional<Json> outline_of_column(const simdjson::dom::array& column) {
+  std::map<element_type, std::pair<Json, Json>> extremes;
+  std::set<std::string_view> texts;
+  for (const element value : column) {
+    if (value.is_string()) {
+      texts.insert(value.get_string().value_unsafe());
+    } else if (value.is_number()) {
+      const Json number = copy_of(value);
+      auto& [least, most] = extremes.try_emplace(value.type(), number, number).first->second;
+      if (number < least) least = number;
+      if (number > most) most = number;
+    } else {
+      return std::nullopt;
+    }
+  }
+  Json list = Json::array();
+  for (const auto& [type, ends] : extremes) list.insert(list.end(), {ends.first, ends.second});
+  for (const std::string_view text : texts) list.push_back(std::string(text));
+  return list;
+}
+
+Json outline(const element& value) {
+  constexpr std::size_t kLong = 8;
+  Json json;
+  if (simdjson::dom::object object; value.get(object) == simdjson::SUCCESS) {
+    json = Json::object();
+    for (const auto& field : object) json.emplace(std::string(field.key), outline(field.value));
+    return json;
+  }
+  simdjson::dom::array list;
+  if (value.get(list) != simdjson::SUCCESS) return copy_of(value);
+  if (list.size() > kLong)
+    if (std::optional<Json> column = outline_of_column(list)) return std::move(*column);
+  json = Json::array();
+  for (const element each : list) json.push_back(outline(each));
+  return json;
+}
+
 }  // namespace
+
+Json outline_of(const std::string& text, const std::string& origin) {
+  static thread_local simdjson::dom::parser parser;
+  element root;
+  if (parser.parse(text).get(root) == simdjson::SUCCESS) return outline(root);
+  return parse_json(text, origin);
+}
 
 JsonView JsonView::at(std::string_view key) const {
   element found;

@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/json.h"
+#include "core/records/outline.h"
+#include "core/records/record.h"
 
 namespace isoline {
 namespace {
@@ -79,6 +82,46 @@ TEST(JsonView, TextCutShortIsRefusedByName) {
   EXPECT_NE(refusal([&] { reader.parse(cut, "runs/a.json"); }).find("runs/a.json"),
             std::string::npos);
   EXPECT_EQ(refusal([&] { reader.parse(kText, "it"); }), "") << "the reader is good for the next";
+}
+
+// Each law on an element that one of the column breaks is broken by the outline.
+TEST(Outline, KeepsOfALongColumnWhatLawsOnItsElementsAskFor) {
+  Json document{{"short", {1, 2, 3}}, {"mixed", Json::array()}, {"rows", Json::array()}};
+  Json column = Json::array();
+  for (int i = 0; i < 100; ++i) column.push_back(i);
+  document["counts"] = column;
+  column[50] = -7;
+  document["negative"] = column;
+  column[50] = "nan";
+  column[51] = 0.5;
+  column[52] = std::uint64_t{1} << 63;
+  document["mixed"] = column;
+  column[53] = nullptr;
+  document["rows"] = column;
+  const Json outline = outline_of(json_text(document), "given");
+  EXPECT_EQ(outline["short"], document["short"]);
+  EXPECT_EQ(outline["counts"], (Json{0, 99}));
+  EXPECT_EQ(outline["negative"], (Json{-7, 99}));
+  EXPECT_EQ(outline["mixed"],
+            (Json{0.5, 0.5, 0, 99, std::uint64_t{1} << 63, std::uint64_t{1} << 63, "nan"}));
+  EXPECT_EQ(outline["rows"], document["rows"]) << "null is neither number nor text";
+}
+
+// `validate` looks at outlines of records.
+TEST(Outline, LosesNothingThatTheSchemaOfRecordsAsksFor) {
+  const std::string schema = json_text(run_schema());
+  for (const char* law : {"minItems", "maxItems", "uniqueItems", "contains", "multipleOf"})
+    EXPECT_EQ(schema.find(law), std::string::npos) << law;
+}
+
+TEST(Outline, OfWhatIsNoJsonIsAUsageErrorThatNamesItsOrigin) {
+  for (const std::string& text : {std::string("{"), std::string("[1e400]"), std::string(2000, '[')})
+    try {
+      outline_of(text, "given.json");
+      FAIL() << text;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("given.json"), std::string::npos);
+    }
 }
 
 }  // namespace
