@@ -1,7 +1,6 @@
 // Judges: what is asked of them goes by a socket, the points themselves lie in shared memory.
 #include "benchmarks/run/judge.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -12,96 +11,12 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
-#include <map>
-#include <memory>
 
+#include "benchmarks/run/chamber.h"
 #include "core/clock.h"
-#include "core/threads.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-// One instance of a problem, made afresh, and the meter that measures on it as on any run.
-struct Instance {
-  explicit Instance(Problem made) : problem(std::move(made)), meter(problem, {}, {}, trace) {
-    meter.begin(problem.start());
-  }
-  Judged judged(VectorRef theta) {
-    require(theta.size() == problem.unknowns(), [&] {
-      return fmt::format("it returned {} numbers, and the problem has {}", theta.size(),
-                         problem.unknowns());
-    });
-    meter.finish(theta, Status::budget);
-    return told_by(trace);
-  }
-
-  Problem problem;
-  Trace trace;
-  Meter meter;
-};
-
-struct Asked {
-  std::size_t slot;
-  std::uint64_t seed;
-  int threads;
-};
-
-struct Reply {
-  std::size_t slot;
-  bool is_judged;
-  Judged judged;
-  char failure[Trace::kText];
-};
-
-// The work of a judge, in its own process, until nobody asks any more.
-class Chamber {
- public:
-  Chamber(const Catalog& catalog, const Component& problem, const std::vector<Worker>& workers)
-      : catalog_(catalog), problem_(problem), workers_(workers) {}
-
-  [[noreturn]] void serve(int socket) {
-    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // what a problem prints here
-    if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0)
-      _exit(1);
-    Asked asked;
-    while (recv(socket, &asked, sizeof asked, 0) == sizeof asked) {
-      const Reply reply = reply_to(asked);
-      if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply) break;
-    }
-    _exit(0);
-  }
-
- private:
-  Reply reply_to(const Asked& asked) {
-    Reply reply{.slot = asked.slot};
-    try {
-      set_library_threads(asked.threads);
-      const Worker& worker = workers_[asked.slot];
-      reply.judged =
-          instance(asked.seed)
-              .judged(Eigen::Map<const Vector>(worker.returned(), worker.returned_size()));
-      reply.is_judged = true;
-    } catch (const std::exception& error) {
-      set_text(reply.failure, error.what());
-    } catch (...) {
-      set_text(reply.failure, "it threw something that is no std::exception");
-    }
-    return reply;
-  }
-
-  // Seeds come in turn, method by method: some instances are kept.
-  Instance& instance(std::uint64_t seed) {
-    constexpr std::size_t kMost = 8;
-    if (const auto found = instances_.find(seed); found != instances_.end()) return *found->second;
-    if (instances_.size() >= kMost) instances_.clear();
-    return *(instances_[seed] = std::make_unique<Instance>(make_problem(catalog_, problem_, seed)));
-  }
-
-  const Catalog& catalog_;
-  const Component& problem_;
-  const std::vector<Worker>& workers_;
-  std::map<std::uint64_t, std::unique_ptr<Instance>> instances_;
-};
 
 std::string how_it_ended(int wait_status) {
   if (!WIFSIGNALED(wait_status))
@@ -160,11 +75,9 @@ Judges::Judge& Judges::judge_of(const Component& problem) {
     judges_.splice(judges_.begin(), judges_, known);
     return judges_.front();
   }
-  const auto idle = std::find_if(judges_.rbegin(), judges_.rend(),
-                                 [](const Judge& judge) { return judge.open.empty(); });
-  if (judges_.size() > workers_.size() && idle != judges_.rend()) {
-    end(*idle);
-    judges_.erase(std::next(idle).base());
+  if (judges_.size() > workers_.size() && judges_.back().open.empty()) {
+    end(judges_.back());  // the one that was not asked for longest
+    judges_.pop_back();
   }
   start(judges_.emplace_front(problem.spec), problem);
   return judges_.front();
@@ -176,7 +89,7 @@ void Judges::start(Judge& judge, const Component& problem) {
     throw std::runtime_error(fmt::format("no socket to a judge: {}", std::strerror(errno)));
   judge.group.start([&] {
     close(ends[0]);
-    Chamber(catalog_, problem, workers_).serve(ends[1]);
+    judge_points(catalog_, problem, workers_, ends[1]);
   });
   close(ends[1]);
   judge.socket = ends[0];
