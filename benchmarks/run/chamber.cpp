@@ -43,17 +43,17 @@ class Chamber {
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // what a problem prints here
     if (nowhere < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0)
       _exit(1);
-    Asked asked;
+    PointToJudge asked;
     while (recv(socket, &asked, sizeof asked, 0) == sizeof asked) {
-      const Reply reply = reply_to(asked);
+      const JudgesReply reply = reply_to(asked);
       if (send(socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply) break;
     }
     _exit(0);
   }
 
  private:
-  Reply reply_to(const Asked& asked) {
-    Reply reply{.slot = asked.slot};
+  JudgesReply reply_to(const PointToJudge& asked) {
+    JudgesReply reply{.slot = asked.slot};
     try {
       set_library_threads(asked.threads);
       const Worker& worker = workers_[asked.slot];

@@ -11,13 +11,13 @@
 namespace isoline::benchmarks {
 
 // Messages of the socket between a run and its judge.
-struct Asked {
+struct PointToJudge {
   std::size_t slot;
   std::uint64_t seed;
   int threads;
 };
 
-struct Reply {
+struct JudgesReply {
   std::size_t slot;
   bool is_judged;
   Judged judged;

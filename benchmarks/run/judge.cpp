@@ -97,7 +97,7 @@ void Judges::start(Judge& judge, const Component& problem) {
 
 void Judges::send(Judge& judge, const Question& question) {
   const Request& request = *question.request;
-  const Asked asked{question.slot, request.seed, request.threads};
+  const PointToJudge asked{question.slot, request.seed, request.threads};
   judge.open.push_back(question);
   ::send(judge.socket, &asked, sizeof asked, MSG_NOSIGNAL);  // a dead judge is met when collected
 }
@@ -144,7 +144,7 @@ std::vector<Verdict> Judges::collect() {
 }
 
 void Judges::collect(Judge& judge, std::vector<Verdict>& verdicts) {
-  Reply reply;
+  JudgesReply reply;
   while (!judge.open.empty()) {
     const ssize_t got = recv(judge.socket, &reply, sizeof reply, MSG_DONTWAIT);
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
