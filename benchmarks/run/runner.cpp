@@ -31,7 +31,7 @@ class Runner {
         store_(store),
         options_(options),
         jobs_(options.exclusive ? 1 : options.jobs),
-        workers_(static_cast<std::size_t>(jobs_)),
+        workers_(static_cast<std::size_t>(options_.exclusive ? 1 : jobs_ + 1)),
         tasks_(workers_.size()),
         judges_(catalog, workers_, kJudgeSeconds),
         predictions_(catalog, store.folder()) {}
@@ -46,6 +46,7 @@ class Runner {
                       outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused);
     while (guard.asked() != Asked::stop) {
       if (guard.asked() == Asked::nothing) start_some(progress);
+      keep_judged(progress);
       const bool is_over = guard.asked() == Asked::finish || pending.is_empty();
       if (is_over && is_idle()) break;
       tell_once(guard.asked());
@@ -53,6 +54,7 @@ class Runner {
       collect(progress);
       progress.show();
     }
+    keep_judged(progress);
     if (!is_idle()) stop();
     outcome_.is_interrupted |= !pending.is_empty();
     progress.show(outcome_.run > 0);
@@ -66,11 +68,14 @@ class Runner {
     bool is_being_judged = false;  // the cell itself has ended
   };
 
+  // There is one worker more than may run: what it did is judged and stored while the others run.
   void start_some(Progress& progress) {
-    for (std::size_t i = 0; i < workers_.size(); ++i) {
+    auto running = std::ranges::count_if(workers_, &Worker::is_running);
+    for (std::size_t i = 0; i < workers_.size() && running < jobs_; ++i) {
       if (tasks_[i].request) continue;
       const Request* request = pending_->next();
       if (!request) return;
+      ++running;
       tasks_[i] = {request, run_provenance()};
       progress.started(title_of(*request));
       if (options_.force) store_.remove_checkpoint(*request);
@@ -132,6 +137,9 @@ class Runner {
       else
         keep(i, progress);
     }
+  }
+
+  void keep_judged(Progress& progress) {
     for (const Verdict& verdict : judges_.collect()) {
       settle(verdict);
       keep(verdict.slot, progress);
@@ -159,7 +167,7 @@ class Runner {
       if (worker.is_running()) worker.interrupt();
     Progress silent(Progress::Style::silent, "", 0, 0);
     const std::int64_t last = monotonic_nanoseconds() + kGrace;
-    for (collect(silent); !is_idle() && monotonic_nanoseconds() < last; collect(silent)) wait();
+    for (collect(silent); !is_idle() && monotonic_nanoseconds() < last; keep_judged(silent)) wait();
   }
 
   void keep(std::size_t slot, Progress& progress) {
