@@ -13,11 +13,22 @@ namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
 
-// The last kept point at or before the iteration.
-std::size_t index_at(const Curve& curve, const std::optional<std::int64_t>& iteration) {
-  if (!iteration) return curve.iteration.size() - 1;
-  const auto after = std::ranges::upper_bound(curve.iteration, *iteration);
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - curve.iteration.begin()) - 1);
+// The last kept point at or before the place.
+std::size_t index_at(const Curve& curve, const Place& place) {
+  const auto last = [](const auto& column, const auto& at) {
+    const std::ptrdiff_t passed = std::ranges::upper_bound(column, at) - column.begin();
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
+  };
+  if (place.iteration) return last(curve.iteration, *place.iteration);
+  if (place.seconds) return last(curve.processor_seconds, *place.seconds);
+  return curve.iteration.size() - 1;
+}
+
+// Running means begin with the first step: before it, what that saw.
+Real value_at(const std::vector<Real>& column, std::size_t index) {
+  if (column.empty()) return kAbsent;
+  const bool is_before_any = index == 0 && std::isnan(column[0]) && column.size() > 1;
+  return column.at(is_before_any ? 1 : index);
 }
 
 constexpr std::string_view kSeries = "series: ";
@@ -68,7 +79,7 @@ Real alignment(const std::vector<std::vector<Real>>& x) {
 
 Real path_figure(const Record& record, const Place& place) {
   const auto& x = record.trajectory->x;
-  const std::size_t row = index_at(record.curve, place.iteration);
+  const std::size_t row = index_at(record.curve, place);
   const auto& at = x.at(row);
   if (place.column == "deviation") return deviation(x, place.table, row);
   if (place.column == "output_deviation") return deviation(record.trajectory->y, place.table, row);
@@ -115,6 +126,13 @@ Real order(const std::vector<Real>& m) {
   return with / pairs;
 }
 
+// Of the first, from 1; those equal to it share the places that they take.
+Real position(const std::vector<Real>& m) {
+  const auto nearer = std::ranges::count_if(m, [&](Real other) { return other < m[0]; });
+  const auto equal = std::ranges::count(m, m[0]) - 1;
+  return 1 + static_cast<Real>(nearer) + static_cast<Real>(equal) / 2;
+}
+
 Real median_of_term(const Term& term, const std::vector<std::size_t>& seeds) {
   std::optional<Real> chosen;
   for (const auto& alternative : term.figures) {
@@ -144,9 +162,10 @@ Real figure_of(const Record& record, const Place& place) {
                ? kAbsent
                : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
   if (record.curve.iteration.empty()) return kAbsent;
-  if (place.column == "loss_peak") return std::ranges::max(record.curve.loss);
-  if (const auto* column = column_of(record, place.column))
-    return column->empty() ? kAbsent : column->at(index_at(record.curve, place.iteration));
+  const std::size_t index = index_at(record.curve, place);
+  if (place.column == "loss_peak")
+    return *std::max_element(record.curve.loss.begin(), record.curve.loss.begin() + index + 1);
+  if (const auto* column = column_of(record, place.column)) return value_at(*column, index);
   return record.trajectory ? path_figure(record, place) : kAbsent;
 }
 
@@ -179,8 +198,7 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
   if (kind == "crossing") return crossing(medians, at);
   if (kind == "order") return order(medians);
   if (kind == "greatest") return std::ranges::max(medians);
-  if (kind == "position")
-    return 1 + static_cast<Real>(std::ranges::count_if(medians, [&](Real m) { return m < first; }));
+  if (kind == "position") return position(medians);
   return first;
 }
 

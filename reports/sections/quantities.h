@@ -11,10 +11,11 @@
 namespace isoline::reports {
 
 // Where a figure of a run is read: a column of its curve or a quantity of its path, at an
-// iteration, or at the end where none is named.
+// iteration, or when so much processor time has passed, or at the end where neither is named.
 struct Place {
   std::string column;  // "series: …" is a quantity of the problem's own
   std::optional<std::int64_t> iteration;
+  std::optional<Real> seconds;
   std::vector<std::vector<Real>> table;  // of deviations: at iterations 1, 2, …; one row: there
 };
 
@@ -24,8 +25,8 @@ std::string column_words(const std::string& column);  // "error in x"
 
 // Of terms by their medians: value (of the first), greatest, ratio (first over second), slope of
 // log m over log at, crossing (where the first half of the terms passes from below the second half
-// to above it, in `at`), position (of the first, from 1), order (Kendall's τ with that of the
-// terms).
+// to above it, in `at`), position (of the first, from 1; a tie counts half), order (Kendall's τ
+// with that of the terms).
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at);
 
