@@ -6,17 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <unordered_map>
 
 #include "core/json.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/claim_words.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {
-
-using ByCell = std::unordered_map<std::string, const Record*>;
 
 // What was published, as the interval that agrees with it.
 struct Agreement {
@@ -60,63 +58,9 @@ Agreement band_of(const Json& claim) {
   return band;
 }
 
-Place place_of(const Json& claim, const Json& term) {
-  const Json& quantity = claim.at("quantity");
-  Place place{.column = quantity.at("column"), .iteration = std::nullopt, .table = {}};
-  const Json& from = term.contains("iteration") ? term : quantity;
-  if (from.contains("iteration")) place.iteration = from["iteration"].get<std::int64_t>();
-  const Json& published = claim.at("published");
-  if (published.contains("table")) published["table"].get_to(place.table);
-  return place;
-}
-
-constexpr std::array<const char*, 2> kTermLists = {"terms", "contrast_terms"};
-
-// Cells of a set that have no record, in words.
-std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
-  std::vector<std::string> missing;
-  const auto look = [&](const Json& alternative) {
-    const auto title = alternative.at("title").get<std::string>();
-    for (const Json& cell : alternative.at("cells")) {
-      const bool is_known = runs.contains(cell.get<std::string>());
-      if (!is_known && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
-    }
-  };
-  for (const char* list : kTermLists)
-    for (const Json& term : set.value(list, Json::array()))
-      for (const Json& alternative : term) look(alternative);
-  return missing;
-}
-
-// The runs that stand for the terms of a claim, or of its contrast.
-std::vector<Term> terms_of(const Json& claim, const Json& cells, const ByCell& runs) {
-  std::vector<Term> terms;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Json& asked = claim.at("quantity").at("terms").at(i);
-    const Place place = place_of(claim, asked);
-    Term& term = terms.emplace_back(Term{.figures = {},
-                                         .at = asked.value("at", 1.0),
-                                         .scale = asked.value("scale", 1.0),
-                                         .is_worst = asked.value("of", "best") == "worst"});
-    for (const Json& alternative : cells[i]) {
-      auto& values = term.figures.emplace_back();
-      for (const Json& cell : alternative.at("cells"))
-        values.push_back(figure_of(*runs.at(cell.get<std::string>()), place));
-    }
-  }
-  return terms;
-}
-
 Measurement measured_in(const Json& claim, const Json& cells, const ByCell& runs,
                         const std::string& stream) {
   return measure(claim.at("quantity").at("kind"), terms_of(claim, cells, runs), stream);
-}
-
-void name_cells(Judgement& out, const Json& set) {
-  for (const char* list : kTermLists)
-    for (const Json& term : set.value(list, Json::array()))
-      for (const Json& alternative : term)
-        for (const Json& cell : alternative.at("cells")) out.cells.push_back(cell);
 }
 
 // The weaker of what is said of the quantity and of what it is held against.
@@ -128,7 +72,7 @@ Verdict weaker_verdict(const Judgement& judged, const Json& claim) {
 
 void measure_in(Judgement& out, const Json& claim, const Json& set, const ByCell& runs) {
   out.is_covered = true;
-  name_cells(out, set);
+  out.cells = cells_of(set);
   out.measured = measured_in(claim, set.at("terms"), runs, out.id);
   bool is_known = !std::isnan(out.measured->value);
   if (out.contrast) {
