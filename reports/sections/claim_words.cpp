@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/sections/quantities.h"
+#include "reports/sections/run_figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -1,0 +1,25 @@
+// One figure of one run: what the quantities of claims are made of.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/records/record.h"
+
+namespace isoline::reports {
+
+// Where a figure of a run is read: a column of its curve or a quantity of its path, at an
+// iteration, or when so much processor time has passed, or at the end where neither is named.
+struct Place {
+  std::string column;  // "series: …" is a quantity of the problem's own
+  std::optional<std::int64_t> iteration;
+  std::optional<Real> seconds;
+  std::vector<std::vector<Real>> table;  // of deviations: at iterations 1, 2, …; one row: there
+};
+
+// Not-a-number where the record does not hold it.
+Real figure_of(const Record& record, const Place& place);
+std::string column_words(const std::string& column);  // "error in x"
+
+}  // namespace isoline::reports
