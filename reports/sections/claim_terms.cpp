@@ -9,6 +9,20 @@
 namespace isoline::reports {
 
 using Json = nlohmann::json;
+namespace {
+
+constexpr std::array<const char*, 2> kTermLists = {"terms", "contrast_terms"};
+
+}  // namespace
+
+std::vector<std::string> cells_of(const Json& set) {
+  std::vector<std::string> cells;
+  for (const char* list : kTermLists)
+    for (const Json& term : set.value(list, Json::array()))
+      for (const Json& alternative : term)
+        for (const Json& cell : alternative.at("cells")) cells.push_back(cell);
+  return cells;
+}
 
 std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
   std::vector<std::string> missing;

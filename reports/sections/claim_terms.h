@@ -13,8 +13,7 @@ namespace isoline::reports {
 
 using ByCell = std::unordered_map<std::string, const Record*>;
 
-inline constexpr std::array<const char*, 2> kTermLists = {"terms", "contrast_terms"};
-
+std::vector<std::string> cells_of(const nlohmann::json& set);  // digests
 // Cells of a set that have no record, in words.
 std::vector<std::string> missing_cells(const nlohmann::json& set, const ByCell& runs);
 

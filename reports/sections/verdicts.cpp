@@ -35,13 +35,6 @@ struct Measured {
   }
 };
 
-void name_cells(Judgement& out, const Json& set) {
-  for (const char* list : kTermLists)
-    for (const Json& term : set.value(list, Json::array()))
-      for (const Json& alternative : term)
-        for (const Json& cell : alternative.at("cells")) out.cells.push_back(cell);
-}
-
 // The weaker of what is said of the quantity and of what it is held against.
 Verdict weaker_verdict(const Judgement& judged, const Json& claim) {
   const Verdict verdict = verdict_of(*judged.measured, claim, judged.is_drawn);
@@ -89,7 +82,7 @@ void measure_in(Judgement& out, const Measured& from) {
   const Json &claim = from.claim, &set = from.set;
   out.is_covered = true;
   out.is_drawn = set.contains("seeds");
-  name_cells(out, set);
+  out.cells = cells_of(set);
   const bool is_known = take(out, from);
   out.evidence = from.evidence(claim, "terms");
   if (out.contrast) out.contrast->evidence = from.evidence(claim.at("contrast"), "contrast_terms");
