@@ -50,16 +50,13 @@ const std::vector<Real>* column_of(const Record& record, const std::string& name
   return name.starts_with("batch_") && window != windows.end() ? &window->second : nullptr;
 }
 
-// Largest distance of any coordinate from the printed one. The rows of a table are iterations 1, 2,
-// …; a single row is `row` of the path.
-Real deviation(const std::vector<std::vector<Real>>& path,
-               const std::vector<std::vector<Real>>& table, std::size_t row) {
-  const std::size_t first = table.size() == 1 ? row : 1;
-  if (first + table.size() > path.size()) return kAbsent;
+// Largest distance of any coordinate from the printed one.
+Real deviation(const std::vector<PrintedRow>& rows) {
+  if (rows.empty()) return kAbsent;
   Real largest = 0;
-  for (std::size_t i = 0; i < table.size(); ++i)
-    for (std::size_t j = 0; j < table[i].size(); ++j)
-      largest = std::max(largest, std::abs(path[first + i].at(j) - table[i][j]));
+  for (const PrintedRow& row : rows)
+    for (std::size_t j = 0; j < row.printed.size(); ++j)
+      largest = std::max(largest, std::abs(row.reached.at(j) - row.printed[j]));
   return largest;
 }
 
@@ -81,8 +78,7 @@ Real path_figure(const Record& record, const Place& place) {
   const auto& x = record.trajectory->x;
   const std::size_t row = index_at(record.curve, place);
   const auto& at = x.at(row);
-  if (place.column == "deviation") return deviation(x, place.table, row);
-  if (place.column == "output_deviation") return deviation(record.trajectory->y, place.table, row);
+  if (place.column.ends_with("deviation")) return deviation(printed_rows(record, place));
   if (place.column == "bend") return bend(record.trajectory->y);
   if (place.column == "alignment") return x.size() < 2 ? kAbsent : alignment(x);
   if (place.column == "distance") return std::hypot(at.at(0), at.at(1));
@@ -133,28 +129,46 @@ Real position(const std::vector<Real>& m) {
   return 1 + static_cast<Real>(nearer) + static_cast<Real>(equal) / 2;
 }
 
-Real median_of_term(const Term& term, const std::vector<std::size_t>& seeds) {
-  std::optional<Real> chosen;
-  for (const auto& alternative : term.figures) {
+Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
+  std::optional<Chosen> chosen;
+  for (std::size_t i = 0; i < term.figures.size(); ++i) {
     std::vector<Real> values;
-    for (const std::size_t seed : seeds) values.push_back(alternative.at(seed));
-    const Real median = median_of(std::move(values));
-    if (!chosen || (term.is_worst ? median > *chosen : median < *chosen)) chosen = median;
+    for (const std::size_t seed : seeds) values.push_back(term.figures[i].at(seed));
+    const Real median = term.scale * median_of(std::move(values));
+    if (!chosen || (term.is_worst ? median > chosen->level : median < chosen->level))
+      chosen = {i, median};
   }
-  return term.scale * chosen.value_or(kNever);
+  return chosen.value_or(Chosen{0, kNever});
 }
 
 Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
                    const std::vector<std::size_t>& seeds) {
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
-    medians.push_back(median_of_term(term, seeds));
+    medians.push_back(chosen_of(term, seeds).level);
     at.push_back(term.at);
   }
   return quantity_of(kind, medians, at);
 }
 
 }  // namespace
+
+Chosen chosen_of(const Term& term) {
+  Places seeds(term.figures.at(0).size());
+  std::iota(seeds.begin(), seeds.end(), 0);
+  return chosen_of(term, seeds);
+}
+
+std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
+  const auto& path =
+      place.column == "output_deviation" ? record.trajectory->y : record.trajectory->x;
+  const std::size_t first = place.table.size() == 1 ? index_at(record.curve, place) : 1;
+  std::vector<PrintedRow> rows;
+  if (first + place.table.size() > path.size()) return rows;
+  for (std::size_t i = 0; i < place.table.size(); ++i)
+    rows.push_back({record.curve.iteration.at(first + i), place.table[i], path[first + i]});
+  return rows;
+}
 
 Real figure_of(const Record& record, const Place& place) {
   if (place.column == "milliseconds")
