@@ -43,7 +43,7 @@ Agreement around(Real value, const Json& claim) {
 }
 
 std::optional<Real> neutral_of(const Json& claim) {
-  return neutral_of(claim.at("quantity").at("kind").get<std::string>());
+  return reports::neutral_of(claim.at("quantity").at("kind").get<std::string>());
 }
 
 // 1 where what was published lies above the tie, −1 below it, 0 where it says no such thing.

@@ -50,10 +50,6 @@ Place place_of(const Json& claim, const Json& term) {
   return place;
 }
 
-namespace {
-
-// The processor time at which the fastest run of the same seed has made so many iterations: a run
-// is charged at its own measured price, also where it stopped before.
 std::vector<Real> equal_seconds(const Json& cells, const ByCell& runs, std::int64_t iterations) {
   std::vector<Real> seconds;
   for (const Json& term : cells)
@@ -69,6 +65,8 @@ std::vector<Real> equal_seconds(const Json& cells, const ByCell& runs, std::int6
     }
   return seconds;
 }
+
+namespace {
 
 // Each takes the figures of the first term of its problem that is read at its iteration.
 void take_for_one(std::vector<Term>& terms, const Json& asked) {

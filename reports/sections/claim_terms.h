@@ -34,6 +34,11 @@ enum class Null {
 std::vector<Term> terms_of(const nlohmann::json& claim, const nlohmann::json& cells,
                            const ByCell& runs, std::int64_t iterations, Null null = Null::none);
 
+// The processor time of each seed at which the fastest run of it has made so many iterations: a run
+// is charged at its own measured price, also where it stopped before.
+std::vector<Real> equal_seconds(const nlohmann::json& cells, const ByCell& runs,
+                                std::int64_t iterations);
+
 // Whether the terms of a problem are of several optimizers: else none can be taken for another.
 bool has_rivals(const nlohmann::json& claim);
 

@@ -76,15 +76,16 @@ Real position(const std::vector<Real>& m) {
   return 1 + static_cast<Real>(nearer) + static_cast<Real>(equal) / 2;
 }
 
-Real median_of_term(const Term& term, const std::vector<std::size_t>& seeds) {
-  std::optional<Real> chosen;
-  for (const auto& alternative : term.figures) {
+Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
+  std::optional<Chosen> chosen;
+  for (std::size_t i = 0; i < term.figures.size(); ++i) {
     std::vector<Real> values;
-    for (const std::size_t seed : seeds) values.push_back(alternative.at(seed));
-    const Real median = median_of(std::move(values));
-    if (!chosen || (term.is_worst ? median > *chosen : median < *chosen)) chosen = median;
+    for (const std::size_t seed : seeds) values.push_back(term.figures[i].at(seed));
+    const Real median = term.scale * median_of(std::move(values));
+    if (!chosen || (term.is_worst ? median > chosen->level : median < chosen->level))
+      chosen = {i, median};
   }
-  return term.scale * chosen.value_or(kNever);
+  return chosen.value_or(Chosen{0, kNever});
 }
 
 // Of seeds, of the alternative that counts: whose figure reaches the term's abscissa.
@@ -104,13 +105,19 @@ Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
   if (kind == "share") return share(terms.at(0), seeds);
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
-    medians.push_back(median_of_term(term, seeds));
+    medians.push_back(chosen_of(term, seeds).level);
     at.push_back(term.at);
   }
   return quantity_of(kind, medians, at);
 }
 
 }  // namespace
+
+Chosen chosen_of(const Term& term) {
+  Places seeds(term.figures.at(0).size());
+  std::iota(seeds.begin(), seeds.end(), 0);
+  return chosen_of(term, seeds);
+}
 
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at) {

@@ -28,6 +28,13 @@ struct Term {
   bool is_worst = false;
 };
 
+// Which alternative of a term counts over all seeds, and the scaled median of its figures.
+struct Chosen {
+  std::size_t alternative = 0;
+  Real level = 0;
+};
+Chosen chosen_of(const Term& term);
+
 struct Measurement {
   Real value = 0;
   Real low = 0, high = 0;  // 95 % of the bootstrap over seeds, of few their range; nan of one

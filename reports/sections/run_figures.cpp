@@ -53,31 +53,20 @@ const std::vector<Real>* column_of(const Record& record, const std::string& name
 
 using Path = std::vector<std::vector<Real>>;
 
-// The rows of a table are iterations 1, 2, …; a single row is that of the place. What has made no
-// step stays at its start. Null where the path is shorter.
-const std::vector<Real>* beside(const Path& path, const Path& table, std::size_t row,
-                                std::size_t i) {
-  if (row == 0) return &path[0];
-  const std::size_t at = (table.size() == 1 ? row : 1) + i;
-  return at < path.size() ? &path[at] : nullptr;
-}
-
 // Distances of coordinates from the printed ones: the largest and the mean.
 struct Deviation {
   Real largest = 0, mean = 0;
 };
-Deviation deviation(const Path& path, const Path& table, std::size_t row) {
+Deviation deviation(const std::vector<PrintedRow>& rows) {
+  if (rows.empty()) return {kAbsent, kAbsent};
   Deviation found;
   Real count = 0;
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const auto* at = beside(path, table, row, i);
-    if (at == nullptr) return {kAbsent, kAbsent};
-    for (std::size_t j = 0; j < table[i].size(); ++j, ++count) {
-      const Real distance = std::abs(at->at(j) - table[i][j]);
+  for (const PrintedRow& row : rows)
+    for (std::size_t j = 0; j < row.printed.size(); ++j, ++count) {
+      const Real distance = std::abs(row.reached.at(j) - row.printed[j]);
       found.largest = std::max(found.largest, distance);
       found.mean += distance;
     }
-  }
   found.mean /= count;
   return found;
 }
@@ -122,9 +111,8 @@ Real step_figure(const std::string& column, const Trajectory& path, std::size_t 
 Real path_figure(const Record& record, const Place& place) {
   const auto& [x, y] = *record.trajectory;
   const std::size_t row = index_at(record.curve, place);
-  if (place.column == "deviation") return deviation(x, place.table, row).largest;
-  if (place.column == "mean_deviation") return deviation(x, place.table, row).mean;
-  if (place.column == "output_deviation") return deviation(y, place.table, row).largest;
+  if (place.column == "mean_deviation") return deviation(printed_rows(record, place)).mean;
+  if (place.column.ends_with("deviation")) return deviation(printed_rows(record, place)).largest;
   if (place.column == "bend") return bend(y, row);
   if (place.column == "least_coordinate") return least_coordinate(x, row);
   if (place.column == "distance") return std::hypot(x.at(row).at(0), x.at(row).at(1));
@@ -147,6 +135,21 @@ Real slowdown(const Curve& curve, std::size_t index) {
 }
 
 }  // namespace
+
+std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
+  const Path& path =
+      place.column == "output_deviation" ? record.trajectory->y : record.trajectory->x;
+  const std::size_t row = index_at(record.curve, place), count = place.table.size();
+  const std::size_t first = count == 1 ? row : 1;
+  const bool stands = row == 0;  // what has made no step stays at its start
+  std::vector<PrintedRow> rows;
+  if (!stands && first + count > path.size()) return rows;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = stands ? 0 : first + i;
+    rows.push_back({record.curve.iteration.at(at), place.table[i], path.at(at)});
+  }
+  return rows;
+}
 
 Real figure_of(const Record& record, const Place& place) {
   if (place.column == "milliseconds")

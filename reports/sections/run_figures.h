@@ -18,6 +18,15 @@ struct Place {
   std::vector<std::vector<Real>> table;  // of deviations: at iterations 1, 2, …; one row: there
 };
 
+// A printed row of figures and the point of the path that stands beside it.
+struct PrintedRow {
+  std::int64_t iteration = 0;
+  std::vector<Real> printed, reached;
+};
+// Of a table at iterations 1, 2, …; a single row is held against the place's iteration. None where
+// the path is shorter.
+std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
+
 // Not-a-number where the record does not hold it.
 Real figure_of(const Record& record, const Place& place);
 std::string column_words(const std::string& column);  // "error in x"

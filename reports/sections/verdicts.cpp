@@ -30,6 +30,9 @@ struct Measured {
     const std::vector<Term> terms = terms_of(asked, set.at(list), runs, iterations(), null);
     return measure(asked.at("quantity").at("kind"), terms, claim.at("id"));
   }
+  Evidence evidence(const Json& asked, const char* list) const {
+    return evidence_of(asked, set.at(list), runs, iterations());
+  }
 };
 
 // The weaker of what is said of the quantity and of what it is held against.
@@ -81,6 +84,8 @@ void measure_in(Judgement& out, const Measured& from) {
   out.is_drawn = set.contains("seeds");
   out.cells = cells_of(set);
   const bool is_known = take(out, from);
+  out.evidence = from.evidence(claim, "terms");
+  if (out.contrast) out.contrast->evidence = from.evidence(claim.at("contrast"), "contrast_terms");
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
   if (claim.contains("not_comparable")) {
@@ -112,7 +117,8 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
   }
   if (claim.contains("contrast"))
     out.contrast =
-        Contrast{quantity_text(claim["contrast"]), published_text(claim["contrast"]), {}};
+        Contrast{quantity_text(claim["contrast"]), published_text(claim["contrast"]), {}, {}};
+  out.sets = cell_sets(claim, runs);
   std::vector<std::string> missing;
   for (const Json& set : claim.value("cells", Json::array())) {
     missing = missing_cells(set, runs);

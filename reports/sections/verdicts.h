@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/sections/agreement.h"
+#include "reports/sections/claim_evidence.h"
 
 namespace isoline::reports {
 
@@ -17,6 +17,7 @@ namespace isoline::reports {
 struct Contrast {
   std::string quantity, published;
   std::optional<Measurement> measured;
+  Evidence evidence;
 };
 
 struct Judgement {
@@ -26,6 +27,8 @@ struct Judgement {
   std::string why;  // it is too short, or not comparable
   std::optional<Measurement> measured;
   std::optional<Agreement> band;
+  Evidence evidence;          // none where nothing decides it
+  std::vector<CellSet> sets;  // the longest first
   std::optional<Contrast> contrast;
   std::vector<std::string> cells;     // that decide it, of those there are
   std::vector<std::string> survives;  // nulls under which it would come out no worse, in words
