@@ -38,13 +38,14 @@ std::string slope_sentence(const Audits& all) {
     }));
   };
   return fmt::format(
-      "Of the slope L = αx the book’s chapter has the exponents 1 for gradient descent, 0 for "
-      "Adam, "
-      "−1 for the inverse gradient, −κ for half-inverse gradients, and no law for others. Measured "
-      "are 1 for {}; 0 for {}; −1 for {}. That more than the inverse gradient have −1 contradicts "
-      "it only in words: to L alone, whose Hessian is zero, Newton’s method has no step, while "
-      "methods over residuals and inverses are told here y = αx and a target one below, and 1/α is "
-      "the step that reaches it.",
+      "Of the slope L = αx the book’s chapter on scale invariance says that the step of gradient "
+      "descent scales with α and its change of the loss with α², that the step of the inverse "
+      "gradient scales with α⁻¹, and that the inverse Hessian of Newton’s method brings a factor of "
+      "1/α². It states no law for Adam and for half-inverse gradients: by their formulas the "
+      "exponents are 0 and −κ. Measured are 1 for {}; 0 for {}; −1 for {}. That more than the "
+      "inverse gradient have −1 contradicts it only in words: to L alone, whose Hessian is zero, "
+      "Newton’s method has no step, while methods over residuals and inverses are told here y = αx "
+      "and a target one below, and 1/α is the step that reaches it.",
       with(1), with(0), with(-1));
 }
 
