@@ -81,7 +81,8 @@ Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
   for (std::size_t i = 0; i < term.figures.size(); ++i) {
     std::vector<Real> values;
     for (const std::size_t seed : seeds) values.push_back(term.figures[i].at(seed));
-    const Real median = term.scale * median_of(std::move(values));
+    const bool is_absent = std::ranges::any_of(values, [](Real v) { return std::isnan(v); });
+    const Real median = is_absent ? kAbsent : term.scale * median_of(std::move(values));
     if (!chosen || (term.is_worst ? median > chosen->level : median < chosen->level))
       chosen = {i, median};
   }
@@ -92,6 +93,7 @@ Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
 Real share(const Term& term, const std::vector<std::size_t>& seeds) {
   std::optional<Real> chosen;
   for (const auto& alternative : term.figures) {
+    if (std::isnan(alternative.at(seeds[0]))) return kAbsent;
     const auto reach = std::ranges::count_if(
         seeds, [&](std::size_t seed) { return alternative.at(seed) >= term.at; });
     const Real found = static_cast<Real>(reach) / static_cast<Real>(seeds.size());
@@ -106,6 +108,7 @@ Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
     medians.push_back(chosen_of(term, seeds).level);
+    if (std::isnan(medians.back())) return kAbsent;
     at.push_back(term.at);
   }
   return quantity_of(kind, medians, at);

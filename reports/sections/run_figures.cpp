@@ -26,7 +26,6 @@ std::size_t index_at(const Curve& curve, const Place& place) {
 
 // Running means begin with the first step: before it, what that saw.
 Real value_at(const std::vector<Real>& column, std::size_t index) {
-  if (column.empty()) return kAbsent;
   const bool is_before_any = index == 0 && std::isnan(column[0]) && column.size() > 1;
   return column.at(is_before_any ? 1 : index);
 }
@@ -162,7 +161,12 @@ Real figure_of(const Record& record, const Place& place) {
     return *std::max_element(record.curve.loss.begin(), record.curve.loss.begin() + index + 1);
   if (place.column == "loss_drop") return record.curve.loss[0] - record.curve.loss[index];
   if (place.column == "slowdown") return slowdown(record.curve, index);
-  if (const auto* column = column_of(record, place.column)) return value_at(*column, index);
+  if (const auto* column = column_of(record, place.column)) {
+    if (column->empty()) return kAbsent;
+    const Real value = value_at(*column, index);
+    const bool is_lost = std::isnan(value) && place.column.find("gradient") == std::string::npos;
+    return is_lost && !place.column.starts_with(kSeries) ? kNever : value;  // it diverged
+  }
   return record.trajectory ? path_figure(record, place) : kAbsent;
 }
 
