@@ -49,11 +49,11 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
 }
 
 int exit_code_of(const std::vector<Judgement>& judgements) {
-  const auto has = [&](Verdict verdict) {
-    return std::ranges::find(judgements, verdict, &Judgement::verdict) != judgements.end();
+  const auto has = [&](auto&& is_so) {
+    return std::ranges::any_of(judgements, is_so, &Judgement::verdict);
   };
-  if (has(Verdict::not_reproduced)) return kWorse;
-  return has(Verdict::reproduced) || has(Verdict::partly) ? kGood : kNotComparable;
+  if (has([](Verdict verdict) { return verdict == Verdict::not_reproduced; })) return kWorse;
+  return has(reports::is_decided) ? kGood : kNotComparable;
 }
 
 }  // namespace

@@ -81,7 +81,10 @@ Json claims_json(const std::vector<Judgement>& judgements) {
               {"source", judgement.source},
               {"quantity", judgement.quantity},
               {"published", judgement.published},
+              {"fact", judgement.fact},
               {"verdict", std::string(name_of(judgement.verdict))},
+              {"survives", judgement.survives},
+              {"needs_iterations", judgement.needs},
               {"why", judgement.why},
               {"caveat", judgement.caveat},
               {"measured", measurement_json(judgement.measured)}};

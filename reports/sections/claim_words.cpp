@@ -12,14 +12,23 @@
 namespace isoline::reports {
 namespace {
 
+const char* words_of_source(const std::string& from) {
+  if (from == "text") return "from text";
+  return from == "digitized" ? "off a digitized curve" : "off a figure";
+}
+
 std::string tolerance_text(const Json& tolerance) {
   const std::string from = tolerance.at("from");
   const bool is_ratio = tolerance.value("values", 1) == 2;
   if (from == "none") return "no error stated";
   if (from == "digits")
     return fmt::format("±{} in its digits", figure(real_of(tolerance["absolute"])));
-  return fmt::format("±{:.0f} % {}{}", 100 * real_of(tolerance["relative"]),
-                     from == "text" ? "from text" : "off a figure", is_ratio ? ", each value" : "");
+  const Real t = real_of(tolerance["relative"]);
+  const std::string of_one = fmt::format("±{:.0f} % {}", 100 * t, words_of_source(from));
+  if (!is_ratio) return of_one;
+  // The law of agreement.cpp for a ratio of two readings.
+  return fmt::format("{}, each value: {:+.0f} to {:+.0f} %", of_one, 100 * ((1 - t) / (1 + t) - 1),
+                     100 * ((1 + t) / (1 - t) - 1));
 }
 
 std::string iteration_text(const Json& from, const char* otherwise) {
@@ -73,7 +82,8 @@ std::string quantity_text(const Json& claim) {
     terms.push_back(term_text(term));
   }
   return fmt::format("{} of the {}, {}: {}", kind, column_words(quantity.at("column")),
-                     iteration_text(quantity, "at the end"),
+                     iteration_text(quantity, quantity.contains("clock") ? "at equal processor time"
+                                                                         : "at the end"),
                      joined(terms, kind == "ratio" ? " / " : ", "));
 }
 

@@ -1,6 +1,7 @@
 // The verdicts on claims of papers, and the figures they rest on.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "reports/sections/sections.h"
@@ -21,6 +22,11 @@ std::string remarks_of(const Judgement& judgement) {
                                 contrast->quantity, contrast->published,
                                 contrast->measured ? figure(contrast->measured->value) : kNothing));
   if (!judgement.why.empty()) parts.push_back(judgement.why + ".");
+  if (!judgement.survives.empty())
+    parts.push_back(fmt::format("The data could not refute it: {} would come to the same verdict.",
+                                joined(judgement.survives, " and ")));
+  if (judgement.fact != judgement.id)
+    parts.push_back(fmt::format("Counted with {}.", judgement.fact));
   if (!judgement.caveat.empty()) parts.push_back(judgement.caveat);
   return joined(parts, " ");
 }
@@ -43,7 +49,8 @@ std::string over_seeds(const Judgement& judgement) {
 }
 
 std::string_view mark_of(Verdict verdict) {
-  constexpr std::array<std::string_view, 4> kMarks = {"✓", "≈", "✗", "·"};
+  constexpr std::array<std::string_view, kVerdictNames.size()> kMarks = {"✓", "∼", "≈",
+                                                                         "✗", "…", "·"};
   return kMarks[static_cast<std::size_t>(verdict)];
 }
 
@@ -51,10 +58,8 @@ std::vector<TableCell> row_of(const Judgement& judgement) {
   TableCell claim = judgement.sentence;
   claim.note = judgement.quantity;
   claim.remark = judgement.source;
-  const std::string verdict =
-      fmt::format("{} {}", mark_of(judgement.verdict), name_of(judgement.verdict));
   return {claim,
-          verdict,
+          fmt::format("{} {}", mark_of(judgement.verdict), verdict_text(judgement)),
           judgement.published,
           value_text(judgement),
           over_seeds(judgement),
@@ -72,12 +77,27 @@ std::string measured_text(const Judgement& judgement) {
                      judgement.measured->n);
 }
 
+std::string verdict_text(const Judgement& judgement) {
+  std::string text(name_of(judgement.verdict));
+  if (is_decided(judgement.verdict) && judgement.is_drawn)
+    text += " on " + counted(judgement.measured->n, "seed");
+  return text;
+}
+
 std::string claims_reading(const std::vector<Judgement>& judgements) {
-  std::array<std::size_t, kVerdictNames.size()> counts{};
-  for (const Judgement& judgement : judgements)
-    ++counts[static_cast<std::size_t>(judgement.verdict)];
-  return fmt::format("Of {} claims {} are reproduced, {} partly, {} not; {} cannot be compared.",
-                     judgements.size(), counts[0], counts[1], counts[2], counts[3]);
+  const std::vector<Verdict> facts = verdicts_on_facts(judgements);
+  const auto count = [&](Verdict verdict) { return std::ranges::count(facts, verdict); };
+  std::string text = fmt::format(
+      "{} in {}: {} reproduced, {} consistent with what was published, {} partly reproduced, "
+      "{} not reproduced; the runs are too short for {}, and {} cannot be compared.",
+      counted(facts.size(), "fact"), counted(judgements.size(), "claim"),
+      count(Verdict::reproduced), count(Verdict::consistent), count(Verdict::partly),
+      count(Verdict::not_reproduced), count(Verdict::too_short), count(Verdict::not_comparable));
+  const auto surviving = std::ranges::count_if(
+      judgements, [](const Judgement& judgement) { return !judgement.survives.empty(); });
+  if (surviving > 0)
+    text += fmt::format(" {} of the claims could not have been refuted by these runs.", surviving);
+  return text;
 }
 
 Section claims_section(const std::vector<Judgement>& judgements) {
@@ -87,7 +107,9 @@ Section claims_section(const std::vector<Judgement>& judgements) {
   if (judgements.empty()) return section;
   section.lead =
       "Measured are medians over seeds, with 95 % of the bootstrap over seeds, or the range of fewer "
-      "than six.";
+      "than six. Reproduced: all of that lies within the error of what was published. Consistent: some of it does. "
+      "Partly: all of it is on the published side of a tie, with a third to three times the "
+      "published effect. Claims that restate one fact count once, by the weakest.";
   section.readings = {{"", claims_reading(judgements)}};
   Table table{
       .id = "claims-table",

@@ -13,11 +13,22 @@ namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
 
-// The last kept point at or before the iteration.
-std::size_t index_at(const Curve& curve, const std::optional<std::int64_t>& iteration) {
-  if (!iteration) return curve.iteration.size() - 1;
-  const auto after = std::ranges::upper_bound(curve.iteration, *iteration);
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, after - curve.iteration.begin()) - 1);
+// The last kept point at or before the place.
+std::size_t index_at(const Curve& curve, const Place& place) {
+  const auto last = [](const auto& column, const auto& at) {
+    const std::ptrdiff_t passed = std::ranges::upper_bound(column, at) - column.begin();
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
+  };
+  if (place.iteration) return last(curve.iteration, *place.iteration);
+  if (place.seconds) return last(curve.processor_seconds, *place.seconds);
+  return curve.iteration.size() - 1;
+}
+
+// Running means begin with the first step: before it, what that saw.
+Real value_at(const std::vector<Real>& column, std::size_t index) {
+  if (column.empty()) return kAbsent;
+  const bool is_before_any = index == 0 && std::isnan(column[0]) && column.size() > 1;
+  return column.at(is_before_any ? 1 : index);
 }
 
 constexpr std::string_view kSeries = "series: ";
@@ -39,16 +50,13 @@ const std::vector<Real>* column_of(const Record& record, const std::string& name
   return name.starts_with("batch_") && window != windows.end() ? &window->second : nullptr;
 }
 
-// Largest distance of any coordinate from the printed one. The rows of a table are iterations 1, 2,
-// …; a single row is `row` of the path.
-Real deviation(const std::vector<std::vector<Real>>& path,
-               const std::vector<std::vector<Real>>& table, std::size_t row) {
-  const std::size_t first = table.size() == 1 ? row : 1;
-  if (first + table.size() > path.size()) return kAbsent;
+// Largest distance of any coordinate from the printed one.
+Real deviation(const std::vector<PrintedRow>& rows) {
+  if (rows.empty()) return kAbsent;
   Real largest = 0;
-  for (std::size_t i = 0; i < table.size(); ++i)
-    for (std::size_t j = 0; j < table[i].size(); ++j)
-      largest = std::max(largest, std::abs(path[first + i].at(j) - table[i][j]));
+  for (const PrintedRow& row : rows)
+    for (std::size_t j = 0; j < row.printed.size(); ++j)
+      largest = std::max(largest, std::abs(row.reached.at(j) - row.printed[j]));
   return largest;
 }
 
@@ -68,10 +76,9 @@ Real alignment(const std::vector<std::vector<Real>>& x) {
 
 Real path_figure(const Record& record, const Place& place) {
   const auto& x = record.trajectory->x;
-  const std::size_t row = index_at(record.curve, place.iteration);
+  const std::size_t row = index_at(record.curve, place);
   const auto& at = x.at(row);
-  if (place.column == "deviation") return deviation(x, place.table, row);
-  if (place.column == "output_deviation") return deviation(record.trajectory->y, place.table, row);
+  if (place.column.ends_with("deviation")) return deviation(printed_rows(record, place));
   if (place.column == "bend") return bend(record.trajectory->y);
   if (place.column == "alignment") return x.size() < 2 ? kAbsent : alignment(x);
   if (place.column == "distance") return std::hypot(at.at(0), at.at(1));
@@ -115,22 +122,30 @@ Real order(const std::vector<Real>& m) {
   return with / pairs;
 }
 
-Real median_of_term(const Term& term, const std::vector<std::size_t>& seeds) {
-  std::optional<Real> chosen;
-  for (const auto& alternative : term.figures) {
+// Of the first, from 1; those equal to it share the places that they take.
+Real position(const std::vector<Real>& m) {
+  const auto nearer = std::ranges::count_if(m, [&](Real other) { return other < m[0]; });
+  const auto equal = std::ranges::count(m, m[0]) - 1;
+  return 1 + static_cast<Real>(nearer) + static_cast<Real>(equal) / 2;
+}
+
+Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
+  std::optional<Chosen> chosen;
+  for (std::size_t i = 0; i < term.figures.size(); ++i) {
     std::vector<Real> values;
-    for (const std::size_t seed : seeds) values.push_back(alternative.at(seed));
-    const Real median = median_of(std::move(values));
-    if (!chosen || (term.is_worst ? median > *chosen : median < *chosen)) chosen = median;
+    for (const std::size_t seed : seeds) values.push_back(term.figures[i].at(seed));
+    const Real median = term.scale * median_of(std::move(values));
+    if (!chosen || (term.is_worst ? median > chosen->level : median < chosen->level))
+      chosen = {i, median};
   }
-  return term.scale * chosen.value_or(kNever);
+  return chosen.value_or(Chosen{0, kNever});
 }
 
 Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
                    const std::vector<std::size_t>& seeds) {
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
-    medians.push_back(median_of_term(term, seeds));
+    medians.push_back(chosen_of(term, seeds).level);
     at.push_back(term.at);
   }
   return quantity_of(kind, medians, at);
@@ -138,15 +153,33 @@ Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
 
 }  // namespace
 
+Chosen chosen_of(const Term& term) {
+  Places seeds(term.figures.at(0).size());
+  std::iota(seeds.begin(), seeds.end(), 0);
+  return chosen_of(term, seeds);
+}
+
+std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
+  const auto& path =
+      place.column == "output_deviation" ? record.trajectory->y : record.trajectory->x;
+  const std::size_t first = place.table.size() == 1 ? index_at(record.curve, place) : 1;
+  std::vector<PrintedRow> rows;
+  if (first + place.table.size() > path.size()) return rows;
+  for (std::size_t i = 0; i < place.table.size(); ++i)
+    rows.push_back({record.curve.iteration.at(first + i), place.table[i], path[first + i]});
+  return rows;
+}
+
 Real figure_of(const Record& record, const Place& place) {
   if (place.column == "milliseconds")
     return record.summary.iterations == 0
                ? kAbsent
                : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
   if (record.curve.iteration.empty()) return kAbsent;
-  if (place.column == "loss_peak") return std::ranges::max(record.curve.loss);
-  if (const auto* column = column_of(record, place.column))
-    return column->empty() ? kAbsent : column->at(index_at(record.curve, place.iteration));
+  const std::size_t index = index_at(record.curve, place);
+  if (place.column == "loss_peak")
+    return *std::max_element(record.curve.loss.begin(), record.curve.loss.begin() + index + 1);
+  if (const auto* column = column_of(record, place.column)) return value_at(*column, index);
   return record.trajectory ? path_figure(record, place) : kAbsent;
 }
 
@@ -179,8 +212,7 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
   if (kind == "crossing") return crossing(medians, at);
   if (kind == "order") return order(medians);
   if (kind == "greatest") return std::ranges::max(medians);
-  if (kind == "position")
-    return 1 + static_cast<Real>(std::ranges::count_if(medians, [&](Real m) { return m < first; }));
+  if (kind == "position") return position(medians);
   return first;
 }
 

@@ -27,6 +27,7 @@ std::vector<std::string> verdict(const Comparison& comparison);  // who leads, a
 std::string profile_reading(const Comparison& comparison, std::size_t tolerance);
 std::string curve_reading(const Comparison& comparison, std::size_t problem);
 std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict
+std::string verdict_text(const Judgement& judgement);                  // "partly on 3 seeds"
 std::string measured_text(const Judgement& judgement);                 // "23.4 (18.2–31), n = 3"
 std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);

@@ -5,167 +5,125 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <unordered_map>
 
 #include "core/json.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/claim_words.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+
+using Json = nlohmann::json;
 namespace {
 
-using ByCell = std::unordered_map<std::string, const Record*>;
+// A claim by one set of its cells.
+struct Measured {
+  const Json& claim;
+  const Json& set;
+  const ByCell& runs;
+  Null null = Null::none;
 
-// What was published, as the interval that agrees with it.
-struct Agreement {
-  Real low = -kNever, high = kNever;
+  std::int64_t iterations() const { return set.at("iterations").get<std::int64_t>(); }
+  Measurement of(const Json& asked, const char* list) const {
+    const std::vector<Term> terms = terms_of(asked, set.at(list), runs, iterations(), null);
+    return measure(asked.at("quantity").at("kind"), terms, claim.at("id"));
+  }
+  Evidence evidence(const Json& asked, const char* list) const {
+    return evidence_of(asked, set.at(list), runs, iterations());
+  }
 };
-
-// The error of a slope whose two ends were each read with relative error t.
-Real slope_error(Real t, const Json& terms) {
-  Real least = kNever, most = 0;
-  for (const Json& term : terms) {
-    least = std::min(least, term.at("at").get<Real>());
-    most = std::max(most, term.at("at").get<Real>());
-  }
-  return std::log((1 + t) / (1 - t)) / std::log(most / least);
-}
-
-Agreement around(Real value, const Json& claim) {
-  const Json& tolerance = claim.at("tolerance");
-  if (tolerance.contains("absolute")) {
-    const Real error = real_of(tolerance["absolute"]);
-    return {value - error, value + error};
-  }
-  if (!tolerance.contains("relative")) return {value, value};
-  const Real t = real_of(tolerance["relative"]);
-  const Json& quantity = claim.at("quantity");
-  if (quantity.at("kind") == "slope") {
-    const Real error = slope_error(t, quantity.at("terms"));
-    return {value - error, value + error};
-  }
-  // A ratio of two values that were each read with error t.
-  if (tolerance.value("values", 1) == 2)
-    return {value * (1 - t) / (1 + t), value * (1 + t) / (1 - t)};
-  return {value * (1 - t), value * (1 + t)};
-}
-
-Agreement band_of(const Json& claim) {
-  const Json& published = claim.at("published");
-  Agreement band = around(published_value(published), claim);
-  if (published.contains("at_least")) band.high = kNever;
-  if (published.contains("at_most")) band.low = -kNever;
-  return band;
-}
-
-Place place_of(const Json& claim, const Json& term) {
-  const Json& quantity = claim.at("quantity");
-  Place place{.column = quantity.at("column"), .iteration = std::nullopt, .table = {}};
-  const Json& from = term.contains("iteration") ? term : quantity;
-  if (from.contains("iteration")) place.iteration = from["iteration"].get<std::int64_t>();
-  const Json& published = claim.at("published");
-  if (published.contains("table")) published["table"].get_to(place.table);
-  return place;
-}
-
-constexpr std::array<const char*, 2> kTermLists = {"terms", "contrast_terms"};
-
-// Cells of a set that have no record, in words.
-std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
-  std::vector<std::string> missing;
-  const auto look = [&](const Json& alternative) {
-    const auto title = alternative.at("title").get<std::string>();
-    for (const Json& cell : alternative.at("cells")) {
-      const bool is_known = runs.contains(cell.get<std::string>());
-      if (!is_known && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
-    }
-  };
-  for (const char* list : kTermLists)
-    for (const Json& term : set.value(list, Json::array()))
-      for (const Json& alternative : term) look(alternative);
-  return missing;
-}
-
-// The runs that stand for the terms of a claim, or of its contrast.
-std::vector<Term> terms_of(const Json& claim, const Json& cells, const ByCell& runs) {
-  std::vector<Term> terms;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Json& asked = claim.at("quantity").at("terms").at(i);
-    const Place place = place_of(claim, asked);
-    Term& term = terms.emplace_back(Term{.figures = {},
-                                         .at = asked.value("at", 1.0),
-                                         .scale = asked.value("scale", 1.0),
-                                         .is_worst = asked.value("of", "best") == "worst"});
-    for (const Json& alternative : cells[i]) {
-      auto& values = term.figures.emplace_back();
-      for (const Json& cell : alternative.at("cells"))
-        values.push_back(figure_of(*runs.at(cell.get<std::string>()), place));
-    }
-  }
-  return terms;
-}
-
-Measurement measured_in(const Json& claim, const Json& cells, const ByCell& runs,
-                        const std::string& stream) {
-  return measure(claim.at("quantity").at("kind"), terms_of(claim, cells, runs), stream);
-}
-
-void name_cells(Judgement& out, const Json& set) {
-  for (const char* list : kTermLists)
-    for (const Json& term : set.value(list, Json::array()))
-      for (const Json& alternative : term)
-        for (const Json& cell : alternative.at("cells")) out.cells.push_back(cell);
-}
 
 // The weaker of what is said of the quantity and of what it is held against.
 Verdict weaker_verdict(const Judgement& judged, const Json& claim) {
-  const Verdict verdict = verdict_of(judged.measured->value, claim);
+  const Verdict verdict = verdict_of(*judged.measured, claim, judged.is_drawn);
   if (!judged.contrast) return verdict;
-  return std::max(verdict, verdict_of(judged.contrast->measured->value, claim.at("contrast")));
+  return std::max(verdict,
+                  verdict_of(*judged.contrast->measured, claim.at("contrast"), judged.is_drawn));
 }
 
-void measure_in(Judgement& out, const Json& claim, const Json& set, const ByCell& runs) {
-  out.is_covered = true;
-  name_cells(out, set);
-  out.measured = measured_in(claim, set.at("terms"), runs, out.id);
+// The measurements, of the claim and of what it is held against. Whether both are numbers.
+bool take(Judgement& out, const Measured& from) {
+  out.measured = from.of(from.claim, "terms");
   bool is_known = !std::isnan(out.measured->value);
-  if (out.contrast) {
-    const Json& contrast = claim.at("contrast");
-    out.contrast->measured = measured_in(contrast, set.at("contrast_terms"), runs, out.id);
-    is_known = is_known && !std::isnan(out.contrast->measured->value);
-  }
+  if (!out.contrast) return is_known;
+  out.contrast->measured = from.of(from.claim.at("contrast"), "contrast_terms");
+  return is_known && !std::isnan(out.contrast->measured->value);
+}
+
+// What else would have come to the same verdict: then the data cannot turn it.
+void name_survived_nulls(Judgement& out, Measured from) {
+  const auto is_survived = [&](Null null) {
+    Judgement planted = out;
+    from.null = null;
+    return take(planted, from) && weaker_verdict(planted, from.claim) <= out.verdict;
+  };
+  if (is_survived(Null::untrained)) out.survives.emplace_back("networks that were never trained");
+  const bool is_of_rivals = has_rivals(from.claim) || (from.claim.contains("contrast") &&
+                                                       has_rivals(from.claim.at("contrast")));
+  if (is_of_rivals && is_survived(Null::twins))
+    out.survives.emplace_back("one method under all its names");
+}
+
+// The length that the claim speaks of.
+std::int64_t needed_iterations(const Json& claim) {
+  if (claim.contains("length")) return claim["length"].at("iterations").get<std::int64_t>();
+  std::int64_t needed = 0;
+  const auto look = [&](const Json& from) {
+    needed = std::max(needed, from.value("iteration", std::int64_t{0}));
+  };
+  look(claim.at("quantity"));
+  for (const Json& term : claim.at("quantity").at("terms")) look(term);
+  return needed;
+}
+
+void measure_in(Judgement& out, const Measured& from) {
+  const Json &claim = from.claim, &set = from.set;
+  out.is_covered = true;
+  out.is_drawn = set.contains("seeds");
+  out.cells = cells_of(set);
+  const bool is_known = take(out, from);
+  out.evidence = from.evidence(claim, "terms");
+  if (out.contrast) out.contrast->evidence = from.evidence(claim.at("contrast"), "contrast_terms");
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
-  const auto iterations = set.at("iterations").get<std::int64_t>();
-  const auto asked = claim.at("quantity").value("iteration", std::int64_t{0});
-  if (iterations < asked)
-    out.why = fmt::format("too short: {} of {} iterations", iterations, asked);
-  else if (!is_known)
-    out.why = "the runs have no such figure";
-  else if (claim.contains("not_comparable"))
+  if (claim.contains("not_comparable")) {
     out.why = claim["not_comparable"];
-  else
+  } else if (from.iterations() < out.needs) {
+    out.verdict = Verdict::too_short;
+    out.why =
+        fmt::format("{} of the {} iterations that it speaks of", from.iterations(), out.needs);
+  } else if (!is_known) {
+    out.why = "the runs have no such figure";
+  } else {
     out.verdict = weaker_verdict(out, claim);
+    if (out.verdict <= Verdict::consistent) name_survived_nulls(out, from);
+  }
 }
 
 Judgement judge_one(const Json& claim, const ByCell& runs) {
   Judgement out;
   claim.at("id").get_to(out.id);
   claim.at("sentence").get_to(out.sentence);
+  out.fact = claim.value("fact", out.id);
   out.source = source_text(claim.at("source"));
   out.caveat = claim.value("caveat", "");
   out.published = published_text(claim);
-  if (claim.contains("quantity")) out.quantity = quantity_text(claim);
+  if (claim.contains("quantity")) {
+    out.quantity = quantity_text(claim);
+    out.band = agreement_of(claim);
+    out.needs = needed_iterations(claim);
+  }
   if (claim.contains("contrast"))
     out.contrast =
-        Contrast{quantity_text(claim["contrast"]), published_text(claim["contrast"]), {}};
+        Contrast{quantity_text(claim["contrast"]), published_text(claim["contrast"]), {}, {}};
+  out.sets = cell_sets(claim, runs);
   std::vector<std::string> missing;
   for (const Json& set : claim.value("cells", Json::array())) {
     missing = missing_cells(set, runs);
     if (missing.empty()) {
-      measure_in(out, claim, set, runs);
+      measure_in(out, {claim, set, runs});
       return out;
     }
   }
@@ -176,21 +134,26 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
 
 }  // namespace
 
-Verdict verdict_of(Real measured, const Json& claim) {
-  const Agreement band = band_of(claim);
-  if (measured >= band.low && measured <= band.high) return Verdict::reproduced;
-  const auto neutral = neutral_of(claim.at("quantity").at("kind"));
-  const Real published = published_value(claim.at("published"));
-  const bool has_direction = neutral && (measured - *neutral) * (published - *neutral) > 0;
-  return has_direction ? Verdict::partly : Verdict::not_reproduced;
-}
-
 std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs) {
   ByCell by_cell;
   for (const Record& record : runs) by_cell.emplace(record.cell, &record);
   std::vector<Judgement> judgements;
   for (const Json& claim : claims) judgements.push_back(judge_one(claim, by_cell));
   return judgements;
+}
+
+std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements) {
+  std::map<std::string, Verdict> facts;
+  for (const Judgement& judgement : judgements) {
+    const auto [known, is_first] = facts.emplace(judgement.fact, judgement.verdict);
+    if (is_first) continue;
+    Verdict& fact = known->second;
+    const bool both = is_decided(fact) == is_decided(judgement.verdict);
+    fact = both ? std::max(fact, judgement.verdict) : std::min(fact, judgement.verdict);
+  }
+  std::vector<Verdict> verdicts;
+  for (const auto& [fact, verdict] : facts) verdicts.push_back(verdict);
+  return verdicts;
 }
 
 }  // namespace isoline::reports

@@ -3,46 +3,44 @@
 // quantity and of its contrast, its alternatives as {"title", "cells"}: a digest a seed.
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "reports/sections/quantities.h"
+#include "reports/sections/claim_evidence.h"
 
 namespace isoline::reports {
-
-enum class Verdict { reproduced, partly, not_reproduced, not_comparable };
-inline constexpr std::array<std::string_view, 4> kVerdictNames = {
-    "reproduced", "partly", "not reproduced", "not comparable"};
-inline std::string_view name_of(Verdict verdict) {
-  return kVerdictNames[static_cast<std::size_t>(verdict)];
-}
 
 // What a claim is held against, so that it can be refuted: a bound that every method keeps says
 // nothing of the one that is named.
 struct Contrast {
   std::string quantity, published;
   std::optional<Measurement> measured;
+  Evidence evidence;
 };
 
 struct Judgement {
   std::string id, sentence, source, quantity, published, caveat;
+  std::string fact;  // the claim whose fact this one restates, or itself
   Verdict verdict = Verdict::not_comparable;
-  std::string why;  // it is not comparable
+  std::string why;  // it is too short, or not comparable
   std::optional<Measurement> measured;
+  std::optional<Agreement> band;
+  Evidence evidence;          // none where nothing decides it
+  std::vector<CellSet> sets;  // the longest first
   std::optional<Contrast> contrast;
-  std::vector<std::string> cells;  // that decide it, of those there are
-  bool is_covered = false;         // all cells of one of its lengths are among the records
+  std::vector<std::string> cells;     // that decide it, of those there are
+  std::vector<std::string> survives;  // nulls under which it would come out no worse, in words
+  std::int64_t needs = 0;             // iterations
+  bool is_drawn = false;              // its runs are of seeds, of which others could be drawn
+  bool is_covered = false;            // all cells of one of its lengths are among the records
 };
 
 // In the order of the claims. The first set of cells that is complete counts: the longest.
 std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs);
 
-// Within the source's own error of what it says: reproduced; else on the same side of the
-// quantity's neutral value: partly. Of a claim, or of its contrast.
-Verdict verdict_of(Real measured, const nlohmann::json& claim);
+// The verdict on each fact: the weakest of the claims that restate it, of those that are decided.
+std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements);
 
 }  // namespace isoline::reports

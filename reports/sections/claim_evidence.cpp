@@ -1,0 +1,127 @@
+// Collects what decides a claim: figures run by run, and curves that are read as the figures are.
+#include "reports/sections/claim_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "reports/read/curves.h"
+#include "reports/sections/claim_words.h"
+
+namespace isoline::reports {
+
+using Json = nlohmann::json;
+namespace {
+
+constexpr std::size_t kPoints = 40;  // a curve
+
+// Of a whole run or of two of its points: they have no curve.
+bool is_of_a_run(const std::string& column) {
+  constexpr std::array<const char*, 5> kWhole = {"milliseconds", "bend", "alignment", "deviation",
+                                                 "output_deviation"};
+  return std::ranges::find(kWhole, column) != kWhole.end();
+}
+
+using Runs = std::vector<const Record*>;
+
+Runs runs_of(const Json& alternative, const ByCell& runs) {
+  Runs all;
+  for (const Json& cell : alternative.at("cells")) all.push_back(runs.at(cell.get<std::string>()));
+  return all;
+}
+
+// A run that has ended keeps its last figure.
+void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_time) {
+  const Curve& longest = (*std::ranges::max_element(runs, {}, [](const Record* run) {
+                           return run->curve.iteration.size();
+                         }))->curve;
+  place.seconds.reset();
+  for (const std::size_t i : thinned(longest.iteration.size(), kPoints)) {
+    place.iteration = longest.iteration[i];
+    std::vector<Real> values;
+    for (const Record* run : runs) values.push_back(term.scale * figure_of(*run, place));
+    const auto [low, high] = std::ranges::minmax(values);
+    term.x.push_back(is_over_time ? longest.processor_seconds.at(i)
+                                  : static_cast<Real>(longest.iteration[i]));
+    term.low.push_back(low);
+    term.high.push_back(high);
+    term.y.push_back(median_of(std::move(values)));
+  }
+}
+
+EvidenceTerm evidence_of_term(const Term& term, const Json& alternatives, const ByCell& runs,
+                              const Place& place) {
+  const Chosen chosen = chosen_of(term);
+  const Runs all = runs_of(alternatives.at(chosen.alternative), runs);
+  const Request& request = all.at(0)->request;
+  EvidenceTerm out{.problem = request.problem.spec,
+                   .optimizer = request.optimizer.spec,
+                   .at = term.at,
+                   .scale = term.scale,
+                   .iteration = place.iteration,
+                   .level = chosen.level};
+  const std::vector<Real>& figures = term.figures.at(chosen.alternative);
+  for (std::size_t seed = 0; seed < all.size(); ++seed)
+    out.runs.push_back({all[seed]->cell, all[seed]->file_name(), all[seed]->request.seed,
+                        term.scale * figures[seed], all[seed]->status});
+  return out;
+}
+
+}  // namespace
+
+Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
+                     std::int64_t iterations) {
+  const Json& quantity = claim.at("quantity");
+  Evidence out{.kind = quantity.at("kind"),
+               .column = quantity.at("column"),
+               .published = published_value(claim.at("published")),
+               .band = agreement_of(claim),
+               .is_over_time = quantity.value("clock", "") == "seconds"};
+  const std::vector<Term> terms = terms_of(claim, cells, runs, iterations);
+  const Real seconds =
+      out.is_over_time ? median_of(equal_seconds(cells, runs, iterations)) : kNever;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    Place place = place_of(claim, quantity.at("terms").at(i));
+    EvidenceTerm& term =
+        out.terms.emplace_back(evidence_of_term(terms[i], cells.at(i), runs, place));
+    const Runs all = runs_of(cells.at(i).at(chosen_of(terms[i]).alternative), runs);
+    if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
+    if (is_of_a_run(place.column) || all.at(0)->curve.iteration.empty()) continue;
+    if (place.column == "loss_peak") place.column = "loss";
+    add_curve(term, all, place, out.is_over_time);
+    const Real end = term.x.back();
+    term.read_at = place.iteration ? std::min(static_cast<Real>(*place.iteration), end)
+                                   : std::min(seconds, end);
+  }
+  return out;
+}
+
+std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
+  std::vector<CellSet> sets;
+  bool is_decided = false;
+  for (const Json& set : claim.value("cells", Json::array())) {
+    const std::vector<std::string> all = cells_of(set);
+    const std::set<std::string> cells(all.begin(), all.end());
+    CellSet& out = sets.emplace_back(CellSet{.iterations = set.at("iterations"),
+                                             .planned = cells.size(),
+                                             .is_long = set.value("long", false)});
+    out.here = static_cast<std::size_t>(
+        std::ranges::count_if(cells, [&](const auto& cell) { return runs.contains(cell); }));
+    out.is_deciding = !is_decided && out.here == out.planned;
+    is_decided = is_decided || out.is_deciding;
+  }
+  return sets;
+}
+
+std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
+  const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
+  const bool is_long = deciding != sets.end()
+                           ? deciding->is_long
+                           : std::ranges::all_of(sets, &CellSet::is_long) && !sets.empty();
+  return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
+}
+
+}  // namespace isoline::reports
