@@ -103,11 +103,8 @@ std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
   std::vector<CellSet> sets;
   bool is_decided = false;
   for (const Json& set : claim.value("cells", Json::array())) {
-    std::set<std::string> cells;
-    for (const char* list : kTermLists)
-      for (const Json& term : set.value(list, Json::array()))
-        for (const Json& alternative : term)
-          for (const Json& cell : alternative.at("cells")) cells.insert(cell);
+    const std::vector<std::string> all = cells_of(set);
+    const std::set<std::string> cells(all.begin(), all.end());
     CellSet& out = sets.emplace_back(CellSet{.iterations = set.at("iterations"),
                                              .planned = cells.size(),
                                              .is_long = set.value("long", false)});
