@@ -52,6 +52,21 @@ void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_t
   }
 }
 
+// The option of the problems that has the terms' abscissas as its values.
+std::string abscissa_of(const std::vector<Term>& terms, const Json& cells, const ByCell& runs) {
+  const auto problem = [&](std::size_t i) -> const OptionValues& {
+    return runs_of(cells.at(i).at(0), runs).at(0)->request.problem.options;
+  };
+  if (terms.size() < 2 || terms[0].at == terms[1].at) return "";
+  for (const NamedOption& option : problem(0)) {
+    bool is_own = true;
+    for (std::size_t i = 0; i < terms.size() && is_own; ++i)
+      is_own = problem(i).number(option.name, kNever) == terms[i].at;
+    if (is_own) return option.name;
+  }
+  return "";
+}
+
 EvidenceTerm evidence_of_term(const Term& term, const Json& alternatives, const ByCell& runs,
                               const Place& place) {
   const Chosen chosen = chosen_of(term);
@@ -81,6 +96,7 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
                .band = agreement_of(claim),
                .is_over_time = quantity.value("clock", "") == "seconds"};
   const std::vector<Term> terms = terms_of(claim, cells, runs, iterations);
+  out.abscissa = abscissa_of(terms, cells, runs);
   const Real seconds =
       out.is_over_time ? median_of(equal_seconds(cells, runs, iterations)) : kNever;
   for (std::size_t i = 0; i < terms.size(); ++i) {

@@ -36,6 +36,7 @@ struct Evidence {
   std::string kind, column;   // of the quantity
   Real published = 0;         // of a table: no distance from it
   Agreement band;             // what agrees with that
+  std::string abscissa;       // the option of the problem that is each term's, where there is one
   bool is_over_time = false;  // curves are over seconds of processor time
   std::vector<EvidenceTerm> terms;
   std::vector<PrintedRow> printed;  // of an equality: the figures, and those of the first run
