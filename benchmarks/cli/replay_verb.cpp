@@ -1,6 +1,5 @@
 // isoline replay RECORD...: runs the cell of a record again and holds the two to each other.
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/build_parts.h"
+#include "benchmarks/run/again.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/same_result.h"
 #include "core/errors.h"
@@ -19,39 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A result folder that nobody keeps.
-class PassingFolder {
- public:
-  PassingFolder() {
-    std::string pattern = (fs::temp_directory_path() / "isoline-replay-XXXXXX").string();
-    const char* made = mkdtemp(pattern.data());
-    require(made != nullptr, [&] { return fmt::format("cannot create {}", pattern); });
-    path_ = made;
-  }
-  ~PassingFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PassingFolder(const PassingFolder&) = delete;
-  PassingFolder& operator=(const PassingFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-// What the record asked, of the components that this program has.
-Request request_of(const Record& record, const Catalog& catalog) {
-  const Request& asked = record.request;
-  constexpr double kLeastSeconds = 60, kSlower = 10;  // this machine may be slower, and busy
-  return named(
-      {.problem = complete_problem(catalog, asked.problem.name, asked.problem.options),
-       .optimizer = complete_optimizer(catalog, asked.optimizer.name, asked.optimizer.options),
-       .seed = asked.seed,
-       .budget = asked.budget,
-       .threads = asked.threads,
-       .rates = asked.rates,
-       .hard_seconds = std::max(kLeastSeconds, kSlower * record.summary.wall_seconds)});
+// A limit for a machine that may be slower, and busy.
+double most_seconds_of(const Record& record) {
+  constexpr double kLeast = 60, kSlower = 10;
+  return std::max(kLeast, kSlower * record.summary.wall_seconds);
 }
 
 // Why the two were not made by the same program on the same platform; empty where they were.
@@ -73,7 +44,7 @@ struct Rerun {
   bool is_interrupted = false;
 };
 Rerun run_again(const Request& request, const ReplayArguments& given, Session& session) {
-  const PassingFolder folder;
+  const HiddenFolder folder;
   Store store(folder.path());
   RunOptions options{.force = true, .command = session.command()};
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
@@ -95,11 +66,10 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
     return fmt::format("{} is a folder: name records, such as those in its runs/", path);
   });
   const Record record = read_record(path);
-  const std::string title = fmt::format("{}: {} × {}, seed {}", path, record.request.problem.spec,
-                                        record.request.optimizer.spec, record.request.seed);
+  const std::string title = fmt::format("{}: {}", path, title_of(record.request));
   Request request;
   try {
-    request = request_of(record, session.catalog());
+    request = request_again(session.catalog(), record, most_seconds_of(record));
   } catch (const UsageError& error) {
     say(stdout, fmt::format("{}: not comparable: {}\n", title, error.what()));
     return kNotComparable;

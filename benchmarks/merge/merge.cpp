@@ -97,8 +97,8 @@ class Merge {
       Json joined = parse_json(copies[0].text, name);
       const Request request = request_from_json(joined.at("request"));
       bool is_other = false;
-      for (const Copy& copy : copies) {
-        const JoinedRecord both = join_records(joined, parse_json(copy.text, name));
+      for (std::size_t i = 1; i < copies.size(); ++i) {
+        const JoinedRecord both = join_records(joined, parse_json(copies[i].text, name));
         if (!both.difference.empty())
           return dispute(
               name, {request.optimizer.name,

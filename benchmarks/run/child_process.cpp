@@ -1,11 +1,14 @@
 // Limits and leave of child processes.
 #include "benchmarks/run/child_process.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 #include "benchmarks/run/processes.h"
@@ -41,6 +44,16 @@ bool is_from_outside(int signal) {
     default:
       return false;
   }
+}
+
+std::string signal_name(int signal) {
+  return fmt::format("signal {} ({})", signal, strsignal(signal));
+}
+
+std::string end_of_answerer(int wait_status) {
+  if (WIFSIGNALED(wait_status)) return "it was ended by " + signal_name(WTERMSIG(wait_status));
+  const int code = WEXITSTATUS(wait_status);
+  return code == 0 ? "it left without an answer" : fmt::format("it left with exit code {}", code);
 }
 
 }  // namespace isoline::benchmarks

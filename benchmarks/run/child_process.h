@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace isoline::benchmarks {
 
@@ -13,5 +14,10 @@ void limit_memory(std::int64_t bytes);
 // A signal that somebody sends, a scheduler, a user or the kernel out of memory, as opposed to one
 // that a fault of its own raises.
 bool is_from_outside(int signal);
+
+std::string signal_name(int signal);  // "signal 11 (Segmentation fault)"
+
+// Of a child that was to answer and did not: "it was ended by signal …", "it left …".
+std::string end_of_answerer(int wait_status);
 
 }  // namespace isoline::benchmarks

@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <cstring>
 #include <exception>
 #include <new>
 
@@ -127,7 +126,7 @@ void Worker::finish(const ProcessGroup::End& end) {
 void Worker::judge_end(int wait_status) {
   if (WIFSIGNALED(wait_status)) {
     const int signal = WTERMSIG(wait_status);
-    const std::string name = fmt::format("signal {} ({})", signal, strsignal(signal));
+    const std::string name = signal_name(signal);
     if (is_from_outside(signal))
       return conclude(Status::interrupted,
                       fmt::format("killed by {}, which this program did not send", name));

@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -76,15 +75,6 @@ std::optional<IsolatedText> read_answer(std::string bytes) {
       return IsolatedText{{}, "it ran out of memory"};
   }
   return std::nullopt;
-}
-
-std::string end_of(int wait_status) {
-  if (WIFSIGNALED(wait_status)) {
-    const int signal = WTERMSIG(wait_status);
-    return fmt::format("it was ended by signal {} ({})", signal, strsignal(signal));
-  }
-  const int code = WEXITSTATUS(wait_status);
-  return code == 0 ? "it left without an answer" : fmt::format("it left with exit code {}", code);
 }
 
 class Question {
@@ -160,7 +150,7 @@ class Question {
     if (!breach_.empty()) return {{}, breach_};
     if (auto found = read_answer(std::move(bytes_))) return std::move(*found);
     const std::string words = output_.last_words();
-    return {{}, end_of(wait_status) + (words.empty() ? "" : "; it last wrote: " + words)};
+    return {{}, end_of_answerer(wait_status) + (words.empty() ? "" : "; it last wrote: " + words)};
   }
 
   const double seconds_;

@@ -3,27 +3,19 @@
 
 #include <fmt/format.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 
 #include "benchmarks/run/chamber.h"
+#include "benchmarks/run/child_process.h"
 #include "core/clock.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-std::string how_it_ended(int wait_status) {
-  if (!WIFSIGNALED(wait_status))
-    return fmt::format("its process left with exit code {}", WEXITSTATUS(wait_status));
-  const int signal = WTERMSIG(wait_status);
-  return fmt::format("it was ended by signal {} ({})", signal, strsignal(signal));
-}
 
 // As near as two evaluations of one point by one build can be told to be; `size` is what numbers of
 // this kind are measured against.
@@ -104,12 +96,9 @@ void Judges::send(Judge& judge, const Question& question) {
 
 // A judge holds nothing that could be lost.
 std::string Judges::end(Judge& judge) {
-  judge.group.kill();
-  std::optional<ProcessGroup::End> end;
-  for (pollfd ending{judge.group.descriptor(), POLLIN, 0}; !end; end = judge.group.collect())
-    poll(&ending, 1, -1);
+  const ProcessGroup::End ended = judge.group.end();
   close(judge.socket);
-  return how_it_ended(end->wait_status);
+  return end_of_answerer(ended.wait_status);
 }
 
 // All that it was asked goes to a new judge; but a point that two have died of, or that was waited

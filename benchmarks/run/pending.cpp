@@ -26,7 +26,7 @@ Pending::Pending(const std::vector<Request>& requests, Store& store, const RunOp
 // How often it is still to be run; one that is done is counted.
 std::size_t Pending::runs_wanted(const Request& request) {
   std::optional<Record> done = store_.find(request);
-  if (is_repeated_anyway(done)) done.reset();
+  if (options_.redoes(done)) done.reset();
   const std::size_t have = done ? done->repeat_wall_seconds.size() : 0;
   const bool is_timed = !done || done->status != Status::inapplicable;
   const auto wanted = static_cast<std::size_t>(is_timed ? options_.repeat : 1);
@@ -35,15 +35,10 @@ std::size_t Pending::runs_wanted(const Request& request) {
   return 0;
 }
 
-// Whether the record that is there stands in nobody's way.
-bool Pending::is_repeated_anyway(const std::optional<Record>& done) const {
-  return options_.force || (done && options_.retry.contains(done->status));
-}
-
 bool Pending::is_reused(const Request& request, const RecordsOfAnyBuild& earlier) {
   if (store_.find(request)) return false;  // by this build
   const std::optional<Record> done = earlier.find(request);
-  if (!done || is_repeated_anyway(done)) return false;
+  if (!done || options_.redoes(done)) return false;
   ++outcome_.reused_from_other_builds;
   count_reused(*done);
   return true;

@@ -28,7 +28,6 @@ class Pending {
  private:
   std::size_t runs_wanted(const Request& request);
   bool is_reused(const Request& request, const RecordsOfAnyBuild& earlier);
-  bool is_repeated_anyway(const std::optional<Record>& done) const;
   void count_reused(const Record& done);
 
   Store& store_;

@@ -1,55 +1,19 @@
 // Asks again for what records asked for, and runs it hidden from everybody else.
 #include "benchmarks/run/perturbed_runs.h"
 
-#include <fmt/format.h>
-#include <stdlib.h>
-
-#include <filesystem>
-
 #include "benchmarks/plan/build_parts.h"
+#include "benchmarks/run/again.h"
 #include "core/errors.h"
 
 namespace isoline::benchmarks {
 namespace {
 
-// Records of perturbed runs have the cells of the others: nobody else may find them.
-class HiddenFolder {
- public:
-  HiddenFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "isoline-XXXXXX").string();
-    require(mkdtemp(pattern.data()) != nullptr,
-            [&] { return fmt::format("cannot make a folder {}", pattern); });
-    path_ = pattern;
-  }
-  ~HiddenFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  HiddenFolder(const HiddenFolder&) = delete;
-  HiddenFolder& operator=(const HiddenFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 // What the record asked for, as this program asks for it.
-Request request_again(const Catalog& catalog, const Record& record) {
-  Request request = record.request;
-  const auto title = [&] {
-    return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
-                       request.seed);
-  };
-  request.problem = complete_problem(catalog, request.problem.name, request.problem.options);
-  request.optimizer =
-      complete_optimizer(catalog, request.optimizer.name, request.optimizer.options);
-  request.problem.asked = record.request.problem.asked;
-  request.optimizer.asked = record.request.optimizer.asked;
+Request same_request(const Catalog& catalog, const Record& record) {
   constexpr double kLongest = 600;  // seconds: the record has ended without a clock before
-  request.hard_seconds = kLongest;
-  const bool is_same = cell_digest(request) == record.cell && build_digest(request) == record.build;
-  require(is_same, [&] {
-    return title() +
+  const Request request = request_again(catalog, record, kLongest);
+  require(request.cell == record.cell && build_digest(request) == record.build, [&] {
+    return title_of(request) +
            ": its record is of another build; run it by this one (isoline run), or keep "
            "it without perturbations (--perturbations 0)";
   });
@@ -67,7 +31,7 @@ std::optional<std::vector<Record>> perturbed_records(const Catalog& catalog,
                                                      RunOptions options) {
   std::vector<Request> requests;
   for (const Record& record : records)
-    if (is_repeated(record)) requests.push_back(request_again(catalog, record));
+    if (is_repeated(record)) requests.push_back(same_request(catalog, record));
   const HiddenFolder folder;
   Store store(folder.path());
   options.perturbation = number;

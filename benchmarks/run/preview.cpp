@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <unordered_set>
 
 #include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/prediction.h"
@@ -144,23 +143,13 @@ double estimate(const Catalog& catalog, const Request& request, const Probe& pro
   return predicted_seconds(catalog, request, cost) + kProcessSeconds;
 }
 
-}  // namespace
-
-namespace {
-
 // The cells that a folder has records of, found by one look at it.
 class Kept {
  public:
   Kept(const std::filesystem::path& folder, const PreviewOptions& options)
-      : folder_(folder), options_(options), earlier_(folder) {
-    std::error_code missing;
-    for (const auto& entry : std::filesystem::directory_iterator(folder / "runs", missing)) {
-      const std::string name = entry.path().filename().string();
-      cells_.insert(name.substr(0, name.find('-')));
-    }
-  }
+      : folder_(folder), options_(options), earlier_(folder) {}
   bool has(const Request& request) const {
-    if (options_.force || !cells_.contains(request.cell)) return false;
+    if (options_.force || !earlier_.has(request)) return false;
     std::optional<Record> record = Store::find_in(folder_, request);
     if (!record && options_.reuse) record = earlier_.find(request);
     return record && !options_.retry.contains(record->status);
@@ -170,7 +159,6 @@ class Kept {
   const std::filesystem::path& folder_;
   const PreviewOptions& options_;
   RecordsOfAnyBuild earlier_;
-  std::unordered_set<std::string> cells_;
 };
 
 }  // namespace

@@ -78,9 +78,13 @@ void settle(pid_t parent, std::uint64_t mark) {
 }  // namespace
 
 ProcessGroup::~ProcessGroup() {
-  if (!is_running()) return;
+  if (is_running()) end();
+}
+
+ProcessGroup::End ProcessGroup::end() {
   kill();
-  while (!collect()) {
+  for (;;) {
+    if (const auto end = collect()) return *end;
     siginfo_t ended{};
     waitid(P_PID, static_cast<id_t>(leader_), &ended, WEXITED | WNOWAIT);
   }

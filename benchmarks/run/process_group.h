@@ -47,6 +47,7 @@ class ProcessGroup {
   void kill();                                  // all, at once; to be collected as any that ended
   // How the child ended, once it has and all that it left behind is killed and reaped.
   std::optional<End> collect();
+  End end();  // kills all of one that runs, and waits until they are gone
 
  private:
   std::vector<pid_t> strays();

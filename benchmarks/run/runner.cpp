@@ -185,8 +185,7 @@ class Runner {
     if (record.status == Status::crashed && record.output.empty())
       record.output = worker.output().last_words();
     std::optional<Record> earlier = store_.find(record.request);
-    const bool is_redone = options_.force || (earlier && options_.retry.contains(earlier->status));
-    if (is_redone && !repeated(record)) earlier.reset();
+    if (options_.redoes(earlier) && !repeated(record)) earlier.reset();
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
         !same_result(*earlier, record))
       outcome_.conflicts.push_back(title_of(*task.request));

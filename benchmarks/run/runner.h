@@ -26,6 +26,11 @@ struct RunOptions {
   Progress::Style progress = Progress::Style::silent;
   bool keeps_output = false;  // of cells, in their records
   std::string command;        // for the record
+
+  // Whether a record that is there, if one is, stands in nobody's way.
+  bool redoes(const std::optional<Record>& done) const {
+    return force || (done && retry.contains(done->status));
+  }
 };
 
 // Runs the requests that the store has no record of, and no more. Several processes may run into

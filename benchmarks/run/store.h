@@ -67,6 +67,7 @@ class RecordsOfAnyBuild {
  public:
   explicit RecordsOfAnyBuild(const std::filesystem::path& folder);  // which need not be there
 
+  bool has(const Request& request) const { return paths_.contains(request.cell); }
   // The newest one: none that failed or that a clock or a kill ended.
   std::optional<Record> find(const Request& request) const;
 

@@ -12,6 +12,10 @@ class Descendants : public HostileCells {
   Descendants() {  // what runs that other tests killed left to this process is dead by now
     while (!children_of(getpid()).empty()) waitpid(-1, nullptr, WNOHANG);
   }
+  static void expect_good_end(Worker& worker) {
+    while (!worker.poll()) usleep(1000);
+    EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
+  }
 };
 
 TEST_F(Descendants, ThatWentToASessionOfTheirOwnEndWithTheirCell) {
@@ -60,8 +64,7 @@ TEST_F(Descendants, DoNotCountWhatTheyShareTwice) {
         usleep(500'000);
       },
       {.memory_bytes = std::int64_t{512} << 20}, 1);
-  while (!worker.poll()) usleep(1000);
-  EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
+  expect_good_end(worker);
   EXPECT_TRUE(children_of(getpid()).empty());
 }
 
@@ -85,8 +88,7 @@ TEST_F(Descendants, OfDescendantsEndToo) {
         for (;;) pause();
       },
       {}, 1);
-  while (!worker.poll()) usleep(1000);
-  EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
+  expect_good_end(worker);
   EXPECT_TRUE(children_of(getpid()).empty());
 }
 
@@ -107,8 +109,7 @@ TEST_F(Descendants, ThatNeverStandStillEndToo) {
         trace.status = Status::budget;
       },
       {}, 1);
-  while (!worker.poll()) usleep(1000);
-  EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
+  expect_good_end(worker);
   const int last = told();
   usleep(100'000);
   EXPECT_EQ(told(), last) << "it flies on";

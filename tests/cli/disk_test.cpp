@@ -25,6 +25,15 @@ class Disk : public testing::Test {
     if (allowed.exit_code != 0)
       GTEST_SKIP() << "no file system can be mounted here: " << allowed.err;
   }
+  // The first run told why it ended; the second went on to sound files.
+  void expect_end_and_resume(const Finished& both) {
+    EXPECT_TRUE(contains(both.out, "first 2\n")) << both.out << both.err;
+    const std::string first = read_text(shell.folder() / "first.err");
+    EXPECT_TRUE(contains(first, "No space left on device")) << first;
+    EXPECT_TRUE(contains(both.out, "second 0\n"))
+        << both.out << read_text(shell.folder() / "second.err");
+    EXPECT_TRUE(contains(both.out, "valid 0\n")) << both.out;
+  }
   Shell shell;
 };
 
@@ -37,12 +46,7 @@ TEST_F(Disk, ThatIsFullEndsTheRunWithAMessageAndTheNextGoesOn) {
                                                  "2>second.err; echo second $?\n"
                                                  "./isoline validate disk/out; echo valid $?\n"
                                                  "ls disk/out/runs | grep -vc 'json$'");
-  EXPECT_TRUE(contains(both.out, "first 2\n")) << both.out << both.err;
-  const std::string first = read_text(shell.folder() / "first.err");
-  EXPECT_TRUE(contains(first, "No space left on device")) << first;
-  EXPECT_TRUE(contains(both.out, "second 0\n"))
-      << both.out << read_text(shell.folder() / "second.err");
-  EXPECT_TRUE(contains(both.out, "valid 0\n")) << both.out;
+  expect_end_and_resume(both);
   EXPECT_TRUE(both.out.ends_with("\n0\n")) << both.out;
 }
 
@@ -52,12 +56,7 @@ TEST_F(Disk, WhoseInodesAreSpentEndsTheRunWithAMessageAndTheNextGoesOn) {
                                            "mount -o remount,nr_inodes=4096 disk\n" + kRun +
                                            "2>second.err; echo second $?\n"
                                            "./isoline validate disk/out; echo valid $?\n");
-  EXPECT_TRUE(contains(both.out, "first 2\n")) << both.out << both.err;
-  const std::string first = read_text(shell.folder() / "first.err");
-  EXPECT_TRUE(contains(first, "No space left on device")) << first;
-  EXPECT_TRUE(contains(both.out, "second 0\n"))
-      << both.out << read_text(shell.folder() / "second.err");
-  EXPECT_TRUE(contains(both.out, "valid 0\n")) << both.out;
+  expect_end_and_resume(both);
 }
 
 TEST_F(Disk, ThatIsReadOnlyIsTheCallersMistakeBeforeAnythingRuns) {

@@ -10,13 +10,17 @@ namespace isoline::optimizers {
 using problems::Problem;
 namespace {
 
+// No loss is below the minimum: a method that lands on it exactly, as the sums happen to round, is
+// not stopped there either.
+constexpr Budget kUnreachable{.iterations = 1000, .target = -1};
+
 struct Ongoing {
   const Problem& problem;
   const OptimizerEntry& entry;
   OptionValues options = options_of_spec(entry, entry.name);
   std::unique_ptr<Trace> trace = std::make_unique<Trace>();
   std::unique_ptr<Optimizer> method = entry.make(options, optimizers());
-  Meter meter{problem, iterations(1000), needs_of(entry, options, problem), *trace};
+  Meter meter{problem, kUnreachable, needs_of(entry, options, problem), *trace};
   Vector theta = problem.start();
 
   void begin() {
