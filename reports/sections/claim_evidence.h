@@ -21,7 +21,7 @@ struct EvidenceRun {
 
 // Of several alternatives the one that counts.
 struct EvidenceTerm {
-  std::string problem, optimizer;
+  std::string problem, optimizer;         // the optimizer as the claim writes it
   Real at = 1, scale = 1;                 // its abscissa, and a factor of its figures
   std::optional<std::int64_t> iteration;  // where it is read; none: at the end
   Real read_at = 0;                       // the same on the axis of its curve

@@ -157,13 +157,15 @@ bool is_logarithmic(const Plot& plot) {
 }  // namespace
 
 std::vector<std::string> term_names(const Evidence& evidence) {
-  const bool one_problem = is_all(evidence, &EvidenceTerm::problem);
+  const bool has_abscissa = !evidence.abscissa.empty();  // tells the problems apart
+  const bool one_problem = has_abscissa || is_all(evidence, &EvidenceTerm::problem);
   const bool one_optimizer = is_all(evidence, &EvidenceTerm::optimizer) && !one_problem;
   std::vector<std::string> names;
   for (const EvidenceTerm& term : evidence.terms) {
     std::string name = one_optimizer ? shown_spec(term.problem) : shown_spec(term.optimizer);
     if (!one_problem && !one_optimizer) name += " on " + shown_spec(term.problem);
     if (term.scale != 1) name += fmt::format(", times {}", figure(term.scale));
+    if (has_abscissa) name += fmt::format(", {} = {}", evidence.abscissa, figure(term.at));
     names.push_back(std::move(name));
   }
   return names;

@@ -141,7 +141,7 @@ Section claim_section(const Judgement& judgement) {
     for (std::size_t i = plots; i < section.plots.size(); ++i)
       section.plots[i].title = "Contrast: " + section.plots[i].title;
   }
-  if (!judgement.sets.empty()) section.command = repeat_command(judgement.id, judgement.sets);
+  section.command = repeat_command(judgement.id, judgement.sets);
   return section;
 }
 
