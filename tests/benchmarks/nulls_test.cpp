@@ -79,7 +79,8 @@ Record untrained(Record record) {
     std::size_t first = 0;
     if constexpr (std::is_same_v<std::decay_t<decltype(column[0])>, Real>)
       first = std::isnan(column[0]) && column.size() > 1 ? 1 : 0;
-    std::ranges::fill(column, auto(column[first]));
+    const auto value = column[first];
+    std::ranges::fill(column, value);
   };
   Curve& curve = record.curve;
   for (auto* column : {&curve.loss, &curve.x_error, &curve.gradient_norm, &curve.step_norm})

@@ -255,7 +255,7 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
     claim["contrast"]["published"] = published;
     return judge(Json::array({claim}), adam_and_sip()).at(0);
   };
-  const Judgement kept = judged({{"at_least", 15}}), refuted = judged({{"at_most", 15}});
+  const Judgement kept = judged({{"at_least", 15}}), refuted = judged({{"at_most", 9}});
   EXPECT_EQ(kept.verdict, Verdict::consistent);  // 10 to 30, and 10 to 90
   EXPECT_EQ(kept.contrast->measured->value, 20);
   EXPECT_EQ(refuted.measured->value, 10);
