@@ -15,10 +15,12 @@
 
 namespace isoline::benchmarks {
 
+using reports::claim_section;
 using reports::claims_json;
 using reports::claims_section;
 using reports::Judgement;
 using reports::read_study;
+using reports::terminal_claim;
 using reports::terminal_section;
 using reports::Verdict;
 namespace {
@@ -48,6 +50,13 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
   return outcome;
 }
 
+// One claim with all that decides it; of several the verdicts.
+std::string terminal_text_of(const std::vector<Judgement>& judgements) {
+  if (judgements.size() == 1) return terminal_claim(claim_section(judgements[0]));
+  return terminal_section(claims_section(judgements)) +
+         "`isoline claims ID` shows one of them with the figures that decide it.\n";
+}
+
 int exit_code_of(const std::vector<Judgement>& judgements) {
   const auto has = [&](auto&& is_so) {
     return std::ranges::any_of(judgements, is_so, &Judgement::verdict);
@@ -65,8 +74,8 @@ int claims_verb(const ClaimArguments& given, Session& session) {
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
   const std::vector<Judgement> judgements = judged(claims, read_study({given.out}).runs);
-  say(stdout, given.as_json ? json_text(claims_json(judgements), 2) + "\n"
-                            : terminal_section(claims_section(judgements)));
+  say(stdout,
+      given.as_json ? json_text(claims_json(judgements), 2) + "\n" : terminal_text_of(judgements));
   const int of_runs = exit_code_of(outcome);
   return of_runs == kGood ? exit_code_of(judgements) : of_runs;
 }

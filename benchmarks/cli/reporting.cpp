@@ -34,7 +34,8 @@ void write_and_print(const Study& study, const std::filesystem::path& out, Sessi
                      bool quiet, const reports::Yardstick& yardstick) {
   std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
   std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
-  const Document document = document_of(compare_optimizers(study, yardstick), std::move(claims));
+  Document document = document_of(compare_optimizers(study, yardstick), std::move(claims));
+  document.out = out.string();
   write_report(document, out);
   if (!quiet)
     say(stdout,

@@ -17,6 +17,8 @@ std::string json_report(const Document& document);      // schema isoline.report
 
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
 std::string terminal_section(const Section& section);  // within a hundred columns
+std::string terminal_claim(const Section& claim);      // one whole: readings, plots, tables
+std::string markdown_claim(const Section& claim);
 std::string markdown_section(const Section& section);
 
 // Parts of report.json.

@@ -5,6 +5,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/sections.h"
 
 namespace isoline::reports {
 namespace {
@@ -72,6 +73,19 @@ std::string markdown_section(const Section& section) {
   return text;
 }
 
+// Folded: a summary of a job holds a hundred of them.
+std::string markdown_claim(const Section& claim) {
+  std::string text = fmt::format("<details><summary>{}: {}</summary>\n\n", markdown_text(claim.id),
+                                 markdown_text(claim.title));
+  for (const Reading& reading : claim.readings)
+    text +=
+        fmt::format("- **{}:** {}\n", markdown_text(reading.title), markdown_text(reading.text));
+  if (!claim.command.empty()) text += fmt::format("- **To repeat it:** `{}`\n", claim.command);
+  text += "\n";
+  for (const Table& table : claim.tables) text += table_text(table);
+  return text + "</details>\n\n";
+}
+
 std::string markdown_report(const Document& document) {
   std::string text =
       fmt::format("# Isoline report\n\n{}. Status: {}.\n\n", document.headline, document.statuses);
@@ -79,7 +93,12 @@ std::string markdown_report(const Document& document) {
     text += fmt::format("> **Incomplete: {}**\n\n", markdown_text(document.incomplete));
   for (const std::string& remark : document.remarks)
     text += fmt::format("- {}\n", markdown_text(remark));
-  for (const Section& section : document.sections) text += markdown_section(section);
+  for (const Section& section : document.sections) {
+    text += markdown_section(section);
+    if (section.id != "claims") continue;
+    for (const Judgement& judgement : document.claims)
+      text += markdown_claim(claim_section(judgement));
+  }
   return text;
 }
 

@@ -28,7 +28,7 @@ Json table_json(const Table& table) {
 }
 
 Json plot_json(const Plot& plot, const Comparison& c) {
-  constexpr const char* kKinds[] = {"steps", "dots", "bars", "matrix"};
+  constexpr const char* kKinds[] = {"steps", "dots", "bars", "matrix", "lines"};
   const auto numbers = [](const std::vector<Real>& values) { return json_numbers(values); };
   Json rows = Json::array(), series = Json::array();
   for (const PlotRow& row : plot.rows) rows.push_back(row.name);
@@ -59,6 +59,54 @@ Json measurement_json(const std::optional<Measurement>& measured) {
           {"n", measured->n}};
 }
 
+Json band_json(const Agreement& band) { return {json_number(band.low), json_number(band.high)}; }
+
+Json runs_json(const EvidenceTerm& term) {
+  Json runs = Json::array();
+  for (const EvidenceRun& run : term.runs)
+    runs.push_back({{"cell", run.cell},
+                    {"record", run.file},
+                    {"seed", run.seed},
+                    {"figure", json_number(run.figure)},
+                    {"status", std::string(name_of(run.status))}});
+  return runs;
+}
+
+// The curves are in the records.
+Json evidence_json(const Evidence& evidence) {
+  if (evidence.terms.empty()) return nullptr;
+  Json terms = Json::array(), printed = terms;
+  for (const EvidenceTerm& term : evidence.terms) {
+    Json json{{"problem", term.problem}, {"optimizer", term.optimizer},
+              {"at", term.at},           {"scale", term.scale},
+              {"iteration", nullptr},    {"median", json_number(term.level)},
+              {"runs", runs_json(term)}};
+    if (term.iteration) json["iteration"] = *term.iteration;
+    terms.push_back(std::move(json));
+  }
+  for (const PrintedRow& row : evidence.printed)
+    printed.push_back({{"iteration", row.iteration},
+                       {"printed", json_numbers(row.printed)},
+                       {"reached", json_numbers(row.reached)}});
+  return {{"kind", evidence.kind},
+          {"column", evidence.column},
+          {"published", json_number(evidence.published)},
+          {"band", band_json(evidence.band)},
+          {"terms", terms},
+          {"printed", printed}};
+}
+
+Json sets_json(const std::vector<CellSet>& sets) {
+  Json list = Json::array();
+  for (const CellSet& set : sets)
+    list.push_back({{"iterations", set.iterations},
+                    {"cells", set.planned},
+                    {"here", set.here},
+                    {"long", set.is_long},
+                    {"decides", set.is_deciding}});
+  return list;
+}
+
 }  // namespace
 
 Json statistics_json(const Document& document) {
@@ -87,11 +135,15 @@ Json claims_json(const std::vector<Judgement>& judgements) {
               {"needs_iterations", judgement.needs},
               {"why", judgement.why},
               {"caveat", judgement.caveat},
-              {"measured", measurement_json(judgement.measured)}};
+              {"measured", measurement_json(judgement.measured)},
+              {"evidence", evidence_json(judgement.evidence)},
+              {"sets", sets_json(judgement.sets)},
+              {"command", repeat_command(judgement.id, judgement.sets)}};
     if (const auto& contrast = judgement.contrast)
       json["contrast"] = {{"quantity", contrast->quantity},
                           {"published", contrast->published},
-                          {"measured", measurement_json(contrast->measured)}};
+                          {"measured", measurement_json(contrast->measured)},
+                          {"evidence", evidence_json(contrast->evidence)}};
     list.push_back(std::move(json));
   }
   return list;

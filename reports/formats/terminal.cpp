@@ -6,6 +6,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
+#include "reports/formats/text_plot.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 
@@ -175,7 +176,7 @@ std::string block(const Table& table, const Part& part) {
 // A row of sentences as a paragraph.
 std::string paragraph(const Table& table, std::size_t row) {
   const auto& cells = table.rows[row];
-  const std::string id = row < table.row_topics.size() ? table.row_topics[row].id : "";
+  const std::string id = row < table.row_topics.size() ? table.row_topics[row].claim : "";
   std::string text =
       fmt::format("{}{}\n", id.empty() ? "" : id + ": ", terminal_text(cells[0].text));
   if (!cells[0].remark.empty()) text += "  " + terminal_text(cells[0].remark) + "\n";
@@ -210,6 +211,18 @@ std::string terminal_section(const Section& section) {
         wrapped((reading.title.empty() ? "" : reading.title + ": ") + terminal_text(reading.text));
   if (!section.lead.empty()) text += wrapped(section.lead);
   return section.is_empty() ? section.otherwise + "\n" : text;
+}
+
+std::string terminal_claim(const Section& claim) {
+  std::string text = wrapped(terminal_text(claim.title)) + "\n";
+  for (const Reading& reading : claim.readings)
+    text += wrapped(fmt::format("{}: {}", reading.title, terminal_text(reading.text)));
+  for (const Plot& plot : claim.plots)
+    text += fmt::format("\n{}\n{}{}", terminal_text(plot.title), text_plot(plot),
+                        wrapped(terminal_text(plot.caption)));
+  text += "\n";
+  for (const Table& table : claim.tables) text += table_text(table);
+  return text + (claim.command.empty() ? "" : fmt::format("To repeat it: {}\n", claim.command));
 }
 
 std::string terminal_table(const Document& document) {

@@ -32,7 +32,12 @@ Real Frame::x(Real value) const {
   return left + width * share_of(value, x_low, x_high);
 }
 
-Real Frame::y(Real value) const { return bottom() - height * share_of(value, y_low, y_high); }
+Real Frame::y(Real value) const {
+  if (is_log_y)
+    return bottom() -
+           height * share_of(std::log(std::max(value, y_low)), std::log(y_low), std::log(y_high));
+  return bottom() - height * share_of(value, y_low, y_high);
+}
 
 std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
   constexpr Real kMost = 8, kFewDoublings = 100;
@@ -54,6 +59,24 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
   return ticks;
 }
 
+namespace {
+
+// 1, 2 and 5 times the powers of ten within two decades, else the powers alone.
+std::vector<Real> heights_of(const Frame& frame) {
+  constexpr Real kNear = 100;
+  if (!frame.is_log_y || frame.y_high > kNear * frame.y_low)
+    return ticks_of(frame.y_low, frame.y_high, frame.is_log_y);
+  std::vector<Real> ticks;
+  for (Real power = std::pow(10.0, std::floor(std::log10(frame.y_low))); power <= frame.y_high;
+       power *= 10)
+    for (const Real digit : {1, 2, 5})
+      if (digit * power >= frame.y_low && digit * power <= frame.y_high)
+        ticks.push_back(digit * power);
+  return ticks;
+}
+
+}  // namespace
+
 std::string x_axis(const Frame& frame, const std::string& label) {
   std::string svg;
   for (const Real tick : ticks_of(frame.x_low, frame.x_high, frame.is_log_x))
@@ -67,7 +90,7 @@ std::string x_axis(const Frame& frame, const std::string& label) {
 
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share) {
   std::string svg;
-  for (const Real tick : ticks_of(frame.y_low, frame.y_high, false)) {
+  for (const Real tick : heights_of(frame)) {
     if (is_share && std::lround(10 * tick) % 2 != 0) continue;
     svg += fmt::format(
         "<path class=grid d=\"M{0:.0f} {1:.1f}H{2:.0f}\"/><text x={3:.0f} y={4:.1f} class=tick "

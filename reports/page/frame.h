@@ -11,7 +11,7 @@ namespace isoline::reports {
 struct Frame {
   Real left = 0, top = 0, width = 0, height = 0;  // on the paper
   Real x_low = 0, x_high = 1, y_low = 0, y_high = 1;
-  bool is_log_x = false;
+  bool is_log_x = false, is_log_y = false;
 
   Real x(Real value) const;  // on the paper; what is outside is put at the edge
   Real y(Real value) const;

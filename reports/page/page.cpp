@@ -117,6 +117,7 @@ std::string html_report(const Document& document) {
       {"profile", profile_html(c)},
       {"details", details_html(c)},
       {"figures", figures_html(document)},
+      {"claims", claims_html(document)},
       {"problems", problems_html(c)},
       {"optimizers", optimizers_html(c)},
       {"data", page_data(document)},

@@ -23,6 +23,7 @@ std::string glance_html(const Comparison& comparison);      // the first screen
 std::string problems_html(const Comparison& comparison);    // one article each
 std::string optimizers_html(const Comparison& comparison);  // one article each
 std::string figures_html(const Document& document);
+std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
 
 // What the charts draw, as JSON that is safe inside a script element.
 std::string page_data(const Document& document);

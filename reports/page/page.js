@@ -194,4 +194,9 @@ document.querySelectorAll('article.problem').forEach(liveProblem);
 document.querySelectorAll('figure.panel').forEach(liveFigure);
 document.querySelectorAll('svg.dots').forEach((plot) => live(plot, () => closeRows(plot)));
 FOLLOWERS.push(hideClaims);
+for (const button of document.querySelectorAll('[data-command]')) {
+  button.hidden = false;
+  button.addEventListener('click', () => copyText(button.dataset.command, button));
+}
 applyView();
+leadToClaims();

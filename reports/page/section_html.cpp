@@ -16,7 +16,7 @@ std::string about(const std::vector<Topic>& topics, std::size_t i) {
   if (topic.problem) attributes += fmt::format(" data-p={}", *topic.problem);
   if (!topic.method.empty())
     attributes += fmt::format(" data-method=\"{}\"", html_text(topic.method));
-  if (!topic.id.empty()) attributes += fmt::format(" id=\"{}\"", html_text(topic.id));
+  if (!topic.claim.empty()) attributes += fmt::format(" data-claim=\"{}\"", html_text(topic.claim));
   return attributes;
 }
 
@@ -41,6 +41,7 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
   if (!cell.note.empty()) tag += fmt::format(" title=\"{}\"", html_text(cell.note));
   std::string text = html_text(cell.text);
   if (align == 'c' && !text.empty()) text = "<code>" + text + "</code>";
+  if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", html_text(cell.link), text);
   if (cell.is_best) text = "<b>" + text + "</b>";
   if (!cell.remark.empty()) text += "<br><small>" + html_text(cell.remark) + "</small>";
   return fmt::format("<{}>{}", tag, text);

@@ -8,6 +8,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/frame.h"
+#include "reports/page/lines_svg.h"
 #include "reports/page/page.h"
 #include "reports/sections/words.h"
 
@@ -209,6 +210,7 @@ Real height_of(const Plot& plot) {
 
 // What the marks of a plot mean, where its rows do not say.
 std::string marks_html(const Plot& plot) {
+  if (plot.kind == Plot::Kind::lines) return lines_legend(plot);
   if (plot.kind != Plot::Kind::dots || plot.rows.empty() || plot.rows[0].topic.optimizer) return "";
   std::string html = "<p class=marks>";
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
@@ -230,6 +232,7 @@ std::string closing_rows(const Plot& plot) {
 }  // namespace
 
 std::string plot_svg(const Plot& plot) {
+  if (plot.kind == Plot::Kind::lines) return lines_svg(plot);
   using Draw = std::string (*)(const Plot&);
   constexpr Draw kDraw[] = {steps_svg, dots_svg, bars_svg, matrix_svg};  // by kind
   return fmt::format(

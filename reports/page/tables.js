@@ -73,9 +73,25 @@ function makeFilter(input, table, output) {
 // A claim is of interest as long as one of its optimizers and one of its problems are.
 function hideClaims() {
   for (const [id, [optimizers, problems]] of Object.entries(DATA.claims)) {
-    const row = document.getElementById(`claim-${id}`), isOf = (kind, all) => all.length === 0 || all.some((index) => isShown(kind, index));
-    if (row !== null) row.hidden = !isOf('s', optimizers) || !isOf('p', problems);
+    const isOf = (kind, all) => all.length === 0 || all.some((index) => isShown(kind, index));
+    for (const place of document.querySelectorAll(`[data-claim="${id}"]`))
+      place.hidden = !isOf('s', optimizers) || !isOf('p', problems);
   }
+}
+
+// A claim that is led to stands open, with its head below the bars.
+function openClaim(address) {
+  const claim = address.startsWith('#claim-') ? document.getElementById(address.slice(1)) : null;
+  if (claim === null) return;
+  claim.open = true;
+  claim.scrollIntoView();
+}
+
+function leadToClaims() {
+  for (const link of document.querySelectorAll('a[href^="#claim-"]'))
+    link.addEventListener('click', () => setTimeout(() => openClaim(link.getAttribute('href'))));
+  addEventListener('hashchange', () => openClaim(location.hash));
+  openClaim(location.hash);
 }
 
 // Rows of an SVG plot move up into the places of those filtered out.

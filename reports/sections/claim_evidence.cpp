@@ -52,13 +52,29 @@ void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_t
   }
 }
 
+// The option of the problems that has the terms' abscissas as its values.
+std::string abscissa_of(const std::vector<Term>& terms, const Json& cells, const ByCell& runs) {
+  const auto problem = [&](std::size_t i) -> const OptionValues& {
+    return runs_of(cells.at(i).at(0), runs).at(0)->request.problem.options;
+  };
+  if (terms.size() < 2 || terms[0].at == terms[1].at) return "";
+  for (const NamedOption& option : problem(0)) {
+    bool is_own = true;
+    for (std::size_t i = 0; i < terms.size() && is_own; ++i)
+      is_own = problem(i).number(option.name, kNever) == terms[i].at;
+    if (is_own) return option.name;
+  }
+  return "";
+}
+
 EvidenceTerm evidence_of_term(const Term& term, const Json& alternatives, const ByCell& runs,
-                              const Place& place) {
+                              const Json& asked, const Place& place) {
   const Chosen chosen = chosen_of(term);
   const Runs all = runs_of(alternatives.at(chosen.alternative), runs);
   const Request& request = all.at(0)->request;
+  const Json& optimizer = asked.at("optimizer");
   EvidenceTerm out{.problem = request.problem.spec,
-                   .optimizer = request.optimizer.spec,
+                   .optimizer = optimizer.is_array() ? optimizer.at(chosen.alternative) : optimizer,
                    .at = term.at,
                    .scale = term.scale,
                    .iteration = place.iteration,
@@ -81,12 +97,14 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
                .band = agreement_of(claim),
                .is_over_time = quantity.value("clock", "") == "seconds"};
   const std::vector<Term> terms = terms_of(claim, cells, runs, iterations);
+  out.abscissa = abscissa_of(terms, cells, runs);
   const Real seconds =
       out.is_over_time ? median_of(equal_seconds(cells, runs, iterations)) : kNever;
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    Place place = place_of(claim, quantity.at("terms").at(i));
+    const Json& asked = quantity.at("terms").at(i);
+    Place place = place_of(claim, asked);
     EvidenceTerm& term =
-        out.terms.emplace_back(evidence_of_term(terms[i], cells.at(i), runs, place));
+        out.terms.emplace_back(evidence_of_term(terms[i], cells.at(i), runs, asked, place));
     const Runs all = runs_of(cells.at(i).at(chosen_of(terms[i]).alternative), runs);
     if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
     if (is_of_a_run(place.column) || all.at(0)->curve.iteration.empty()) continue;
@@ -117,10 +135,10 @@ std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
 }
 
 std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
+  if (sets.empty()) return "";
   const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
-  const bool is_long = deciding != sets.end()
-                           ? deciding->is_long
-                           : std::ranges::all_of(sets, &CellSet::is_long) && !sets.empty();
+  const bool is_long =
+      deciding != sets.end() ? deciding->is_long : std::ranges::all_of(sets, &CellSet::is_long);
   return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
 }
 

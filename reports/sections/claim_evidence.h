@@ -21,7 +21,7 @@ struct EvidenceRun {
 
 // Of several alternatives the one that counts.
 struct EvidenceTerm {
-  std::string problem, optimizer;
+  std::string problem, optimizer;         // the optimizer as the claim writes it
   Real at = 1, scale = 1;                 // its abscissa, and a factor of its figures
   std::optional<std::int64_t> iteration;  // where it is read; none: at the end
   Real read_at = 0;                       // the same on the axis of its curve
@@ -36,6 +36,7 @@ struct Evidence {
   std::string kind, column;   // of the quantity
   Real published = 0;         // of a table: no distance from it
   Agreement band;             // what agrees with that
+  std::string abscissa;       // the option of the problem that is each term's, where there is one
   bool is_over_time = false;  // curves are over seconds of processor time
   std::vector<EvidenceTerm> terms;
   std::vector<PrintedRow> printed;  // of an equality: the figures, and those of the first run

@@ -13,24 +13,6 @@ namespace {
 
 constexpr const char* kNothing = "–";
 
-// What a reader must know beside the figures: what it was held against, why not, and what differs
-// from the source.
-std::string remarks_of(const Judgement& judgement) {
-  std::vector<std::string> parts;
-  if (const auto& contrast = judgement.contrast)
-    parts.push_back(fmt::format("Held against the {}: published {}, measured {}.",
-                                contrast->quantity, contrast->published,
-                                contrast->measured ? figure(contrast->measured->value) : kNothing));
-  if (!judgement.why.empty()) parts.push_back(judgement.why + ".");
-  if (!judgement.survives.empty())
-    parts.push_back(fmt::format("The data could not refute it: {} would come to the same verdict.",
-                                joined(judgement.survives, " and ")));
-  if (judgement.fact != judgement.id)
-    parts.push_back(fmt::format("Counted with {}.", judgement.fact));
-  if (!judgement.caveat.empty()) parts.push_back(judgement.caveat);
-  return joined(parts, " ");
-}
-
 std::string value_text(const Judgement& judgement) {
   return judgement.measured ? figure(judgement.measured->value) : kNothing;
 }
@@ -54,12 +36,19 @@ std::string_view mark_of(Verdict verdict) {
   return kMarks[static_cast<std::size_t>(verdict)];
 }
 
+std::string remarks_of(const Judgement& judgement) {
+  std::vector<std::string> parts;
+  for (const Reading& note : claim_notes(judgement)) parts.push_back(note.text);
+  return joined(parts, " ");
+}
+
 std::vector<TableCell> row_of(const Judgement& judgement) {
   TableCell claim = judgement.sentence;
   claim.note = judgement.quantity;
   claim.remark = judgement.source;
+  claim.link = "#claim-" + judgement.id;
   return {claim,
-          fmt::format("{} {}", mark_of(judgement.verdict), verdict_text(judgement)),
+          marked_verdict(judgement),
           judgement.published,
           value_text(judgement),
           over_seeds(judgement),
@@ -75,6 +64,30 @@ std::string measured_text(const Judgement& judgement) {
   return fmt::format("{}{}, n = {}", value_text(judgement),
                      interval == kNothing ? "" : fmt::format(" ({})", interval),
                      judgement.measured->n);
+}
+
+std::string marked_verdict(const Judgement& judgement) {
+  return fmt::format("{} {}", mark_of(judgement.verdict), verdict_text(judgement));
+}
+
+// What a reader must know beside the figures: what it was held against, why not, and what differs
+// from the source.
+std::vector<Reading> claim_notes(const Judgement& judgement) {
+  std::vector<Reading> notes;
+  if (const auto& contrast = judgement.contrast)
+    notes.push_back({"Contrast", fmt::format("Held against the {}: published {}, measured {}.",
+                                             contrast->quantity, contrast->published,
+                                             contrast->measured ? figure(contrast->measured->value)
+                                                                : kNothing)});
+  if (!judgement.why.empty()) notes.push_back({"Why", judgement.why + "."});
+  if (!judgement.survives.empty())
+    notes.push_back({"Not refutable",
+                     fmt::format("The data could not refute it: {} would come to the same verdict.",
+                                 joined(judgement.survives, " and "))});
+  if (judgement.fact != judgement.id)
+    notes.push_back({"Fact", fmt::format("Counted with {}.", judgement.fact)});
+  if (!judgement.caveat.empty()) notes.push_back({"Caveat", judgement.caveat});
+  return notes;
 }
 
 std::string verdict_text(const Judgement& judgement) {
@@ -117,7 +130,7 @@ Section claims_section(const std::vector<Judgement>& judgements) {
       .align = "plrrrrp"};
   for (const Judgement& judgement : judgements) {
     table.rows.push_back(row_of(judgement));
-    table.row_topics.push_back({.id = "claim-" + judgement.id});
+    table.row_topics.push_back({.claim = judgement.id});
   }
   section.tables.push_back(std::move(table));
   return section;

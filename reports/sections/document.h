@@ -15,6 +15,7 @@ namespace isoline::reports {
 struct Document {
   Comparison comparison;  // of a study that must outlive it
   std::vector<Judgement> claims;
+  std::string out = {};  // the folder that it goes to, where that is known: links start there
   std::string headline;              // "33 optimizers on 16 problems, …"
   std::string statuses;              // "target 3, budget 2"
   std::string incomplete;            // which cells are missing; empty where none is

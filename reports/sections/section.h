@@ -17,7 +17,7 @@ namespace isoline::reports {
 struct Topic {
   std::optional<std::size_t> optimizer = {}, problem = {};  // indices in the comparison
   std::string method = {};  // an optimizer by name, for all settings
-  std::string id = {};      // by which others point at it
+  std::string claim = {};   // by its ID
 };
 
 // The text is the same in every format; the numbers, by what they are, go into report.json.
@@ -32,6 +32,7 @@ struct TableCell {
   Numbers numbers;
   std::string note = {};    // what the page tells who points at it
   std::string remark = {};  // beside the text, in small
+  std::string link = {};    // where the page leads from here
   bool is_best = false;     // of its column
 };
 
@@ -60,6 +61,7 @@ struct Table {
 
 // The part of one optimizer, or of one quantity. Steps: y(x) from each x on, with a band. Dots: x
 // with its interval in the row y. Bars: y in the row x. Matrix: y of the row in the column x.
+// Lines: y(x) from point to point, with a band.
 struct PlotSeries {
   std::optional<std::size_t> optimizer;
   std::string name;
@@ -72,17 +74,18 @@ struct PlotRow {
 };
 
 struct Plot {
-  enum class Kind { steps, dots, bars, matrix };
+  enum class Kind { steps, dots, bars, matrix, lines };
   Kind kind = Kind::steps;
   std::string id, title;
   std::string reading;  // a sentence on this very data
   std::string caption;  // what is drawn, of how many, and how many of them failed
   std::string x_label, y_label;
-  bool is_log_x = false;
+  bool is_log_x = false, is_log_y = false;
   bool is_folded = false;                          // where a format can fold
   std::optional<std::array<Real, 2>> window = {};  // of x; else as wide as the numbers
   std::vector<PlotRow> rows = {};                  // of dots, bars and matrix
   std::vector<PlotSeries> series = {};
+  std::vector<PlotSeries> published = {};  // drawn into lines; of one point: where it is read
 };
 
 struct Reading {
@@ -96,6 +99,7 @@ struct Section {
   std::vector<Reading> readings = {};  // what this data shows, a sentence each
   std::vector<Table> tables = {};
   std::vector<Plot> plots = {};
+  std::string command = {};    // that makes all of it anew
   std::string otherwise = {};  // what the page says where there is nothing
 
   bool is_empty() const { return readings.empty() && tables.empty() && plots.empty(); }

@@ -15,6 +15,7 @@ Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
 Section learned_section(const Comparison& comparison);
 Section claims_section(const std::vector<Judgement>& judgements);
+Section claim_section(const Judgement& judgement);  // one of them whole, with its evidence
 Section properties_section(const std::vector<AuditedOptimizer>& audits);
 Section tuning_section(
     const Comparison& comparison);  // where rates came from, and what they bought
@@ -28,6 +29,8 @@ std::string profile_reading(const Comparison& comparison, std::size_t tolerance)
 std::string curve_reading(const Comparison& comparison, std::size_t problem);
 std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict
 std::string verdict_text(const Judgement& judgement);                  // "partly on 3 seeds"
+std::string marked_verdict(const Judgement& judgement);                // "≈ partly on 3 seeds"
+std::vector<Reading> claim_notes(const Judgement& judgement);          // beside its figures
 std::string measured_text(const Judgement& judgement);                 // "23.4 (18.2–31), n = 3"
 std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);

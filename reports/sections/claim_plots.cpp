@@ -1,0 +1,185 @@
+// Plots of claims: curves over iterations, or figures over an abscissa, and the band of what was
+// published at the place where the quantity is read.
+#include "reports/sections/claim_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+bool has_abscissa(const Evidence& evidence) {
+  return evidence.kind == "slope" || evidence.kind == "crossing";
+}
+
+// A figure that is read at one point: what it should be there.
+PlotSeries goal_at(Real x, Real value, const Agreement& band, Real unit) {
+  return {.optimizer = {},
+          .name = "published",
+          .x = {x},
+          .y = {unit * value},
+          .low = {unit * band.low},
+          .high = {unit * band.high}};
+}
+
+// Where the first of two terms should be, seen from the second: that times the published ratio.
+std::vector<PlotSeries> goals_of(const Evidence& evidence) {
+  const EvidenceTerm& first = evidence.terms.at(0);
+  const std::string& kind = evidence.kind;
+  if (kind == "ratio")
+    return {goal_at(first.read_at, evidence.published, evidence.band, evidence.terms.at(1).level)};
+  if (kind == "value" || kind == "greatest" || kind == "equality")
+    return {goal_at(first.read_at, evidence.published, evidence.band, 1)};
+  return {};  // places and orders are no heights
+}
+
+// One line a term; terms that are the same runs read at several places have one.
+Plot curves(const Evidence& evidence) {
+  Plot plot{.kind = Plot::Kind::lines,
+            .title = evidence.is_over_time ? "Over processor time" : "Over iterations",
+            .x_label = evidence.is_over_time ? "seconds of processor time" : "iterations",
+            .y_label = column_words(evidence.column)};
+  const std::vector<std::string> names = term_names(evidence);
+  for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
+    const EvidenceTerm& term = evidence.terms[i];
+    const bool is_known = std::ranges::any_of(
+        evidence.terms.begin(), evidence.terms.begin() + std::ptrdiff_t(i),
+        [&](const EvidenceTerm& other) {
+          return other.runs.at(0).cell == term.runs.at(0).cell && other.scale == term.scale;
+        });
+    if (!is_known) plot.series.push_back({{}, names[i], term.x, term.y, term.low, term.high});
+  }
+  constexpr Real kLong = 100;
+  const Real end = plot.series.at(0).x.back();
+  plot.is_log_x = end > kLong || evidence.is_over_time;
+  plot.published = goals_of(evidence);
+  plot.caption =
+      "Medians over seeds with the least and the greatest as a band; a run that has ended keeps its "
+      "last figure.";
+  if (!plot.published.empty())
+    plot.caption += evidence.kind == "ratio"
+                        ? " The bar stands where the quantity is read: there the first line should "
+                          "be, seen from the second."
+                        : " The bar stands where the quantity is read: what was published, with "
+                          "its error.";
+  return plot;
+}
+
+PlotSeries over_abscissa(const Evidence& evidence, std::size_t first, std::size_t last) {
+  PlotSeries line{.optimizer = {}, .name = evidence.terms.at(first).optimizer};
+  for (std::size_t i = first; i < last; ++i) {
+    const EvidenceTerm& term = evidence.terms[i];
+    const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
+    line.x.push_back(term.at);
+    line.y.push_back(term.level);
+    line.low.push_back(low.figure);
+    line.high.push_back(high.figure);
+  }
+  return line;
+}
+
+// A power law of the published slope through the middle of the figures, and its steepest and
+// flattest neighbours.
+PlotSeries published_slope(const Evidence& evidence, const PlotSeries& line) {
+  Real mean_x = 0, mean_y = 0;
+  const auto n = static_cast<Real>(line.x.size());
+  for (std::size_t i = 0; i < line.x.size(); ++i) {
+    mean_x += std::log(line.x[i]) / n;
+    mean_y += std::log(line.y[i]) / n;
+  }
+  PlotSeries out{.optimizer = {}, .name = "published"};
+  for (const Real x : {std::log(line.x.front()), mean_x, std::log(line.x.back())}) {
+    const auto at = [&](Real slope) { return std::exp(mean_y + slope * (x - mean_x)); };
+    const Real one = at(evidence.band.low), other = at(evidence.band.high);
+    out.x.push_back(std::exp(x));
+    out.y.push_back(at(evidence.published));
+    out.low.push_back(std::min(one, other));
+    out.high.push_back(std::max(one, other));
+  }
+  return out;
+}
+
+Plot figures_over_abscissa(const Evidence& evidence) {
+  Plot plot{.kind = Plot::Kind::lines,
+            .title = "Over " + (evidence.abscissa.empty() ? "the terms" : evidence.abscissa),
+            .x_label = evidence.abscissa,
+            .y_label = column_words(evidence.column),
+            .is_log_x = true};
+  const std::size_t n = evidence.terms.size();
+  plot.caption = "Medians over seeds with the least and the greatest as a band.";
+  if (evidence.kind == "slope") {
+    plot.series = {over_abscissa(evidence, 0, n)};
+    plot.published = {published_slope(evidence, plot.series[0])};
+    plot.caption +=
+        " Broken: the published slope through the middle of the figures, with its error.";
+    return plot;
+  }
+  plot.series = {over_abscissa(evidence, 0, n / 2), over_abscissa(evidence, n / 2, n)};
+  const Agreement& band = evidence.band;
+  plot.published = {{.optimizer = {},
+                     .name = "published",
+                     .x = {band.low, evidence.published, band.high},
+                     .y = {},
+                     .low = std::vector<Real>(3, 0),
+                     .high = std::vector<Real>(3, kNever)}};
+  plot.caption += " The upright band is where the lines were published to cross.";
+  return plot;
+}
+
+bool is_all(const Evidence& evidence, const std::string EvidenceTerm::*part) {
+  return std::ranges::all_of(evidence.terms, [&](const EvidenceTerm& term) {
+    return term.*part == evidence.terms[0].*part;
+  });
+}
+
+// Logarithmic where all that is drawn is above 0 and spans more than a factor of ten.
+bool is_logarithmic(const Plot& plot) {
+  constexpr Real kWide = 10;
+  Real low = kNever, high = 0;
+  for (const PlotSeries& line : plot.series)
+    for (const Real y : line.y) {
+      if (!std::isfinite(y)) continue;
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  for (const PlotSeries& goal : plot.published)
+    for (const Real y : goal.y) {
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  return low > 0 && high > kWide * low;
+}
+
+}  // namespace
+
+std::vector<std::string> term_names(const Evidence& evidence) {
+  const bool has_abscissa = !evidence.abscissa.empty();  // tells the problems apart
+  const bool one_problem = has_abscissa || is_all(evidence, &EvidenceTerm::problem);
+  const bool one_optimizer = is_all(evidence, &EvidenceTerm::optimizer) && !one_problem;
+  std::vector<std::string> names;
+  for (const EvidenceTerm& term : evidence.terms) {
+    std::string name = one_optimizer ? shown_spec(term.problem) : shown_spec(term.optimizer);
+    if (!one_problem && !one_optimizer) name += " on " + shown_spec(term.problem);
+    if (term.scale != 1) name += fmt::format(", times {}", figure(term.scale));
+    if (has_abscissa) name += fmt::format(", {} = {}", evidence.abscissa, figure(term.at));
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<Plot> claim_plots(const Evidence& evidence, const std::string& id) {
+  if (evidence.terms.empty()) return {};
+  const bool has_curves =
+      std::ranges::none_of(evidence.terms, [](const EvidenceTerm& term) { return term.x.empty(); });
+  if (!has_abscissa(evidence) && (!has_curves || !evidence.printed.empty())) return {};
+  Plot plot = has_abscissa(evidence) ? figures_over_abscissa(evidence) : curves(evidence);
+  plot.id = "plot-" + id;
+  plot.is_log_y = is_logarithmic(plot);
+  return {plot};
+}
+
+}  // namespace isoline::reports

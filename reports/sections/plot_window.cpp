@@ -1,0 +1,65 @@
+// The window of a plot of lines: all medians, and not so much of the bands that these lie flat.
+#include "reports/sections/plot_window.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/statistics/statistics.h"
+
+namespace isoline::reports {
+namespace {
+
+struct Extent {
+  Real low = kNever, high = -kNever;
+  void take(Real value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+Extent extent_of_x(const Plot& plot) {
+  Extent extent;
+  for (const auto* all : {&plot.series, &plot.published})
+    for (const PlotSeries& line : *all)
+      for (const Real x : line.x)
+        if (x > 0 || !plot.is_log_x) extent.take(x);
+  if (!(extent.high > extent.low)) extent = {0, std::max(1.0, 2 * extent.low)};
+  return extent;
+}
+
+Extent extent_of_y(const Plot& plot) {
+  Extent extent;
+  for (const auto* all : {&plot.series, &plot.published})
+    for (const PlotSeries& line : *all)
+      for (const Real y : line.y)
+        if (y > 0 || !plot.is_log_y) extent.take(y);
+  const Extent medians = extent;
+  constexpr Real kFurther = 3;
+  const auto take_edge = [&](Real y) {
+    if (plot.is_log_y && !(y > 0)) return;
+    const Real span = medians.high - medians.low;
+    extent.take(plot.is_log_y ? std::clamp(y, medians.low / kFurther, kFurther * medians.high)
+                              : std::clamp(y, medians.low - span, medians.high + span));
+  };
+  for (const auto* all : {&plot.series, &plot.published})
+    for (const PlotSeries& line : *all) {
+      if (line.y.empty()) continue;
+      for (const Real y : line.low) take_edge(y);
+      for (const Real y : line.high) take_edge(y);
+    }
+  if (extent.low > extent.high) return {0.1, 1};
+  if (plot.is_log_y) return {extent.low / 1.15, 1.15 * extent.high};  // some air
+  const Real air = extent.high > extent.low ? 0.05 * (extent.high - extent.low) : 0.5;
+  return {extent.low - air, extent.high + air};
+}
+
+}  // namespace
+
+Window window_of(const Plot& plot) {
+  const Extent x = extent_of_x(plot), y = extent_of_y(plot);
+  const bool has_start = plot.is_log_x && x.low <= 1;  // iteration 0 is drawn left of the first
+  return {has_start ? x.low / 2 : x.low, x.high, y.low, y.high};
+}
+
+}  // namespace isoline::reports
