@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -65,6 +66,29 @@ TEST(ClaimsOfTheTree, DecideAtLeastTwelveByTheCellsOfTheShortSuites) {
     decided += !shortest.is_long && shortest.requests[0].budget.iterations >= asked;
   }
   EXPECT_GE(decided, 12U);
+}
+
+TEST(ClaimsOfTheTree, CountAFactByTheClaimThatLeadsIt) {
+  std::map<std::string, std::string> facts;
+  for (const Claim& claim : claims()) facts[claim.id] = claim.json->value("fact", claim.id);
+  std::set<std::string> counted;
+  for (const auto& [id, fact] : facts) {
+    ASSERT_TRUE(facts.contains(fact)) << id << " counts with " << fact;
+    EXPECT_EQ(facts.at(fact), fact) << id << " counts with what counts elsewhere";
+    counted.insert(fact);
+  }
+  EXPECT_LT(counted.size(), facts.size());
+}
+
+// A claim that no set of its cells is long enough for could only ever be too short.
+TEST(ClaimsOfTheTree, AreLongEnoughInOneOfTheirSets) {
+  for (const Claim& claim : claims()) {
+    if (!claim.json->contains("length")) continue;
+    const auto needed = claim.json->at("length").at("iterations").get<std::int64_t>();
+    EXPECT_TRUE(std::ranges::any_of(claim.cells, [&](const Claim::Cells& cells) {
+      return cells.requests.at(0).budget.iterations >= needed;
+    })) << claim.id;
+  }
 }
 
 TEST(ClaimsOfTheTree, AllowNoToleranceOfOurOwnChoosing) {
