@@ -108,8 +108,10 @@ std::string text_plot(const Plot& plot) {
   }
   text += fmt::format("{:>10} └", figure(window.y_low));
   for (int i = 0; i < kColumns; ++i) text += "─";
+  const Real first =
+      std::min(window.x_low, plot.series.at(0).x.at(0));  // iteration 0 of logarithms
   const std::string end = fmt::format("{} {}", figure(window.x_high), plot.x_label);
-  text += fmt::format("\n{:>12}{:<{}}{}\n", "", figure(window.x_low),
+  text += fmt::format("\n{:>12}{:<{}}{}\n", "", figure(first),
                       std::max(1, kColumns - static_cast<int>(end.size())), end);
   return text + legend(plot);
 }

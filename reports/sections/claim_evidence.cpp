@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -33,16 +34,31 @@ Runs runs_of(const Json& alternative, const ByCell& runs) {
   return all;
 }
 
+// Kept points of a run, and that among them which is read.
+std::vector<std::size_t> points_of(const Curve& curve, const Place& place) {
+  std::vector<std::size_t> points = thinned(curve.iteration.size(), kPoints);
+  if (!place.iteration) return points;
+  const auto passed =
+      std::ranges::upper_bound(curve.iteration, *place.iteration) - curve.iteration.begin();
+  points.push_back(static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1));
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
 // A run that has ended keeps its last figure.
 void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_time) {
   const Curve& longest = (*std::ranges::max_element(runs, {}, [](const Record* run) {
                            return run->curve.iteration.size();
                          }))->curve;
   place.seconds.reset();
-  for (const std::size_t i : thinned(longest.iteration.size(), kPoints)) {
+  for (const std::size_t i : points_of(longest, place)) {
     place.iteration = longest.iteration[i];
     std::vector<Real> values;
-    for (const Record* run : runs) values.push_back(term.scale * figure_of(*run, place));
+    for (const Record* run : runs) {
+      const Real figure = term.scale * figure_of(*run, place);
+      values.push_back(std::isnan(figure) ? kNever : figure);
+    }
     const auto [low, high] = std::ranges::minmax(values);
     term.x.push_back(is_over_time ? longest.processor_seconds.at(i)
                                   : static_cast<Real>(longest.iteration[i]));
@@ -107,7 +123,9 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
         out.terms.emplace_back(evidence_of_term(terms[i], cells.at(i), runs, asked, place));
     const Runs all = runs_of(cells.at(i).at(chosen_of(terms[i]).alternative), runs);
     if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
-    if (is_of_a_run(place.column) || all.at(0)->curve.iteration.empty()) continue;
+    const bool has_curve =
+        std::ranges::any_of(all, [](const Record* run) { return !run->curve.iteration.empty(); });
+    if (!has_curve || is_of_a_run(place.column)) continue;
     if (place.column == "loss_peak") place.column = "loss";
     add_curve(term, all, place, out.is_over_time);
     const Real end = term.x.back();

@@ -58,7 +58,9 @@ Extent extent_of_y(const Plot& plot) {
 
 Window window_of(const Plot& plot) {
   const Extent x = extent_of_x(plot), y = extent_of_y(plot);
-  const bool has_start = plot.is_log_x && x.low <= 1;  // iteration 0 is drawn left of the first
+  bool has_start = false;  // iteration 0 is drawn left of the first
+  for (const PlotSeries& line : plot.series)
+    has_start = has_start || (plot.is_log_x && !line.x.empty() && line.x.front() <= 0);
   return {has_start ? x.low / 2 : x.low, x.high, y.low, y.high};
 }
 
