@@ -47,6 +47,14 @@ OptionValues option_values_from(const Json& json) {
   return options;
 }
 
+OptionValues without_empty(const OptionValues& options) {
+  OptionValues kept = options;
+  for (const auto& [name, value] : options)
+    if (const auto* text = std::get_if<std::string>(&value); text && text->empty())
+      kept.erase(name);
+  return kept;
+}
+
 Json describe_options(const OptionTable& table) {
   static const char* const kTypes[] = {"number", "integer", "boolean", "text"};
   Json list = Json::array();

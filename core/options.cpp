@@ -49,12 +49,18 @@ class FieldParser {
     if (!value) reject("text");
     const bool is_known = std::ranges::find(field_.choices, *value) != field_.choices.end();
     if (!field_.choices.empty() && !is_known)
-      reject(fmt::format("one of {}", fmt::join(field_.choices, ", ")),
+      reject(fmt::format("one of {}", fmt::join(named_choices(), ", ")),
              nearest_name(*value, field_.choices));
     return *value;
   }
 
  private:
+  // The choice of nothing has no name.
+  Choices named_choices() const {
+    Choices named = field_.choices;
+    std::erase(named, "");
+    return named;
+  }
   Real number() const {
     if (const Real* value = std::get_if<Real>(&given_)) return *value;
     if (const Index* value = std::get_if<Index>(&given_)) return static_cast<Real>(*value);

@@ -4,6 +4,7 @@
 // iteration.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -29,10 +30,14 @@ struct TracePoint {
   // Of learning problems: the means over the batches of the last 64 and 256 steps, each taken
   // before its step; nan elsewhere.
   double batch_loss[2] = {kAbsent, kAbsent}, batch_x_error[2] = {kAbsent, kAbsent};
-  double series[4] = {kAbsent, kAbsent, kAbsent, kAbsent};  // named quantities of the problem
+  // Named quantities of the problem, then of the method.
+  static constexpr int kSeries = 24;
+  double series[kSeries];
 
   static constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
   static constexpr std::int64_t kWindows[2] = {64, 256};
+
+  TracePoint() { std::fill_n(series, kSeries, kAbsent); }
 };
 
 // When the j-th target was first reached: f ≤ f_L + τ_j s.
@@ -45,7 +50,7 @@ struct TraceHit {
 struct Trace {
   static constexpr int kPoints = 512;  // iterations 0-100, then 32 a decade: enough for 1e14
   static constexpr int kInputs = 3, kOutputs = 16;  // largest x and y whose path is kept
-  static constexpr int kSeries = 4;
+  static constexpr int kSeries = TracePoint::kSeries;
   static constexpr int kExhibit = 4096;  // numbers of each array of the exhibit
   static constexpr int kText = 1024;
 

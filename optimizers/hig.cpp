@@ -1,8 +1,10 @@
 // Half-inverse gradients, Schnell, Holl, Thuerey (2022): Δθ = −η V Λ^(−κ) Uᵀ g over the
 // stacked Jacobian J = U Λ Vᵀ and g = ∂L/∂y. κ = 1 is Gauss-Newton, ½ the published method, −1
-// gradient descent. Singular values not above the cut-off, relative to the largest, are discarded.
-// Where the cut-off is far above rounding, by the smaller Gram matrix, whose eigenvalues are σ²:
-// Δθ = −η V Λ^(−κ−1) Vᵀ Jᵀ g from JᵀJ, or −η Jᵀ U Λ^(−κ−1) Uᵀ g from JJᵀ; else by the SVD of J.
+// gradient descent. Singular values not above the cut-off, relative to the largest, are discarded,
+// as published; or, against which the book argues, clamped to it. Where the cut-off is far above
+// rounding, by the smaller Gram matrix, whose eigenvalues are σ²: Δθ = −η V Λ^(−κ−1) Vᵀ Jᵀ g from
+// JᵀJ, or −η Jᵀ U Λ^(−κ−1) Uᵀ g from JJᵀ; else by the SVD of J.
+#include <algorithm>
 #include <cmath>
 
 #include "core/decompose.h"
@@ -17,6 +19,7 @@ constexpr Real kLeastCutoffOfGram = 1e-7;
 
 struct HalfInverse {
   Real rate = 1, kappa = 0.5, cutoff = 1e-6;
+  std::string small;
 
   struct State {
     Linearization at;
@@ -32,8 +35,8 @@ struct HalfInverse {
     f.linearize(theta, s.at);
     s.at.cotangent(s.g);
     const Matrix& J = s.at.jacobian();
-    const bool is_known =
-        cutoff >= kLeastCutoffOfGram ? step_by_gram(J, theta, s) : step_by_svd(J, theta, s);
+    const bool is_by_gram = cutoff >= kLeastCutoffOfGram && small.empty();
+    const bool is_known = is_by_gram ? step_by_gram(J, theta, s) : step_by_svd(J, theta, s);
     if (is_known) return Status::running;
     f.claim("the Jacobian has no singular values in finite numbers");
     return Status::stalled;
@@ -71,6 +74,7 @@ struct HalfInverse {
   }
 
   Real filter(Real sigma, Real largest, Real exponent) const {
+    if (small == "clamp") return std::pow(std::max(sigma, cutoff * largest), -exponent);
     return sigma > cutoff * largest ? std::pow(sigma, -exponent) : 0;
   }
 };
@@ -80,6 +84,7 @@ void fields(HalfInverse& o, auto& field) {
   field("kappa", o.kappa, between(-1, 1), "exponent κ of the inversion");
   field("cutoff", o.cutoff, between(0, 1),
         "singular values up to this share of the largest are discarded");
+  field("small", o.small, Choices{"", "clamp"}, "clamp: they count as the cut-off instead");
 }
 
 }  // namespace
@@ -93,7 +98,8 @@ void register_hig(OptimizerRegistry& registry) {
        .source = "Schnell, Holl, Thuerey (2022)",
        .note =
            "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2). "
-           "By the smaller Gram matrix for cut-offs of 1e-7 and more, else by the SVD of J.",
+           "By the smaller Gram matrix for cut-offs of 1e-7 and more, else, and with small=clamp, by "
+           "the SVD of J.",
        .needs = {Oracle::forward, Oracle::jacobian},
        .most_rank = 2048,
        .tunable = {.option = "rate", .below = 4}}));

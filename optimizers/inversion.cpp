@@ -1,6 +1,8 @@
 // The ways to invert a physics: by its own inverse, by Newton's method, by L-BFGS.
 #include "optimizers/inversion.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/decompose.h"
@@ -10,6 +12,8 @@
 namespace isoline::optimizers {
 namespace {
 
+// The problem's own: x̃ = P⁻¹(y + η (y* − y); x), or x + η (P⁻¹(y*; x) − x) where it does not undo
+// P.
 class ByProblem final : public Inversion {
  public:
   explicit ByProblem(Real step) : step_(step) {}
@@ -63,9 +67,28 @@ struct General {
   bool decompose(const Matrix& H) { return symmetric_eigen(H, eigen); }
 };
 
+// The steps along an eigenvector of curvature S where the slope is g̃, with the sign of g̃.
+struct SaddleFree {
+  Real max_loss_change;
+  Real operator()(Real slope, Real curvature, Real mean) const {
+    return saddle_free_length(slope, curvature, mean, max_loss_change);
+  }
+};
+struct Plain {
+  Real clip, damping;
+  Real operator()(Real slope, Real curvature, Real) const {
+    const Real bend = curvature + damping;
+    if (bend == 0) return 0;
+    const Real length = std::abs(slope / bend);
+    return std::copysign(clip > 0 ? std::min(length, clip) : length, slope);
+  }
+};
+
+// x̃ = x + η U, U the step on ½‖P(x) − y*‖² of that length along each eigenvector of its Hessian.
+template <class Length>
 class ByNewton final : public Inversion {
  public:
-  ByNewton(Real step, Real max_loss_change) : step_(step), max_loss_change_(max_loss_change) {}
+  ByNewton(Real step, Length length) : step_(step), length_(length) {}
 
   void invert(Meter& f, Linearization& at, Matrix& found) override {
     const Index k = at.x().rows();
@@ -97,17 +120,18 @@ class ByNewton final : public Inversion {
       if (!basis.decompose(H)) continue;
       along.noalias() = basis.V.transpose() * slope;
       const Real mean = geometric_mean(basis.S);
-      for (Index i = 0; i < k; ++i)
-        along[i] = saddle_free_length(along[i], basis.S[i], mean, max_loss_change_);
+      for (Index i = 0; i < k; ++i) along[i] = length_(along[i], basis.S[i], mean);
       if (is_finite(along)) found.col(b).noalias() -= step_ * (basis.V * along);
     }
   }
 
-  Real step_, max_loss_change_;
+  Real step_;
+  Length length_;
   Matrix misfit_;  // (m, B) P(x) − y*
   Matrix bend_;    // (k, k·B) Σᵢ (P(x) − y*)ᵢ ∇²Pᵢ
 };
 
+// x̃ = argmin ½‖P(x) − y − η (y* − y)‖² from the current x, by L-BFGS over all samples at once.
 class ByLbfgs final : public Inversion {
  public:
   ByLbfgs(Real step, Index most_evaluations) : step_(step), most_evaluations_(most_evaluations) {}
@@ -140,18 +164,46 @@ class ByLbfgs final : public Inversion {
   Vector flat_;             // (k·B)
 };
 
+bool uses_own_inverse(const InversionOptions& o, Inverse kind) {
+  if (o.inverse == "auto") return kind != Inverse::none;
+  return o.inverse == "analytic" || o.inverse == "damped";
+}
+
 }  // namespace
 
-std::unique_ptr<Inversion> inversion_by_problem(Real step) {
-  return std::make_unique<ByProblem>(step);
+std::unique_ptr<Inversion> make_inversion(const InversionOptions& o, Inverse kind) {
+  if (uses_own_inverse(o, kind)) return std::make_unique<ByProblem>(o.step);
+  if (o.inverse == "newton")
+    return std::make_unique<ByNewton<SaddleFree>>(o.step, SaddleFree{o.max_loss_change});
+  return std::make_unique<ByLbfgs>(o.step, o.inverse_evaluations);
 }
 
-std::unique_ptr<Inversion> inversion_by_newton(Real step, Real max_loss_change) {
-  return std::make_unique<ByNewton>(step, max_loss_change);
+void add_needs(const InversionOptions& o, Inverse kind, OracleSet& needs) {
+  if (uses_own_inverse(o, kind)) {
+    needs.add(Oracle::inverse);
+  } else if (o.inverse == "newton") {
+    needs.add(Oracle::sensitivity);
+    needs.add(Oracle::curvature);
+  } else {
+    needs.add(Oracle::pullback);
+  }
 }
 
-std::unique_ptr<Inversion> inversion_by_lbfgs(Real step, Index most_evaluations) {
-  return std::make_unique<ByLbfgs>(step, most_evaluations);
+std::string objection_to(const InversionOptions& o, const Problem& problem) {
+  if (o.inverse == "damped" && problem.inverse_kind() != Inverse::damped)
+    return "inverse=damped, and the physics has an inverse, but not a damped one";
+  return o.inverse == "newton" ? objection_to_newton(problem, "inverse=newton") : "";
+}
+
+std::unique_ptr<Inversion> inversion_by_plain_newton(Real clip, Real damping) {
+  return std::make_unique<ByNewton<Plain>>(1, Plain{clip, damping});
+}
+
+std::string objection_to_newton(const Problem& problem, std::string_view what) {
+  constexpr Index kMostInputs = 8;
+  if (problem.inputs() <= kMostInputs) return "";
+  return fmt::format("{} is for up to {} inputs of the physics, which has {}", what, kMostInputs,
+                     problem.inputs());
 }
 
 }  // namespace isoline::optimizers

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <string_view>
 
+#include "core/options.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
@@ -14,14 +17,34 @@ class Inversion {
   virtual void invert(Meter& f, Linearization& at, Matrix& found) = 0;  // found: x̃, (k, B)
 };
 
-// The problem's own: x̃ = P⁻¹(y + η (y* − y); x), or x + η (P⁻¹(y*; x) − x) where it does not undo
-// P.
-std::unique_ptr<Inversion> inversion_by_problem(Real step);
+// Which, and how: the options that all methods share that invert the physics.
+struct InversionOptions {
+  Real step = 1, max_loss_change = 0.2;
+  std::string inverse = "auto";
+  Index inverse_evaluations = 200;
+};
 
-// x̃ = x + η U, U the saddle-free Newton step on ½‖P(x) − y*‖² (saddle_free.h).
-std::unique_ptr<Inversion> inversion_by_newton(Real step, Real max_loss_change);
+inline void fields(InversionOptions& o, auto& field) {
+  field("step", o.step, above(0), "step length η toward y*");
+  field("inverse", o.inverse, Choices{"auto", "analytic", "damped", "newton", "lbfgs"},
+        "local inverse: the problem's own, which damped asks to be a damped one; a saddle-free "
+        "Newton step; or L-BFGS; auto: the problem's own where there is one, else L-BFGS");
+  field("max-loss-change", o.max_loss_change, above(0),
+        "of inverse=newton: limit Δ on the linear change of a sample's loss along a direction of "
+        "low or negative curvature");
+  field("inverse-evaluations", o.inverse_evaluations, between(1, 1e6),
+        "of inverse=lbfgs: most evaluations in a step");
+}
 
-// x̃ = argmin ½‖P(x) − y − η (y* − y)‖² from the current x, by L-BFGS over all samples at once.
-std::unique_ptr<Inversion> inversion_by_lbfgs(Real step, Index most_evaluations);
+std::unique_ptr<Inversion> make_inversion(const InversionOptions& options, Inverse kind);
+void add_needs(const InversionOptions& options, Inverse kind, OracleSet& needs);
+// Why it can't treat a problem, in words; empty if it can.
+std::string objection_to(const InversionOptions& options, const Problem& problem);
+
+// x̃ = x − V diag(sign(g̃ᵢ) lᵢ) Vᵀ, lᵢ = |g̃ᵢ/(Sᵢ + μ)|, at most `clip` where that is not 0: Newton's
+// step on ½‖P(x) − y*‖² against the gradient, with H = V diag(S) Vᵀ and g̃ = Vᵀ∇L.
+std::unique_ptr<Inversion> inversion_by_plain_newton(Real clip, Real damping);
+// Of a Newton's step, named `what`: it is for few inputs of the physics.
+std::string objection_to_newton(const Problem& problem, std::string_view what);
 
 }  // namespace isoline::optimizers

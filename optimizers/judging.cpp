@@ -169,7 +169,7 @@ void Meter::measure(VectorRef theta) {
   const Series& series = problem_.series();
   if (series.names.empty()) return;
   Vector values(static_cast<Index>(series.names.size()));
-  series.evaluate(judged_, values);
+  series.evaluate(problem_, theta, judged_, values);
   std::copy_n(values.data(), values.size(), last.series);
 }
 

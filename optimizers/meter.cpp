@@ -28,7 +28,7 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
       stall_loss_(std::numeric_limits<Real>::max()) {
   trace_.prices = prices_;
   trace_.is_learned = problem.is_learned();
-  set_text(trace_.series_names, fmt::format("{}", fmt::join(problem.series().names, "\n")));
+  name_series({});
   trace_.aim = problem.aim();
   trace_.minimum = problem.minimum().value_or(std::nan(""));
   const bool is_small = problem.inputs() <= Trace::kInputs &&
@@ -72,6 +72,19 @@ void Meter::refuse(Oracle oracle) const {
 }
 
 void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
+
+void Meter::name_series(const std::vector<std::string>& names) {
+  std::vector<std::string> all = problem_.series().names;
+  all.insert(all.end(), names.begin(), names.end());
+  const std::string text = fmt::format("{}", fmt::join(all, "\n"));
+  require(all.size() <= Trace::kSeries && text.size() < Trace::kText,
+          "there are more series than there is room for");
+  set_text(trace_.series_names, text);
+}
+
+void Meter::note(std::size_t which, Real value) {
+  trace_.last.series[problem_.series().names.size() + which] = value;
+}
 
 void Meter::reach(Real loss) {
   if (!std::isfinite(loss)) return;

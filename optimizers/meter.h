@@ -82,6 +82,10 @@ class Meter {
   Status status() const { return status_; }
   void reject_step() { ++trace_.rejected_steps; }
   void claim(std::string_view words);  // what a library says of its own success
+  // Quantities of the method's own, traced at kept iterations as the problem's are: named once,
+  // when the method starts, and noted as often as they change.
+  void name_series(const std::vector<std::string>& names);
+  void note(std::size_t which, Real value);
 
   // --- for the harness
   Status begin(VectorRef theta);

@@ -97,7 +97,9 @@ struct OptimizerEntry {
   Index most_rank = std::numeric_limits<Index>::max();
   OptionTable options = {};
   Tunable tunable = {};
-  bool in_all = true;     // whether `*` of a suite means it: not where an argument is required
+  // Whether `*` of a suite means it: not where an argument is required, nor what is a variant of
+  // another for one experiment.
+  bool in_all = true;
   std::string file = {};  // that registers it, as the registry saw it
   // All it needs, where that depends on the options or the problem; `needs` is then the least.
   std::function<OracleSet(const OptionValues& options, const Problem&)> needs_for = {};

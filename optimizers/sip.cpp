@@ -1,11 +1,9 @@
-// Scale-invariant physics training, Holl, Koltun, Thuerey (2022), algorithm 1: pull the target back
+// Scale-invariant physics training, Holl, Koltun, Thuerey (2022), Fig. 3: pull the target back
 // through the physics by its local inverse, x̃ = P⁻¹(y + Δy; x) with Δy = η (y* − y), then take a
 // step of the network's optimizer on (1/B) Σ ½‖x − x̃‖², x̃ held. With the identity network and unit
 // rates it is x ← x̃, the inverse-simulator update. Several steps of the inversion may be taken for
-// one of the network, each from the x̃ of the last, and several of the network for one x̃ (theorem
-// 3).
-#include <fmt/format.h>
-
+// one of the network, each from the x̃ of the last, and several of the network for one x̃; as many
+// as the paper's theorem 3 asks for are those of sip-theorem-3.
 #include "optimizers/inversion.h"
 #include "optimizers/network_descent.h"
 
@@ -13,36 +11,17 @@ namespace isoline::optimizers {
 namespace {
 
 struct Options {
-  Real step = 1, max_loss_change = 0.2;
-  std::string inverse = "auto", network_optimizer = "auto", proxy = "l2";
-  Index inverse_evaluations = 200, inner_steps = 1, network_steps = 1;
+  InversionOptions inversion;
+  std::string network_optimizer = "auto", proxy = "l2";
+  Index inner_steps = 1, network_steps = 1;
 };
 
 void fields(Options& o, auto& field) {
-  field("step", o.step, above(0), "step length η toward y*");
-  field("inverse", o.inverse, Choices{"auto", "analytic", "damped", "newton", "lbfgs"},
-        "local inverse: the problem's own, which damped asks to be a damped one; a saddle-free "
-        "Newton step; or L-BFGS; auto: the problem's own where there is one, else L-BFGS");
+  fields(o.inversion, field);
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
   field("proxy", o.proxy, Choices{"l2", "l1"}, "proxy loss: ½‖x − x̃‖² or Σ|x − x̃|");
   field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion an update");
   field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
-  field("max-loss-change", o.max_loss_change, above(0),
-        "of inverse=newton: limit Δ on the linear change of a sample's loss along a direction of "
-        "low or negative curvature");
-  field("inverse-evaluations", o.inverse_evaluations, between(1, 1e6),
-        "of inverse=lbfgs: most evaluations in a step");
-}
-
-bool uses_own_inverse(const Options& o, Inverse kind) {
-  if (o.inverse == "auto") return kind != Inverse::none;
-  return o.inverse == "analytic" || o.inverse == "damped";
-}
-
-std::unique_ptr<Inversion> make_inversion(const Options& o, Inverse kind) {
-  if (uses_own_inverse(o, kind)) return inversion_by_problem(o.step);
-  if (o.inverse == "newton") return inversion_by_newton(o.step, o.max_loss_change);
-  return inversion_by_lbfgs(o.step, o.inverse_evaluations);
 }
 
 class Sip final : public Optimizer {
@@ -51,7 +30,7 @@ class Sip final : public Optimizer {
       : options_(options), descent_(registry, options.network_optimizer) {}
 
   void start(Meter& f, const Vector&) override {
-    inversion_ = make_inversion(options_, f.inverse_kind());
+    inversion_ = make_inversion(options_.inversion, f.inverse_kind());
     descent_.start(f);
   }
 
@@ -81,29 +60,14 @@ class Sip final : public Optimizer {
   Matrix found_;  // (k, B) x̃
 };
 
-OracleSet needs_for(const OptionValues& given, const Problem& problem) {
-  const auto options = read_options<Options>(given);
+OracleSet needs_for(const OptionValues& options, const Problem& problem) {
   OracleSet needs{Oracle::forward, Oracle::network};
-  if (uses_own_inverse(options, problem.inverse_kind())) {
-    needs.add(Oracle::inverse);
-  } else if (options.inverse == "newton") {
-    needs.add(Oracle::sensitivity);
-    needs.add(Oracle::curvature);
-  } else {
-    needs.add(Oracle::pullback);
-  }
+  add_needs(read_options<Options>(options).inversion, problem.inverse_kind(), needs);
   return needs;
 }
 
-std::string objection(const OptionValues& given, const Problem& problem) {
-  constexpr Index kMostInputs = 8;
-  const std::string inverse = read_options<Options>(given).inverse;
-  if (inverse == "damped" && problem.inverse_kind() != Inverse::damped)
-    return "inverse=damped, and the physics has an inverse, but not a damped one";
-  if (inverse == "newton" && problem.inputs() > kMostInputs)
-    return fmt::format("inverse=newton is for up to {} inputs of the physics, which has {}",
-                       kMostInputs, problem.inputs());
-  return "";
+std::string objection(const OptionValues& options, const Problem& problem) {
+  return objection_to(read_options<Options>(options).inversion, problem);
 }
 
 }  // namespace
@@ -113,7 +77,7 @@ void register_sip(OptimizerRegistry& registry) {
                 .title = "Scale-invariant physics",
                 .family = Family::inversion,
                 .formula = "x̃ = P⁻¹(y + η (y* − y); x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
-                .source = "Holl, Koltun, Thuerey (2022), algorithm 1",
+                .source = "Holl, Koltun, Thuerey (2022), Fig. 3",
                 .note =
                     "The inverse is the problem's own, a saddle-free Newton step with exact second "
                     "derivatives, or found by L-BFGS; where it is damped or an estimate, x̃ = x + "

@@ -147,6 +147,31 @@ class Examination {
         "rounding, amplified by the condition of P⁻¹");
   }
 
+  // What is promised of a damped inverse: nothing where there is nothing to do, never a step away
+  // from y*, and P undone where the data carry evidence, as they do of an input that P has smoothed
+  // before.
+  void damped_inverse() {
+    if (problem_.inverse_kind() != Inverse::damped) return;
+    Matrix x(problem_.inputs(), problem_.samples());
+    problem_.local_inverse(at_.y, x, at_);
+    add("the damped inverse stays where y is reached",
+        relative((x - at_.x()).norm(), at_.x().norm()), 1e-12, kRounding);
+    problem_.local_inverse(problem_.target(), x, at_);
+    Point moved;
+    problem_.physics_forward(x, problem_.batch(), moved);
+    const Real before = (at_.y - problem_.target()).norm();
+    add("the damped inverse brings y no farther from y*",
+        (moved.y - problem_.target()).norm() / before - 1, 1e-12, kRounding);
+    const Matrix wanted = smoothed();
+    Point reached, nowhere;
+    problem_.physics_forward(wanted, problem_.batch(), reached);
+    problem_.physics_forward(Matrix::Zero(wanted.rows(), wanted.cols()), problem_.batch(), nowhere);
+    problem_.local_inverse(reached.y, x, nowhere);
+    add("the damped inverse undoes P on what P has smoothed",
+        relative((x - wanted).norm(), wanted.norm()), 1e-3,
+        "modes as weak as the noise it assumes are held back, and they are a small part");
+  }
+
   void solution() {
     Point start;
     problem_.forward(problem_.start(), start);
@@ -184,6 +209,18 @@ class Examination {
         .reshaped(problem_.outputs(), problem_.samples());
   }
   Vector near_start() { return near(problem_.start(), problem_.start_scale(), stream_); }
+
+  // (PᵀP)³ of noise of 0.1
+  Matrix smoothed() {
+    Matrix x = 0.1 * stream_.normal_vector(problem_.inputs() * problem_.samples())
+                         .reshaped(problem_.inputs(), problem_.samples());
+    Point at;
+    for (int i = 0; i < 3; ++i) {
+      problem_.physics_forward(x, problem_.batch(), at);
+      problem_.physics_pullback(at.y, x, at);
+    }
+    return x;
+  }
 
   Matrix push(VectorRef v) {
     Matrix Jv(problem_.outputs(), problem_.samples());
@@ -243,6 +280,7 @@ std::vector<Finding> examine(const Problem& problem, RandomStream& stream) {
     examination.hessian();
   }
   examination.inverse();
+  examination.damped_inverse();
   examination.solution();
   return examination.findings;
 }

@@ -1,6 +1,8 @@
 // P(x) = eˣ, component by component: targets that span orders of magnitude. Holl, Koltun, Thuerey
 // (2022), Fig. 2, which learns the inverse over x* = −12u, u ~ U[0, 1); here one x* of that law is
 // sought from x = 0. Seed 0 takes its quantiles x*ᵢ = −12 (i + ½)/n, so y* = e⁻⁶ for n = 1.
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "problems/learning.h"
@@ -58,6 +60,25 @@ class Exponential final : public Physics {
 
 constexpr Real kSpan = -12;  // y* falls to e⁻¹²
 
+constexpr std::array kDecades = {
+    "error in x, y* from 0.1 to 1",     "error in x, y* from 1e-2 to 1e-1",
+    "error in x, y* from 1e-3 to 1e-2", "error in x, y* from 1e-4 to 1e-3",
+    "error in x, y* from 1e-5 to 1e-4", "error in x, y* below 1e-5"};
+
+// Mean |x − x*| by decade of y*; not-a-number where a decade has no sample.
+void errors_by_decade(const Problem&, VectorRef, Point& at, VectorOut values) {
+  const auto last = static_cast<Index>(kDecades.size()) - 1;
+  Vector counts = Vector::Zero(last + 1);
+  values.setZero();
+  for (Index i = 0; i < at.x().size(); ++i) {
+    const Real target = at.batch->target.reshaped()[i];
+    const Index decade = std::clamp<Index>(static_cast<Index>(-std::log10(target)), 0, last);
+    values[decade] += std::abs(at.x().reshaped()[i] - at.batch->truth.reshaped()[i]);
+    ++counts[decade];
+  }
+  values.array() /= counts.array();
+}
+
 // x* = −12u, u ~ U[0, 1); the network sees y* as it is.
 ProblemParts learn_exponential(const Options& o, const Draw& draw) {
   const auto sample = [](RandomStream& stream, Index b, Batch& batch) {
@@ -68,10 +89,12 @@ ProblemParts learn_exponential(const Options& o, const Draw& draw) {
   const auto mean_error = [](BatchRef x, const Batch& batch) {
     return (x - batch.truth).cwiseAbs().mean();
   };
-  return learn(o.learning, {.inputs = o.n, .outputs = o.n}, draw,
-               {.physics = std::make_unique<Exponential>(o.n),
-                .x_error = mean_error,
-                .samples = {.draw = sample}});
+  return learn(
+      o.learning, {.inputs = o.n, .outputs = o.n}, draw,
+      {.physics = std::make_unique<Exponential>(o.n),
+       .x_error = mean_error,
+       .samples = {.draw = sample},
+       .series = {.names = {kDecades.begin(), kDecades.end()}, .evaluate = errors_by_decade}});
 }
 
 ProblemParts make_exponential(const Options& o, const Draw& draw) {

@@ -172,7 +172,17 @@ void register_heat(ProblemRegistry& registry) {
            "1e-8. Its error from exact data and x = 0 is the floor under the error in x.",
        .aim = Aim::x,  // P is one to one; how far the data give x back is the floor
        .panels = {{.title = "Fig. 6d: learning curves", .kind = "curve"},
-                  {.title = "Fig. 6c: one sample of the validation", .kind = "pictures"}}},
+                  {.title = "Fig. 6c: one sample of the validation", .kind = "pictures"},
+                  {.title = "Detail in the gradient (watch=spectrum): share of its power at wave "
+                            "numbers from 0.1 to 0.2 cycles a cell",
+                   .kind = "series",
+                   .quantity = "spectrum of ∂L/∂x, 0.1 < k ≤ 0.2"},
+                  {.title = "Detail in the update U of SIP, likewise",
+                   .kind = "series",
+                   .quantity = "spectrum of U, 0.1 < k ≤ 0.2"},
+                  {.title = "Detail in what is missing, x* − x, likewise",
+                   .kind = "series",
+                   .quantity = "spectrum of x* − x, 0.1 < k ≤ 0.2"}}},
       make_heat));
 }
 

@@ -1,15 +1,18 @@
-// The toy of half-inverse gradients, Schnell, Holl, Thuerey (2022), section 3: a network t ↦ x of
-// seven tanh neurons fits ŷ(t) = (sin 6t, cos 9t) for t ∈ [−1, 1] by ½(x₁ − ŷ₁)² + ½(λx₂ − ŷ₂)².
-// The plotted state is (x₁, λx₂), so λ is the physics, P(x) = (x₁, λx₂), and J carries it: at λ =
-// 0.01 the network must reach 100. With x₁ exact and x₂ = 0 the loss is ½⟨cos² 9t⟩ = 0.2395. Batch,
-// start and number of samples are not published: 256 fixed samples, Glorot's start. The traced
-// series are those of the figure: mean and spread of the hidden neurons over the validation, and y
-// at the t nearest π/9, whose target is (0.87, −1).
+// The toy of half-inverse gradients, Schnell, Holl, Thuerey (2022), as drawn in the
+// Physics-based Deep Learning book: a network t ↦ x of seven tanh neurons fits ŷ(t) = (sin 6t, cos
+// 9t) for t ∈ [−1, 1] by ½(x₁ − ŷ₁)² + ½(λx₂ − ŷ₂)². The plotted state is (x₁, λx₂), so λ is the
+// physics, P(x) = (x₁, λx₂), and J carries it: at λ = 0.01 the network must reach 100. With x₁
+// exact and x₂ = 0 the loss is ½⟨cos² 9t⟩ = 0.2395. Batch, start and number of samples are not
+// published: 256 fixed samples, Glorot's start. The traced series are those of the figure: mean and
+// spread of the hidden neurons over the validation, of all together and of each, and y at the t
+// nearest π/9, whose target is (0.87, −1).
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "problems/dense_physics.h"
 #include "problems/learning.h"
+#include "problems/watches.h"
 
 namespace isoline::problems {
 namespace {
@@ -46,15 +49,42 @@ class Scaled final : public DensePhysics {
 
 Vector curve(Real t) { return Eigen::Vector2d(std::sin(6 * t), std::cos(9 * t)); }
 
-// Mean and spread of the hidden neurons, and y at the sample nearest π/9.
-void watch(const Network& network, Point& at, VectorOut values) {
+constexpr Index kShownNeurons = 7;  // as many as the published network has
+
+// Mean and spread of the hidden neurons, and y at the sample nearest π/9. A neuron of spread 0 has
+// the same value for every t: it is saturated, and gives the network no more than a bias. The mean
+// over all neurons can't show that: some saturate at 1 and others at −1.
+void watch(const Problem& problem, Point& at, VectorOut values) {
+  constexpr Real kSaturated = 0.01;  // spread, of values between −1 and 1
   std::vector<LayerFactor> layers;
-  network.layer_factors(Matrix::Zero(2, at.y.cols()), layers, at.network);
+  problem.network().layer_factors(Matrix::Zero(2, at.y.cols()), layers, at.network);
   const Matrix& hidden = layers.back().inputs;
+  const Vector means = hidden.rowwise().mean();
+  const Vector spreads =
+      (hidden.colwise() - means).array().square().rowwise().mean().sqrt().matrix();
   const Real mean = hidden.mean();
   Index nearest = 0;
   (at.batch->input.row(0).array() - std::numbers::pi / 9).abs().minCoeff(&nearest);
-  values << mean, std::sqrt((hidden.array() - mean).square().mean()), at.y.col(nearest);
+  values.head(4) << mean, std::sqrt((hidden.array() - mean).square().mean()), at.y.col(nearest);
+  values[4] = static_cast<Real>((spreads.array() < kSaturated).count());
+  const Index shown = (values.size() - 5) / 2;
+  values.segment(5, shown) = means.head(shown);
+  values.tail(shown) = spreads.head(shown);
+}
+
+Series series_of(const Network& network) {
+  Index neurons = 0;
+  for (const networks::Block& block : network.layout())
+    if (block.kind == networks::Block::Kind::weight) neurons = block.columns;  // of the last layer
+  Series series{.names = {"mean of the hidden neurons", "spread of the hidden neurons",
+                          "y1 at t = π/9", "y2 at t = π/9", "saturated neurons"},
+                .evaluate = [](const Problem& problem, VectorRef, Point& at, VectorOut values) {
+                  watch(problem, at, values);
+                }};
+  for (const char* of : {"mean of neuron ", "spread of neuron "})
+    for (Index i = 1; i <= std::min(neurons, kShownNeurons); ++i)
+      series.names.push_back(of + std::to_string(i));
+  return series;
 }
 
 ProblemParts make_hig_toy(const Options& o, const Draw& draw) {
@@ -72,11 +102,7 @@ ProblemParts make_hig_toy(const Options& o, const Draw& draw) {
                               .x_error = distance,
                               .samples = {.draw = sample}});
   if (!parts.network->has_layer_factors()) return parts;
-  parts.series = {.names = {"mean of the hidden neurons", "spread of the hidden neurons",
-                            "y1 at t = π/9", "y2 at t = π/9"},
-                  .evaluate = [network = parts.network.get()](Point& at, VectorOut values) {
-                    watch(*network, at, values);
-                  }};
+  parts.series = joined(std::move(parts.series), series_of(*parts.network));
   return parts;
 }
 
@@ -87,7 +113,7 @@ void register_hig_toy(ProblemRegistry& registry) {
       {.name = "hig-toy",
        .title = "Toy of half-inverse gradients",
        .formula = "x = N(t; θ),  P(x) = (x₁, λx₂),  y*(t) = (sin 6t, cos 9t)",
-       .source = "Schnell, Holl, Thuerey (2022), section 3",
+       .source = "Schnell, Holl, Thuerey (2022), toy example, as drawn in the book",
        .note = "The published batch, start and rates are unknown: 256 fixed samples of t and "
                "Glorot's start are ours.",
        .aim = Aim::loss,  // a curve is fitted: nobody asks for an x
@@ -97,6 +123,7 @@ void register_hig_toy(ProblemRegistry& registry) {
                   {.title = "Spread of the hidden neurons",
                    .kind = "series",
                    .quantity = "spread of the hidden neurons"},
+                  {.title = "Saturated neurons", .kind = "series", .quantity = "saturated neurons"},
                   {.title = "Path of y at t = π/9",
                    .kind = "path",
                    .quantity = "y1 at t = π/9|y2 at t = π/9"}}},

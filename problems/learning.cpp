@@ -1,6 +1,8 @@
 // Learning problems from their options.
 #include "problems/learning.h"
 
+#include "problems/watches.h"
+
 namespace isoline::problems {
 
 using networks::make_network;
@@ -17,6 +19,12 @@ ProblemParts learn(const Learning& options, const NetworkShape& shape, const Dra
   parts.samples.batch = options.batch;
   parts.samples.data = options.data;
   parts.samples.stream = [draw](std::string_view purpose) { return draw.stream(purpose); };
+  if (shape.grid > 0) parts.series = joined(std::move(parts.series), half_squared_error());
+  if (options.watch == "noise") parts.series = joined(std::move(parts.series), batch_noise());
+  if (options.watch == "spectrum") {
+    require(shape.grid > 0, "watch=spectrum is for samples that are grids");
+    parts.series = joined(std::move(parts.series), spectrum(shape.grid));
+  }
   return parts;
 }
 

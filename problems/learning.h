@@ -11,7 +11,7 @@
 namespace isoline::problems {
 
 struct Learning {
-  std::string mode = "direct", network = "mlp";
+  std::string mode = "direct", network = "mlp", watch;
   Index batch = 100, data = 0;
 
   bool is_on() const { return mode == "learn"; }
@@ -23,13 +23,16 @@ inline void fields(Learning& o, auto& field) {
   field("batch", o.batch, between(1, 1e6), "samples drawn anew for each step of mode=learn");
   field("data", o.data, between(0, 1e6),
         "0: fresh samples each step; N: the same N samples at every step of mode=learn");
+  field("watch", o.watch, {"", "noise", "spectrum"},
+        "what mode=learn traces besides: noise: of gradients between batches; spectrum: of grids, "
+        "the share of power by wave number");
 }
 
 // The published error of grids: |x − x*| summed over cells, the mean over samples.
 Real summed_error(BatchRef x, const Batch& batch);
 
 // Adds what learning needs to parts that hold the physics, `samples.draw` and the error in x: the
-// network of that shape, its start, and the streams. The network sees Batch::input.
+// network of that shape, its start, the streams, and the series. The network sees Batch::input.
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,
                    ProblemParts parts);
 

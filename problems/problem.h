@@ -39,10 +39,14 @@ struct Point {
   const Matrix& x() const { return physics.x; }  // (k, B)
 };
 
-// Named quantities of a problem at (θ, its forward pass), traced at kept iterations.
+class Problem;
+
+// Named quantities of a problem at θ and the forward pass there over the samples that judge, traced
+// at kept iterations.
 struct Series {
   std::vector<std::string> names = {};
-  std::function<void(Point& at, VectorOut values)> evaluate = {};
+  std::function<void(const Problem& problem, VectorRef theta, Point& at, VectorOut values)>
+      evaluate = {};
 };
 
 // What the tenth is taken of by which starts are drawn around the standard one: max(1, |θᵢ|), or
@@ -85,7 +89,7 @@ struct ProblemParts {
   std::function<Real(const Batch& batch)> x_floor;
   Samples samples = {};
   Index grid = 0;      // N where x and y are N×N grids, for pictures
-  Series series = {};  // further quantities to be traced, at most four
+  Series series = {};  // further quantities to be traced, at most Trace::kSeries
   // Where to draw the landscape of a two-dimensional problem: low and high corner in x.
   std::optional<std::array<Real, 4>> window;    // x1 low, x1 high, x2 low, x2 high
   std::optional<std::array<Real, 4>> y_window;  // of y; what the window maps into where empty

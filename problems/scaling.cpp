@@ -1,6 +1,7 @@
 // P(x) = (x1, α x2), y* = 0: nothing but a change of units. A method invariant under linear maps of
-// x takes the same path in y for every α; the start is P⁻¹(3, 3), as in Holl, Koltun, Thuerey
-// (2022), Fig. 1, so that all α share it.
+// x takes the same path in y for every α. Thuerey et al., Physics-based Deep Learning, chapter
+// "Scale-Invariance and Inversion"; the start P⁻¹(3, 3), which all α share, is ours. The book's
+// loss is |P|², ours by default half of that, as of all problems here; loss=square is the book's.
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
 
@@ -9,9 +10,11 @@ namespace {
 
 struct Options {
   Real alpha = 0.1;
+  std::string loss;
 };
 void fields(Options& o, auto& field) {
   field("alpha", o.alpha, between(1e-3, 1e3), "scale α of the second coordinate");
+  field("loss", o.loss, {"", "square"}, "square: ‖P(x)‖², as in the book, instead of half of it");
 }
 
 class Scaling final : public DensePhysics {
@@ -42,6 +45,7 @@ ProblemParts make_scaling(const Options& o, const Draw& draw) {
   return {.physics = std::move(physics),
           .start = draw.start(x0),
           .target = Vector::Zero(2),
+          .loss = std::make_unique<HalfSquared>(o.loss == "square" ? 2 : 1),
           .minimum = 0,
           .truth = Vector::Zero(2),
           .x_error = [](BatchRef x, const Batch&) { return x.norm(); },
@@ -54,7 +58,10 @@ void register_scaling(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "scaling",
                               .title = "One scaled coordinate",
                               .formula = "P(x) = (x₁, αx₂),  L = ½‖P(x)‖²",
-                              .source = "After Holl, Koltun, Thuerey (2022), Fig. 1",
+                              .source = "Thuerey et al., Physics-based Deep Learning, chapter "
+                                        "Scale-Invariance and Inversion",
+                              .note = "The book's loss is |P|², loss=square here; by default it "
+                                      "is half of that, and what η does there 2η does here.",
                               .aim = Aim::x},  // P is one to one
                              make_scaling));
 }

@@ -44,7 +44,11 @@ Described described(const Catalog& catalog, const Spec& spec) {
 }
 
 std::string law_of(const OptionField& field) {
-  if (!field.choices.empty()) return fmt::format("{}", fmt::join(field.choices, "|"));
+  if (!field.choices.empty()) {
+    Choices named = field.choices;
+    std::erase(named, "");  // a choice of nothing has no name
+    return fmt::format("{}", fmt::join(named, "|"));
+  }
   const bool is_number =
       std::holds_alternative<Real>(field.standard) || std::holds_alternative<Index>(field.standard);
   return is_number ? text_of(field.range) : "";

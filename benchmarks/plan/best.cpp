@@ -53,8 +53,9 @@ Json BestLosses::to_json() const {
 }
 
 std::size_t BestLosses::place_of(const Component& problem) const {
+  const OptionValues named = without_empty(problem.options);
   const auto row = std::ranges::find_if(rows_, [&](const Row& each) {
-    return each.problem == problem.name && each.options == problem.options;
+    return each.problem == problem.name && each.options == named;
   });
   return static_cast<std::size_t>(row - rows_.begin());
 }
@@ -79,7 +80,7 @@ bool BestLosses::add(const Record& record) {
   if (!std::isfinite(loss) || record.status == Status::inapplicable) return false;
   const Component& problem = record.request.problem;
   const std::size_t place = place_of(problem);
-  if (place == rows_.size()) rows_.push_back({problem.name, problem.options, {}});
+  if (place == rows_.size()) rows_.push_back({problem.name, without_empty(problem.options), {}});
   const auto [known, is_new] = rows_[place].losses.try_emplace(record.request.seed);
   if (!is_new && known->second.loss <= loss) return false;
   known->second = {loss, record.request.optimizer.spec};

@@ -18,9 +18,9 @@ CellNames::CellNames(const Request& request) {
   Form<Budget>::write(request.budget, JsonPlace(budget));
   const Json shared{{"budget", std::move(budget)},
                     {"optimizer", request.optimizer.name},
-                    {"optimizer_options", to_json(request.optimizer.options)},
+                    {"optimizer_options", to_json(without_empty(request.optimizer.options))},
                     {"problem", request.problem.name},
-                    {"problem_options", to_json(request.problem.options)}};
+                    {"problem_options", to_json(without_empty(request.problem.options))}};
   before_ = json_text(shared);
   before_.pop_back();  // its brace
   before_ += ",\"seed\":";

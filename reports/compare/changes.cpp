@@ -31,6 +31,11 @@ bool is_set_in(const std::string& spec, const std::string& option) {
          parsed.options.end();
 }
 
+// An option of no text says what one that there was not yet said.
+bool says_nothing(const OptionValue* option) {
+  return option == nullptr || text_of(*option).empty();
+}
+
 // Paired by what was asked, two differ in an option only by a default or by a table of rates.
 std::string change_text(const Given& a, const Given& b, const std::string& option) {
   const OptionValue* const old = a.options->find(option);
@@ -51,6 +56,7 @@ void count_changes(const Given& a, const Given& b, std::map<std::string, std::si
     const OptionValue* const old = a.options->find(option);
     const OptionValue* const now = b.options->find(option);
     if (old != nullptr && now != nullptr && *old == *now) continue;
+    if (says_nothing(old) && says_nothing(now)) continue;
     ++changes[a.name + ": " + change_text(a, b, option)];
   }
 }

@@ -42,7 +42,7 @@ std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
 Place place_of(const Json& claim, const Json& term) {
   const Json& quantity = claim.at("quantity");
   Place place;
-  quantity.at("column").get_to(place.column);
+  (term.contains("column") ? term : quantity).at("column").get_to(place.column);
   const Json& from = term.contains("iteration") ? term : quantity;
   if (from.contains("iteration")) place.iteration = from["iteration"].get<std::int64_t>();
   const Json& published = claim.at("published");
@@ -75,7 +75,7 @@ void take_for_one(std::vector<Term>& terms, const Json& asked) {
       const auto same = [&](const char* key) {
         return asked.at(i).value(key, Json()) == asked.at(j).value(key, Json());
       };
-      if (!same("problem") || !same("iteration")) continue;
+      if (!same("problem") || !same("iteration") || !same("column")) continue;
       terms[i].figures = terms[j].figures;
       break;
     }

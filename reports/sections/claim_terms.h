@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reports/sections/quantities.h"
+#include "reports/sections/run_figures.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {

@@ -30,6 +30,23 @@ bool has_exponent(const PowerLaw& law, Real exponent) {
   return law.holds() && std::abs(law.exponent - exponent) <= kSame;
 }
 
+// The factor of the inverse Hessian: a slope has none, but where L is curved and x rescaled by s,
+// Newton's step and the gradient's differ by it.
+std::string hessian_sentence(const Audits& all) {
+  const auto step_of = [&](const char* name) {
+    const auto found = std::ranges::find(all, name, &AuditedOptimizer::name);
+    return found != all.end() && found->law(Scaled::input).step.holds()
+               ? found->law(Scaled::input).step.exponent
+               : kUnknown;
+  };
+  const Real newton = step_of("newton"), gradient = step_of("gd");
+  if (std::isnan(newton - gradient)) return "";
+  return fmt::format(
+      " Newton’s factor is measured where L has a Hessian: of x rescaled by s its step goes as "
+      "s^{:.2g} and that of gradient descent as s^{:.2g}, which differ by s^{:.2g}.",
+      newton, gradient, newton - gradient);
+}
+
 // The chapter's L = αx, where the figures and the chapter need not say the same.
 std::string slope_sentence(const Audits& all) {
   const auto with = [&](Real exponent) {
@@ -38,14 +55,14 @@ std::string slope_sentence(const Audits& all) {
     }));
   };
   return fmt::format(
-      "Of the slope L = αx the book’s chapter has the exponents 1 for gradient descent, 0 for "
-      "Adam, "
-      "−1 for the inverse gradient, −κ for half-inverse gradients, and no law for others. Measured "
-      "are 1 for {}; 0 for {}; −1 for {}. That more than the inverse gradient have −1 contradicts "
-      "it only in words: to L alone, whose Hessian is zero, Newton’s method has no step, while "
-      "methods over residuals and inverses are told here y = αx and a target one below, and 1/α is "
-      "the step that reaches it.",
-      with(1), with(0), with(-1));
+      "Of the slope L = αx the book’s chapter states that gradient descent steps by α and changes "
+      "L by α², that the inverse Hessian of Newton’s method brings a factor 1/α², and that the "
+      "inverse gradient steps by 1/α. It states no law for Adam, half-inverse gradients or others. "
+      "Measured are the exponents 1 for {}; 0 for {}; −1 for {}. That more than the inverse "
+      "gradient have −1 contradicts it only in words: to L alone, whose Hessian is zero, Newton’s "
+      "method has no step, while methods over residuals and inverses are told here y = αx and a "
+      "target one below, and 1/α is the step that reaches it.{}",
+      with(1), with(0), with(-1), hessian_sentence(all));
 }
 
 std::string scaling_sentence(const Audits& all) {

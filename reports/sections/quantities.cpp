@@ -1,10 +1,10 @@
-// Reads figures off records, combines their medians, and resamples seeds.
+// Combines medians of figures, and resamples seeds.
 #include "reports/sections/quantities.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+#include <set>
 
 #include "reports/statistics/resampling.h"
 
@@ -12,78 +12,6 @@ namespace isoline::reports {
 namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
-
-// The last kept point at or before the place.
-std::size_t index_at(const Curve& curve, const Place& place) {
-  const auto last = [](const auto& column, const auto& at) {
-    const std::ptrdiff_t passed = std::ranges::upper_bound(column, at) - column.begin();
-    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
-  };
-  if (place.iteration) return last(curve.iteration, *place.iteration);
-  if (place.seconds) return last(curve.processor_seconds, *place.seconds);
-  return curve.iteration.size() - 1;
-}
-
-// Running means begin with the first step: before it, what that saw.
-Real value_at(const std::vector<Real>& column, std::size_t index) {
-  if (column.empty()) return kAbsent;
-  const bool is_before_any = index == 0 && std::isnan(column[0]) && column.size() > 1;
-  return column.at(is_before_any ? 1 : index);
-}
-
-constexpr std::string_view kSeries = "series: ";
-
-const std::vector<Real>* column_of(const Record& record, const std::string& name) {
-  static const std::map<std::string, std::vector<Real> Curve::*> plain = {
-      {"x_error", &Curve::x_error},
-      {"loss", &Curve::loss},
-      {"gradient_norm", &Curve::gradient_norm}};
-  const Curve& curve = record.curve;
-  if (const auto found = plain.find(name); found != plain.end()) return &(curve.*found->second);
-  if (name.starts_with(kSeries)) {
-    const auto found = record.series.find(name.substr(kSeries.size()));
-    return found == record.series.end() ? nullptr : &found->second;
-  }
-  const std::size_t end = name.rfind('_');
-  const auto& windows = name.starts_with("batch_x") ? curve.batch_x_error : curve.batch_loss;
-  const auto window = windows.find(std::atoll(name.c_str() + end + 1));
-  return name.starts_with("batch_") && window != windows.end() ? &window->second : nullptr;
-}
-
-// Largest distance of any coordinate from the printed one.
-Real deviation(const std::vector<PrintedRow>& rows) {
-  if (rows.empty()) return kAbsent;
-  Real largest = 0;
-  for (const PrintedRow& row : rows)
-    for (std::size_t j = 0; j < row.printed.size(); ++j)
-      largest = std::max(largest, std::abs(row.reached.at(j) - row.printed[j]));
-  return largest;
-}
-
-// How far y leaves the ray through its start: largest relative change of y2 / y1.
-Real bend(const std::vector<std::vector<Real>>& y) {
-  Real largest = 0;
-  for (const auto& at : y)
-    largest = std::max(largest, std::abs(at.at(1) / at.at(0) * y[0][0] / y[0][1] - 1));
-  return largest;
-}
-
-// Of the first update with the diagonal toward the origin; √2 at most.
-Real alignment(const std::vector<std::vector<Real>>& x) {
-  const Real d1 = x.at(0).at(0) - x.at(1).at(0), d2 = x.at(0).at(1) - x.at(1).at(1);
-  return (d1 + d2) / std::hypot(d1, d2);
-}
-
-Real path_figure(const Record& record, const Place& place) {
-  const auto& x = record.trajectory->x;
-  const std::size_t row = index_at(record.curve, place);
-  const auto& at = x.at(row);
-  if (place.column.ends_with("deviation")) return deviation(printed_rows(record, place));
-  if (place.column == "bend") return bend(record.trajectory->y);
-  if (place.column == "alignment") return x.size() < 2 ? kAbsent : alignment(x);
-  if (place.column == "distance") return std::hypot(at.at(0), at.at(1));
-  return kAbsent;
-}
 
 // Least squares of log m over log at.
 Real slope(const std::vector<Real>& m, const std::vector<Real>& at) {
@@ -122,6 +50,25 @@ Real order(const std::vector<Real>& m) {
   return with / pairs;
 }
 
+// The first half of the terms over the second.
+std::vector<Real> ratios(const std::vector<Real>& m) {
+  const std::size_t half = m.size() / 2;
+  std::vector<Real> all;
+  for (std::size_t i = 0; i < half; ++i) all.push_back(m[i] / m[half + i]);
+  return all;
+}
+
+// Kendall's τ of the first half of the terms with the second.
+Real agreement(const std::vector<Real>& m) {
+  const std::size_t half = m.size() / 2;
+  const auto sign = [](Real d) { return d > 0 ? 1 : d < 0 ? -1 : 0; };
+  Real with = 0, pairs = 0;
+  for (std::size_t i = 0; i < half; ++i)
+    for (std::size_t j = i + 1; j < half; ++j, ++pairs)
+      with += sign(m[i] - m[j]) * sign(m[half + i] - m[half + j]);
+  return with / pairs;
+}
+
 // Of the first, from 1; those equal to it share the places that they take.
 Real position(const std::vector<Real>& m) {
   const auto nearer = std::ranges::count_if(m, [&](Real other) { return other < m[0]; });
@@ -134,18 +81,34 @@ Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
   for (std::size_t i = 0; i < term.figures.size(); ++i) {
     std::vector<Real> values;
     for (const std::size_t seed : seeds) values.push_back(term.figures[i].at(seed));
-    const Real median = term.scale * median_of(std::move(values));
+    const bool is_absent = std::ranges::any_of(values, [](Real v) { return std::isnan(v); });
+    const Real median = is_absent ? kAbsent : term.scale * median_of(std::move(values));
     if (!chosen || (term.is_worst ? median > chosen->level : median < chosen->level))
       chosen = {i, median};
   }
   return chosen.value_or(Chosen{0, kNever});
 }
 
+// Of seeds, of the alternative that counts: whose figure reaches the term's abscissa.
+Real share(const Term& term, const std::vector<std::size_t>& seeds) {
+  std::optional<Real> chosen;
+  for (const auto& alternative : term.figures) {
+    if (std::isnan(alternative.at(seeds[0]))) return kAbsent;
+    const auto reach = std::ranges::count_if(
+        seeds, [&](std::size_t seed) { return alternative.at(seed) >= term.at; });
+    const Real found = static_cast<Real>(reach) / static_cast<Real>(seeds.size());
+    if (!chosen || (term.is_worst ? found > *chosen : found < *chosen)) chosen = found;
+  }
+  return chosen.value_or(kAbsent);
+}
+
 Real quantity_over(const std::string& kind, const std::vector<Term>& terms,
                    const std::vector<std::size_t>& seeds) {
+  if (kind == "share") return share(terms.at(0), seeds);
   std::vector<Real> medians, at;
   for (const Term& term : terms) {
     medians.push_back(chosen_of(term, seeds).level);
+    if (std::isnan(medians.back())) return kAbsent;
     at.push_back(term.at);
   }
   return quantity_of(kind, medians, at);
@@ -159,51 +122,6 @@ Chosen chosen_of(const Term& term) {
   return chosen_of(term, seeds);
 }
 
-std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
-  const auto& path =
-      place.column == "output_deviation" ? record.trajectory->y : record.trajectory->x;
-  const std::size_t first = place.table.size() == 1 ? index_at(record.curve, place) : 1;
-  std::vector<PrintedRow> rows;
-  if (first + place.table.size() > path.size()) return rows;
-  for (std::size_t i = 0; i < place.table.size(); ++i)
-    rows.push_back({record.curve.iteration.at(first + i), place.table[i], path[first + i]});
-  return rows;
-}
-
-Real figure_of(const Record& record, const Place& place) {
-  if (place.column == "milliseconds")
-    return record.summary.iterations == 0
-               ? kAbsent
-               : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
-  if (record.curve.iteration.empty()) return kAbsent;
-  const std::size_t index = index_at(record.curve, place);
-  if (place.column == "loss_peak")
-    return *std::max_element(record.curve.loss.begin(), record.curve.loss.begin() + index + 1);
-  if (const auto* column = column_of(record, place.column)) return value_at(*column, index);
-  return record.trajectory ? path_figure(record, place) : kAbsent;
-}
-
-std::string column_words(const std::string& column) {
-  static const std::map<std::string, std::string> words = {
-      {"x_error", "error in x on the validation"},
-      {"loss", "loss on the validation"},
-      {"batch_x_error_64", "error in x, running mean over 64 steps"},
-      {"batch_x_error_256", "error in x, running mean over 256 steps"},
-      {"batch_loss_64", "loss, running mean over 64 steps"},
-      {"batch_loss_256", "loss, running mean over 256 steps"},
-      {"loss_peak", "greatest loss on the validation"},
-      {"gradient_norm", "length of the gradient"},
-      {"deviation", "largest distance of x from the printed figures"},
-      {"output_deviation", "largest distance of y from the printed figures"},
-      {"bend", "largest relative change of y2 / y1"},
-      {"alignment", "first update's component along the diagonal"},
-      {"distance", "distance to the origin"},
-      {"milliseconds", "milliseconds an iteration"}};
-  if (column.starts_with(kSeries)) return column.substr(kSeries.size());
-  const auto found = words.find(column);
-  return found == words.end() ? column : found->second;
-}
-
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at) {
   const Real first = medians.at(0);
@@ -211,6 +129,10 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
   if (kind == "slope") return slope(medians, at);
   if (kind == "crossing") return crossing(medians, at);
   if (kind == "order") return order(medians);
+  if (kind == "ratio_slope") return slope(ratios(medians), at);
+  if (kind == "trend") return order(ratios(medians));
+  if (kind == "agreement") return agreement(medians);
+  if (kind == "least") return std::ranges::min(medians);
   if (kind == "greatest") return std::ranges::max(medians);
   if (kind == "position") return position(medians);
   return first;
@@ -218,7 +140,9 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
 
 std::optional<Real> neutral_of(const std::string& kind) {
   if (kind == "ratio") return 1;
-  if (kind == "slope" || kind == "order") return 0;
+  static const std::set<std::string> signed_kinds = {"slope", "ratio_slope", "order", "trend",
+                                                     "agreement"};
+  if (signed_kinds.contains(kind)) return 0;
   return std::nullopt;
 }
 

@@ -1,41 +1,19 @@
-// The quantities that claims speak of: one figure of one run, and what is made of medians over
-// seeds.
+// The quantities that claims speak of: what is made of the medians over seeds of figures of runs.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/records/record.h"
+#include "core/real.h"
 
 namespace isoline::reports {
 
-// Where a figure of a run is read: a column of its curve or a quantity of its path, at an
-// iteration, or when so much processor time has passed, or at the end where neither is named.
-struct Place {
-  std::string column;  // "series: …" is a quantity of the problem's own
-  std::optional<std::int64_t> iteration;
-  std::optional<Real> seconds;
-  std::vector<std::vector<Real>> table;  // of deviations: at iterations 1, 2, …; one row: there
-};
-
-// A printed row of figures and the point of the path that stands beside it.
-struct PrintedRow {
-  std::int64_t iteration = 0;
-  std::vector<Real> printed, reached;
-};
-// Of a table at iterations 1, 2, …; a single row is held against the place's iteration. None where
-// the path is shorter.
-std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
-
-// Not-a-number where the record does not hold it.
-Real figure_of(const Record& record, const Place& place);
-std::string column_words(const std::string& column);  // "error in x"
-
-// Of terms by their medians: value (of the first), greatest, ratio (first over second), slope of
-// log m over log at, crossing (where the first half of the terms passes from below the second half
-// to above it, in `at`), position (of the first, from 1; a tie counts half), order (Kendall's τ
-// with that of the terms).
+// Of terms by their medians: value (of the first), least and greatest, ratio (first over second),
+// slope of log m over log at, crossing (where the first half of the terms passes from below the
+// second half to above it, in `at`), position (of the first, from 1; a tie counts half), order
+// (Kendall's τ with that of the terms). Of the first half of the terms over the second: ratio_slope
+// and trend, the slope and the order of these ratios; agreement, Kendall's τ of the two halves.
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at);
 

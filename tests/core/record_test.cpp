@@ -140,6 +140,17 @@ TEST(Cell, HasTheNameThatEarlierVersionsGaveIt) {
   EXPECT_TRUE(request_from_json(learned).problem.is_learned);
 }
 
+// A component may gain an option that is empty by default: its cells keep their names.
+TEST(Cell, DoesNotDependOnAnOptionOfNoText) {
+  const Request asked = sample().request;
+  Request other = asked;
+  other.problem.options.set("watch", std::string());
+  other.optimizer.options.set("remark", std::string());
+  EXPECT_EQ(cell_digest(other), cell_digest(asked));
+  other.problem.options.set("watch", std::string("noise"));
+  EXPECT_NE(cell_digest(other), cell_digest(asked));
+}
+
 TEST(Cell, DependsOnAllThatIsAskedAndNothingElse) {
   const Request asked = sample().request;
   Request other = asked;

@@ -54,6 +54,22 @@ TEST(HalfInverse, KappaOneIsGaussNewton) {
                    "gauss-newton[rate=0.3]");
 }
 
+// σ = 1 and 1e-3: with a cut-off of 0.1 the second is discarded, or counts as 0.1.
+TEST(HalfInverse, SmallSingularValuesAreDiscardedOrClamped) {
+  const Matrix M = Eigen::Vector2d(1, 1e-3).asDiagonal();
+  const Problem problem = linear(M, Eigen::Vector2d(2, 3), Vector::Zero(2));
+  for (const Real kappa : {1.0, 0.5}) {
+    const std::string options = "[cutoff=0.1,kappa=" + std::to_string(kappa);
+    const auto step = [&](const std::string& rest) {
+      return Vector(run(problem, "hig" + options + rest, iterations(1)).theta - problem.start());
+    };
+    const Real g = 3e-3;  // ∂L/∂y₂
+    EXPECT_LE((step("]") - Eigen::Vector2d(-2, 0)).norm(), 1e-14);
+    const Eigen::Vector2d clamped(-2, -g * std::pow(0.1, -kappa));
+    EXPECT_LE((step(",small=clamp]") - clamped).norm(), 1e-14);
+  }
+}
+
 TEST(HalfInverse, KappaMinusOneIsGradientDescent) {
   expect_same_path(easy(), "hig[kappa=-1,cutoff=0,rate=0.1]", "gd[rate=0.1]");
   constexpr const char* kCautious = "1e-9";  // below 2 over the largest curvature of them all

@@ -109,6 +109,43 @@ class WrongSign final : public Physics {
   }
 };
 
+// Goes twice as far as it should.
+class Overshooting final : public Physics {
+ public:
+  Index inputs() const override { return 2; }
+  Index outputs() const override { return 2; }
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override { y = x; }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { Jv = v; }
+  void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { JTu = u; }
+  Inverse inverse_kind() const override { return Inverse::damped; }
+  Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
+    x = x0 + 2.1 * (y - x0);
+    return Success::Constant(y.cols(), true);
+  }
+};
+
+TEST(Conformance, FindsADampedInverseThatGoesTooFar) {
+  const Problem problem({.physics = std::make_unique<Overshooting>(),
+                         .start = Vector::Ones(2),
+                         .target = Vector::Zero(2)});
+  RandomStream stream(0, "overshooting", "conformance");
+  std::vector<std::string> failed;
+  for (const Finding& finding : examine(problem, stream))
+    if (!finding.holds()) failed.push_back(finding.property);
+  const std::vector<std::string> expected = {"the damped inverse brings y no farther from y*",
+                                             "the damped inverse undoes P on what P has smoothed"};
+  EXPECT_EQ(failed, expected);
+}
+
+TEST(Conformance, AsksADampedInverseOfHeat) {
+  const Problem problem = make("heat");
+  RandomStream stream(0, "heat", "conformance");
+  int asked = 0;
+  for (const Finding& finding : examine(problem, stream))
+    asked += finding.property.find("damped inverse") != std::string::npos;
+  EXPECT_EQ(asked, 3);
+}
+
 TEST(Conformance, FindsAWrongPushforward) {
   const Problem problem({.physics = std::make_unique<WrongSign>(),
                          .start = Vector::Ones(2),

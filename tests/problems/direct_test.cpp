@@ -8,6 +8,12 @@
 namespace isoline::problems {
 namespace {
 
+// The book's loss is |P|², and half of that the one of all other problems here.
+TEST(Scaling, HasTheBooksLossWhereItIsAskedFor) {
+  EXPECT_EQ(loss_at_start(make("scaling[alpha=0.5]")), 9);  // ½ (3² + 3²)
+  EXPECT_EQ(loss_at_start(make("scaling[alpha=0.5,loss=square]")), 18);
+}
+
 TEST(Scaling, ThePublishedStartInYIsTheSameForEveryAlpha) {
   Point reference, at;
   const Problem one = make("scaling[alpha=1]", 0);

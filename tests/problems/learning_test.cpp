@@ -131,13 +131,13 @@ TEST(Learning, ToyWatchesItsNeuronsAndItsPath) {
   EXPECT_EQ(problem.unknowns(), 30);
   Point at;
   problem.forward(problem.start(), at);
-  Vector values(4);
-  problem.series().evaluate(at, values);
+  Vector values(static_cast<Index>(problem.series().names.size()));
+  problem.series().evaluate(problem, problem.start(), at, values);
   EXPECT_LT(std::abs(values[0]), 1);  // of tanh
   EXPECT_GT(values[1], 0);
   Index nearest = 0;
   (problem.batch().input.row(0).array() - M_PI / 9).abs().minCoeff(&nearest);
-  EXPECT_EQ(values.tail(2), at.y.col(nearest));
+  EXPECT_EQ(values.segment(2, 2), at.y.col(nearest));
 }
 
 }  // namespace

@@ -106,6 +106,24 @@ TEST(AuditTable, IsReadForANewcomer) {
   EXPECT_TRUE(has(readings.back().text, "gd declares"));
 }
 
+// What the chapter states: α and α² for gradient descent, 1/α² for Newton's method, 1/α for the
+// inverse gradient, and nothing for Adam and half-inverse gradients.
+TEST(AuditTable, CreditsTheBookWithWhatItStates) {
+  const auto scaling_of = [](const std::vector<AuditedOptimizer>& all) {
+    return property_readings(all)[0].text;
+  };
+  AuditedOptimizer newton = sample();
+  newton.name = "newton";
+  newton.scalings[2] = {{0.1, 1, 10}, law(-1, 1e-15), law(0, 1e-15)};
+  const std::string both = scaling_of({sample(), newton});
+  EXPECT_TRUE(has(both,
+                  "changes L by α², that the inverse Hessian of Newton’s method brings a "
+                  "factor 1/α², and that the inverse gradient steps by 1/α."));
+  EXPECT_TRUE(has(both, "It states no law for Adam, half-inverse gradients or others."));
+  EXPECT_TRUE(has(both, "as s^-1 and that of gradient descent as s^1, which differ by s^-2."));
+  EXPECT_FALSE(has(scaling_of({sample()}), "Newton’s factor is measured"));
+}
+
 TEST(AuditFile, IsReadWithTheStudyAndReportsDoWithoutIt) {
   const ResultFolder with, without, broken;
   for (const ResultFolder* folder : {&with, &without, &broken}) folder->add(record_of({}));

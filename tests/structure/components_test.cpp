@@ -91,7 +91,8 @@ const std::string kProblems =
     "variably-dimensioned";
 const std::string kOptimizers =
     "gd momentum nesterov adagrad adadelta rmsprop adam adamw newton saddle-free-newton "
-    "gauss-newton levenberg-marquardt inverse-gradient sip hig supervised rescaled "
+    "gauss-newton levenberg-marquardt inverse-gradient sip sip-theorem-3 sip-newton hig supervised "
+    "two-stage rescaled "
     "adahessian hessian-free kfac ceres-gauss-newton ceres-lm ceres-dogleg "
     "ceres-subspace-dogleg ceres-bfgs ceres-lbfgs ceres-ncg ceres-steepest-descent "
     "nlopt-lbfgs nlopt-var2 nlopt-tnewton nlopt-slsqp nlopt-mma nlopt-ccsaq nlopt-bobyqa "

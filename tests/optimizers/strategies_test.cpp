@@ -1,0 +1,225 @@
+// The variants of scale-invariant physics training: theorem 3's stopping rule, labels of two-stage
+// training, Newton's step in x, and the series that methods show.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "core/decompose.h"
+#include "run.h"
+#include "trial_problems.h"
+
+namespace isoline::optimizers {
+
+using problems::Point;
+using problems::Problem;
+namespace {
+
+std::vector<std::string> series_names(const Trace& trace) {
+  std::vector<std::string> names;
+  std::istringstream lines(trace.series_names);
+  for (std::string line; std::getline(lines, line);) names.push_back(line);
+  return names;
+}
+
+// The last value of a series.
+Real shown(const Outcome& outcome, const std::string& name) {
+  const std::vector<std::string> names = series_names(*outcome.trace);
+  const auto found = std::ranges::find(names, name);
+  EXPECT_NE(found, names.end()) << name;
+  return outcome.trace->last.series[found - names.begin()];
+}
+
+Real loss_at(const Problem& problem, const Vector& theta) {
+  Point at;
+  problem.forward(theta, at);
+  return at.loss;
+}
+
+const std::string kGentle = "network-optimizer=gd[rate=0.1]";
+
+// y* − P(x + U) = (1 − η)(y* − y): τ = 1 − (1 − η)², and ‖U‖ = η ‖M⁻¹(y* − y)‖.
+TEST(SipTheorem3, MeasuresTauAndKInClosedForm) {
+  const Problem problem = learned_affine(8, 8);
+  Svd svd;
+  ASSERT_TRUE(thin_svd(easy_matrix(), svd));
+  for (const Real step : {1.0, 0.5, 0.1}) {
+    const Outcome result =
+        run(problem, "sip-theorem-3[step=" + std::to_string(step) + "]", iterations(1));
+    EXPECT_NEAR(shown(result, "τ of U"), 1 - std::pow(1 - step, 2), 1e-12);  // rounding
+    Point at;
+    problem.forward(problem.start(), at);
+    Matrix solved(2, 8);
+    ASSERT_TRUE(problem.local_inverse(problem.target(), solved, at).all());
+    const Real length = step * (solved - at.x()).norm();
+    EXPECT_NEAR(shown(result, "length of U"), length / std::sqrt(8), 1e-12 * length);
+    const Real K = shown(result, "K of U") / step;
+    EXPECT_NEAR(K, length / step / (at.y - problem.target()).norm(), 1e-12 * K);
+    EXPECT_GE(K, 1 / svd.sigma[0]);
+    EXPECT_LE(K, 1 / svd.sigma[1]);
+  }
+}
+
+// L ≤ (1 − τ/2) L after each inversion, and not before the last of its steps.
+TEST(SipTheorem3, StopsAsSoonAsHalfOfTheFallIsReached) {
+  const Problem problem = learned_affine(8, 8);
+  for (const char* step : {"1", "0.5"}) {
+    const Real tau = 1 - std::pow(1 - std::stod(step), 2);
+    Vector theta = problem.start();
+    const std::string options = "[step=" + std::string(step) + "," + kGentle;
+    const Outcome result = run(problem, "sip-theorem-3" + options + "]", iterations(1));
+    const auto steps = static_cast<int>(shown(result, "network steps of U"));
+    ASSERT_GE(steps, 2);
+    const Real goal = (1 - tau / 2) * loss_at(problem, problem.start());
+    EXPECT_LE(loss_at(problem, result.theta), goal);
+    const std::string fewer = ",network-steps=" + std::to_string(steps - 1) + "]";
+    const Outcome before = run(problem, "sip" + options + fewer, iterations(1));
+    EXPECT_GT(loss_at(problem, before.theta), goal);
+    const std::string same = ",network-steps=" + std::to_string(steps) + "]";
+    EXPECT_EQ(run(problem, "sip" + options + same, iterations(1)).theta, result.theta);
+  }
+}
+
+// The theorem: (1 − τ/2)ⁿ after n inversions, and U = 0 at the minimum that is found.
+TEST(SipTheorem3, ConvergesAsTheTheoremSays) {
+  const Problem problem = learned_affine(8, 8);
+  constexpr int kInversions = 40;
+  const Outcome result =
+      run(problem, "sip-theorem-3[most-steps=100000," + kGentle + "]", iterations(kInversions));
+  Real loss = loss_at(problem, problem.start());
+  for (const Vector& theta : result.path) {
+    const Real now = loss_at(problem, theta);
+    EXPECT_LE(now, 0.5 * loss * (1 + 1e-12));  // τ = 1; rounding
+    loss = now;
+  }
+  EXPECT_LE(shown(result, "length of U"), 1e-5);
+}
+
+TEST(SipTheorem3, TakesNoMoreStepsThanItMay) {
+  const Outcome result =
+      run(learned_affine(8, 8), "sip-theorem-3[most-steps=3,network-optimizer=gd[rate=1e-6]]",
+          iterations(2));
+  EXPECT_EQ(shown(result, "network steps of U"), 3);
+}
+
+TEST(SipTheorem3, IsSipForTheIdentityNetwork) {
+  for (const char* problem : {"square", "sine[xi=1]", "exponential"}) {
+    const Outcome one = run(published(problem), "sip-theorem-3[step=0.3]", iterations(5)),
+                  other = run(published(problem), "sip[step=0.3]", iterations(5));
+    EXPECT_EQ(one.path, other.path) << problem;
+    EXPECT_EQ(shown(one, "network steps of U"), 1) << problem;
+  }
+}
+
+// Theorem 1: repeated updates U run into P⁻¹(y*), of whichever branch.
+TEST(Sip, UpdatesRunToConvergenceInvertThePhysics) {
+  for (const char* problem : {"sine[xi=1]", "sine[xi=32]", "exponential"}) {
+    const Problem inverted = published(problem);
+    const Real start = loss_at(inverted, inverted.start());
+    const auto left = [&](const std::string& steps) {
+      const std::string spec = "sip[inverse=newton,inner-steps=" + steps + "]";
+      return loss_at(inverted, run(inverted, spec, iterations(1)).theta) / start;
+    };
+    EXPECT_GT(left("1"), 1e-12) << problem;
+    EXPECT_LT(left("200"), 1e-20) << problem;
+  }
+}
+
+// What a method shows stands behind what the problem shows, and changes nothing.
+TEST(Series, OfProblemAndMethodStandSideBySide) {
+  const std::string learned = "hig-toy[network=mlp[layers=3,activation=tanh,precision=double]";
+  const Outcome plain = run(published(learned + "]"), "sip-theorem-3", iterations(3)),
+                watched = run(published(learned + ",watch=noise]"), "sip-theorem-3", iterations(3));
+  EXPECT_EQ(plain.path, watched.path);
+  EXPECT_EQ(shown(plain, "τ of U"), shown(watched, "τ of U"));
+  EXPECT_EQ(shown(plain, "y1 at t = π/9"), shown(watched, "y1 at t = π/9"));
+  EXPECT_TRUE(std::isfinite(shown(watched, "noise of U: direction")));
+  EXPECT_EQ(series_names(*watched.trace).size(), series_names(*plain.trace).size() + 4);
+  EXPECT_TRUE(std::isnan(plain.trace->point[0].series[series_names(*plain.trace).size() - 1]));
+}
+
+TEST(TwoStage, LabelsOfAnInvertibleProblemAreTheGenerators) {
+  const Problem problem = learned_affine(5);
+  const Outcome labelled = run(problem, "two-stage", iterations(20)),
+                told = run(problem, "supervised", iterations(20));
+  EXPECT_LE((labelled.theta - told.theta).norm(), 1e-10 * told.theta.norm());  // rounding, by Adam
+}
+
+// x² = (2 + in)² from an untrained network that says −1: its own branch, or that of x₀ = 0, by
+// which the inverse takes the positive root.
+TEST(TwoStage, LearnsTheBranchWhereTheSolverStarts) {
+  Matrix input(1, 4);
+  input << -1, -0.5, 0.5, 1;
+  const auto problem = [&] {
+    return Problem({.physics = std::make_unique<Squares>(),
+                    .start = Eigen::Vector2d(-1, 0),
+                    .target = (2 + input.array()).square().matrix(),
+                    .network = std::make_unique<Line>(),
+                    .input = input,
+                    .minimum = 0});
+  };
+  const Budget budget{.iterations = 400, .target = 0};
+  const std::string rule = "network-optimizer=gd[rate=0.5]]";
+  const Vector zero = run(problem(), "two-stage[from=zero," + rule, budget).theta,
+               network = run(problem(), "two-stage[from=network," + rule, budget).theta;
+  EXPECT_LE((zero - Eigen::Vector2d(2, 1)).norm(), 1e-6);
+  EXPECT_LE((network - Eigen::Vector2d(-2, -1)).norm(), 1e-6);
+}
+
+TEST(TwoStage, LabelsFixedSamplesOnceAndFreshOnesEachTime) {
+  const auto inversions = [](const Problem& problem) {
+    const Outcome result = run(problem, "two-stage", iterations(7));
+    return result.trace->last.counts[static_cast<std::size_t>(Oracle::inverse)];
+  };
+  EXPECT_EQ(inversions(learned_affine(4, 4)), 1);
+  EXPECT_EQ(inversions(learned_affine(4)), 7);
+}
+
+TEST(TwoStage, NeedsANetwork) {
+  const OptimizerEntry& entry = optimizers().at("two-stage");
+  const OptionValues options = options_of_spec(entry, "two-stage");
+  EXPECT_NE(why_inapplicable(entry, options, published("square")).find("no network"),
+            std::string::npos);
+}
+
+// P(x) = eˣ from x with the target y*: ½(eˣ − y*)² has g = (eˣ − y*) eˣ and h = 2e²ˣ − y* eˣ.
+class Exponential final : public DensePhysics {
+ public:
+  Exponential() : DensePhysics(1, 1) {}
+  void value(VectorRef x, VectorOut y) const override { y[0] = std::exp(x[0]); }
+  void derivative(VectorRef x, BatchOut J) const override { J(0, 0) = std::exp(x[0]); }
+  bool has_curvature() const override { return true; }
+  void second(VectorRef x, VectorRef u, BatchOut H) const override {
+    H(0, 0) = u[0] * std::exp(x[0]);
+  }
+};
+
+Real newton_step(Real x, Real target, const std::string& options) {
+  const Problem problem({.physics = std::make_unique<Exponential>(),
+                         .start = Vector::Constant(1, x),
+                         .target = Matrix::Constant(1, 1, target)});
+  return run(problem, "sip-newton" + options, iterations(1)).theta[0] - x;
+}
+
+TEST(SipNewton, StepsAsThePublishedScript) {
+  for (const auto& [x, target] : {std::pair{0.0, 1e-3}, {-1.0, 0.9}, {-4.0, 0.5}, {0.3, 0.2}}) {
+    const Real e = std::exp(x), g = (e - target) * e, h = 2 * e * e - target * e;
+    const Real sign = g > 0 ? 1 : -1;
+    EXPECT_NEAR(newton_step(x, target, ""), -sign * std::abs(g / h), 1e-12 * std::abs(g / h));
+    EXPECT_NEAR(newton_step(x, target, "[clip=0.1]"), -sign * std::min(0.1, std::abs(g / h)),
+                1e-13);
+    const Real damped = std::abs(g / (h + 0.01));
+    EXPECT_NEAR(newton_step(x, target, "[damping=0.01]"), -sign * damped, 1e-12 * damped);
+  }
+  EXPECT_EQ(newton_step(0, 2, ""), 0);  // h = 0: no step
+}
+
+// Along eigenvectors: where the Hessian is definite it is Newton's method.
+TEST(SipNewton, OfSeveralInputsIsNewtonsMethodWhereTheLossIsConvex) {
+  const Vector one = run(easy(), "sip-newton", iterations(1)).theta,
+               other = run(easy(), "newton", iterations(1)).theta;
+  EXPECT_LE((one - other).norm(), 1e-13 * other.norm());  // rounding by the condition, 7
+}
+
+}  // namespace
+}  // namespace isoline::optimizers
