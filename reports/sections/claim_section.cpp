@@ -13,8 +13,10 @@ namespace isoline::reports {
 namespace {
 
 std::string band_text(const Agreement& band) {
-  const std::string low = (band.is_low_open ? "more than " : "") + figure(band.low);
-  const std::string high = (band.is_high_open ? "less than " : "") + figure(band.high);
+  const bool is_narrow = band.low < band.high && figure(band.low) == figure(band.high);
+  const auto written = is_narrow ? exact_figure : static_cast<std::string (*)(Real)>(figure);
+  const std::string low = (band.is_low_open ? "more than " : "") + written(band.low);
+  const std::string high = (band.is_high_open ? "less than " : "") + written(band.high);
   if (band.low == -kNever) return band.is_high_open ? high : high + " or less";
   if (band.high == kNever) return band.is_low_open ? low : low + " or more";
   return band.low == band.high ? fmt::format("{} exactly", low)

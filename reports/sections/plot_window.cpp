@@ -37,7 +37,7 @@ Extent extent_of_y(const Plot& plot) {
   const Extent medians = extent;
   constexpr Real kFurther = 3;
   const auto take_edge = [&](Real y) {
-    if (plot.is_log_y && !(y > 0)) return;
+    if (std::isnan(y) || medians.low > medians.high || (plot.is_log_y && !(y > 0))) return;
     const Real span = medians.high - medians.low;
     extent.take(plot.is_log_y ? std::clamp(y, medians.low / kFurther, kFurther * medians.high)
                               : std::clamp(y, medians.low - span, medians.high + span));

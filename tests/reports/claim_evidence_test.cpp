@@ -276,8 +276,8 @@ TEST(TextPlot, DrawsLinesInLettersAndWhatWasPublished) {
   };
   EXPECT_EQ(lines[1].back(), 'a') << text;  // the highest row, at the right
   EXPECT_EQ(lines[15].substr(lines[15].find("│")), "│a") << text;
-  EXPECT_LT(row_of("━━━"), 15) << text;
-  EXPECT_GT(row_of("━━━"), row_of("░"));
+  EXPECT_LT(row_of("━━"), 15) << text;
+  EXPECT_GT(row_of("━━"), row_of("░"));
   EXPECT_NE(text.find("a sip"), std::string::npos);
 }
 
