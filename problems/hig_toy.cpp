@@ -51,11 +51,12 @@ Vector curve(Real t) { return Eigen::Vector2d(std::sin(6 * t), std::cos(9 * t));
 
 constexpr Index kShownNeurons = 7;  // as many as the published network has
 
-// Mean and spread of the hidden neurons, and y at the sample nearest π/9. A neuron of spread 0 has
-// the same value for every t: it is saturated, and gives the network no more than a bias. The mean
-// over all neurons can't show that: some saturate at 1 and others at −1.
+// Mean and spread of the hidden neurons, and y at the sample nearest π/9. A neuron whose value is 1
+// or −1 for every t is saturated: it gives the network no more than a bias, and its weights no
+// gradient. The mean over all neurons can't show that, for some saturate at 1 and others at −1; nor
+// can a spread of 0 alone, which a neuron of small weights has too, and learns.
 void watch(const Problem& problem, Point& at, VectorOut values) {
-  constexpr Real kSaturated = 0.01;  // spread, of values between −1 and 1
+  constexpr Real kNear = 0.01;  // of ±1, and of a spread of 0
   std::vector<LayerFactor> layers;
   problem.network().layer_factors(Matrix::Zero(2, at.y.cols()), layers, at.network);
   const Matrix& hidden = layers.back().inputs;
@@ -66,7 +67,8 @@ void watch(const Problem& problem, Point& at, VectorOut values) {
   Index nearest = 0;
   (at.batch->input.row(0).array() - std::numbers::pi / 9).abs().minCoeff(&nearest);
   values.head(4) << mean, std::sqrt((hidden.array() - mean).square().mean()), at.y.col(nearest);
-  values[4] = static_cast<Real>((spreads.array() < kSaturated).count());
+  values[4] =
+      static_cast<Real>((spreads.array() < kNear && means.array().abs() > 1 - kNear).count());
   const Index shown = (values.size() - 5) / 2;
   values.segment(5, shown) = means.head(shown);
   values.tail(shown) = spreads.head(shown);

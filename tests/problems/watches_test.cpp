@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "core/trace.h"
@@ -14,19 +13,14 @@
 namespace isoline::problems {
 namespace {
 
-Vector values_of(const Series& series, const Problem& problem, const Vector& theta, Point& at) {
-  Vector values = Vector::Constant(static_cast<Index>(series.names.size()), std::nan(""));
-  series.evaluate(problem, theta, at, values);
-  return values;
-}
-
 // The series of a problem as the meter traces them: on the validation.
 std::map<std::string, Real> traced(const Problem& problem, const Vector& theta) {
   Batch validation;
   problem.draw_validation(validation);
   Point at;
   problem.forward(theta, validation, at);
-  const Vector values = values_of(problem.series(), problem, theta, at);
+  Vector values(static_cast<Index>(problem.series().names.size()));
+  problem.series().evaluate(problem, theta, at, values);
   std::map<std::string, Real> by_name;
   for (std::size_t i = 0; i < problem.series().names.size(); ++i)
     by_name[problem.series().names[i]] = values[static_cast<Index>(i)];
@@ -156,54 +150,6 @@ TEST(Watches, NoiseFallsWithTheBatch) {
   EXPECT_GT(many, 0.1 * few);
 }
 
-Vector cosine_mode(Index k, Index l, Index N) {
-  Matrix mode(N, N);
-  for (Index j = 0; j < N; ++j)
-    for (Index i = 0; i < N; ++i)
-      mode(i, j) =
-          std::cos(2 * std::numbers::pi * static_cast<Real>(i * k + j * l) / static_cast<Real>(N));
-  return mode.reshaped();
-}
-
-// Heat multiplies a mode by e^(−ℓ), ℓ = 8 (2π |k|)², so ∂L/∂x has it times e^(−2ℓ), and U, where
-// the data carry evidence, whole: what is missing in x = x* − a c₂ − b c₅ on 32×32 cells.
-TEST(Watches, SpectraOfHeatAreThoseOfItsModes) {
-  constexpr Index N = 32;
-  const Problem problem = make("heat[N=32]", 1);
-  const Real a = 0.02, b = 0.05;
-  const Vector theta = problem.truth()->reshaped() - a * cosine_mode(1, 1, N) -
-                       b * cosine_mode(0, 5, N);  // |k| = √2/32 = 0.044 and 5/32 = 0.156
-  Point at;
-  problem.forward(theta, at);
-  const Series series = spectrum(N);
-  const Vector values = values_of(series, problem, theta, at);
-  const auto kept = [](Real k) { return std::exp(-2 * 8 * std::pow(2 * std::numbers::pi * k, 2)); };
-  const auto shares = [](Real low, Real high) {
-    const Real total = low * low + high * high;
-    return Eigen::Vector4d(low * low / total, 0, high * high / total, 0);
-  };
-  const Eigen::Vector4d missing = shares(a, b),
-                        pulled = shares(a * kept(std::sqrt(2.0) / 32), b * kept(5.0 / 32));
-  EXPECT_LT((values.head(4) - missing).norm(), 1e-12);      // rounding
-  EXPECT_LT((values.segment(4, 4) - pulled).norm(), 1e-9);  // rounding, of the small against y
-  EXPECT_LT((values.tail(4) - missing).norm(), 1e-6);       // modes without evidence hold rounding
-  EXPECT_GT(pulled[0], 0.99);                               // the adjoint has removed the detail
-}
-
-// A wave of the highest number and one along a single axis are counted once each.
-TEST(Watches, SpectraCountEveryModeOnce) {
-  constexpr Index N = 16;
-  const Problem problem = make("heat[N=16]", 1);
-  const Vector theta = problem.truth()->reshaped() - 0.3 * cosine_mode(N / 2, N / 2, N) -
-                       0.3 * std::sqrt(2.0) * cosine_mode(2, 0, N);
-  Point at;
-  problem.forward(theta, at);
-  const Vector values = values_of(spectrum(N), problem, theta, at);
-  // A cosine has the mean square ½ but for the highest, (−1)^(i+j), which has 1.
-  EXPECT_NEAR(values[2], 0.5, 1e-12);
-  EXPECT_NEAR(values[3], 0.5, 1e-12);
-}
-
 // x = 0 is off by −x*, which lies between the ends of the decade in y*; the decades' errors, each
 // times its count, make up the error of all.
 TEST(Watches, ErrorsOfTheExponentialAreThoseOfTheDecadesOfItsTargets) {
@@ -238,9 +184,10 @@ Vector with_first_layer(const Problem& problem, const Vector& weights, const Vec
   return theta;
 }
 
-TEST(Watches, ANeuronWithoutSpreadIsSaturated) {
+TEST(Watches, ANeuronThatIsOneForEveryInputIsSaturated) {
   const Problem problem = make("hig-toy", 1);
   Vector weights = Vector::Constant(7, 0.5), biases = Vector::Zero(7);
+  weights[4] = 1e-6;  // without spread as well, and not saturated
   biases.head(3) << 50, -50, 50;
   const auto found = traced(problem, with_first_layer(problem, weights, biases));
   EXPECT_EQ(found.at("saturated neurons"), 3);

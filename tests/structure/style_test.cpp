@@ -19,6 +19,7 @@ const std::map<std::string, std::string> kLongFiles = {
     {"benchmarks/audit/audit_problems.cpp", "one family of problems: links, chained in every way"},
     {"benchmarks/cli/command_line.cpp",
      "every verb's arguments, in the one file that parses CLI11"},
+    {"problems/conformance.cpp", "one examination: a law a function, at the same point"},
     {"optimizers/nlopt.cpp", "one library: its call, its checks and the list of its algorithms"},
     {"reports/page/svg.cpp", "one drawing of every kind of plot"},
     {"tests/benchmarks/merge_test.cpp", "one law of unions a test, over the same folders"},
