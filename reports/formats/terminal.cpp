@@ -221,7 +221,12 @@ std::string terminal_claim(const Section& claim) {
     text += fmt::format("\n{}\n{}{}", terminal_text(plot.title), text_plot(plot),
                         wrapped(terminal_text(plot.caption)));
   text += "\n";
-  for (const Table& table : claim.tables) text += table_text(table);
+  constexpr std::size_t kFewRuns = 24;
+  for (const Table& table : claim.tables)
+    text += table.is_folded && table.rows.size() > kFewRuns
+                ? fmt::format("{}: {}; --json lists them with their records.\n\n", table.title,
+                              table.rows.size())
+                : table_text(table);
   return text + (claim.command.empty() ? "" : fmt::format("To repeat it: {}\n", claim.command));
 }
 

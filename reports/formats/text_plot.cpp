@@ -14,10 +14,11 @@
 namespace isoline::reports {
 namespace {
 
-constexpr int kColumns = 68, kRows = 15;
+constexpr int kColumns = 68, kRows = 15, kBar = 2;  // a bar stands right of its point
 constexpr const char *kBand = "░", *kValue = "━";
 
 int place_of(Real value, Real low, Real high, bool is_log, int places) {
+  if (std::isnan(value)) return 0;
   if (is_log) {
     value = std::log(std::max(value, low));
     low = std::log(low);
@@ -36,7 +37,7 @@ struct Canvas {
   explicit Canvas(const Plot& drawn)
       : plot(drawn),
         window(window_of(drawn)),
-        rows(kRows, std::vector<std::string>(kColumns, " ")) {}
+        rows(kRows, std::vector<std::string>(kColumns + kBar, " ")) {}
 
   int column(Real x) const {
     return place_of(x, window.x_low, window.x_high, plot.is_log_x, kColumns);
@@ -45,8 +46,7 @@ struct Canvas {
     return kRows - 1 - place_of(y, window.y_low, window.y_high, plot.is_log_y, kRows);
   }
   void put(int at_row, int at_column, const std::string& letter) {
-    if (at_column >= 0 && at_column < kColumns)
-      rows[std::size_t(at_row)][std::size_t(at_column)] = letter;
+    rows[std::size_t(at_row)][std::size_t(at_column)] = letter;
   }
 };
 
@@ -69,16 +69,18 @@ void shade(Canvas& canvas, int column, Real low, Real high) {
   for (int row = canvas.row(high); row <= canvas.row(low); ++row) canvas.put(row, column, kBand);
 }
 
-void draw_published(Canvas& canvas, const PlotSeries& goal) {
-  constexpr int kHalf = 1;  // columns beside that of a single point
-  const bool is_point = goal.x.size() == 1;
+void draw_band(Canvas& canvas, const PlotSeries& goal) {
   for (std::size_t i = 0; i < goal.x.size(); ++i)
-    for (int d = is_point ? -kHalf : 0; d <= (is_point ? kHalf : 0); ++d) {
-      const int column = std::clamp(canvas.column(goal.x[i]), kHalf, kColumns - 1 - kHalf) + d;
-      shade(canvas, column, goal.low[i], goal.high[i]);
-      if (is_point) canvas.put(canvas.row(goal.y[i]), column, kValue);
-    }
-  if (!is_point) draw_line(canvas, goal, kValue);
+    shade(canvas, canvas.column(goal.x[i]), goal.low[i], goal.high[i]);
+  draw_line(canvas, goal, kValue);
+}
+
+void draw_bar(Canvas& canvas, const PlotSeries& goal) {
+  for (int d = 1; d <= kBar; ++d) {
+    const int column = canvas.column(goal.x[0]) + d;
+    shade(canvas, column, goal.low[0], goal.high[0]);
+    canvas.put(canvas.row(goal.y[0]), column, kValue);
+  }
 }
 
 std::string legend(const Plot& plot) {
@@ -95,9 +97,13 @@ std::string legend(const Plot& plot) {
 
 std::string text_plot(const Plot& plot) {
   Canvas canvas(plot);
-  for (const PlotSeries& goal : plot.published) draw_published(canvas, goal);
+  const auto is_bar = [](const PlotSeries& goal) { return goal.x.size() == 1; };
+  for (const PlotSeries& goal : plot.published)
+    if (!is_bar(goal)) draw_band(canvas, goal);
   for (std::size_t i = plot.series.size(); i-- > 0;)  // the first on top
     draw_line(canvas, plot.series[i], std::string(1, static_cast<char>('a' + i % 26)));
+  for (const PlotSeries& goal : plot.published)
+    if (is_bar(goal)) draw_bar(canvas, goal);
   const Window& window = canvas.window;
   std::string text =
       fmt::format("{:>10}  {}\n", figure(window.y_high), terminal_text(plot.y_label));
@@ -108,8 +114,10 @@ std::string text_plot(const Plot& plot) {
   }
   text += fmt::format("{:>10} └", figure(window.y_low));
   for (int i = 0; i < kColumns; ++i) text += "─";
+  const Real first =
+      std::min(window.x_low, plot.series.at(0).x.at(0));  // iteration 0 of logarithms
   const std::string end = fmt::format("{} {}", figure(window.x_high), plot.x_label);
-  text += fmt::format("\n{:>12}{:<{}}{}\n", "", figure(window.x_low),
+  text += fmt::format("\n{:>12}{:<{}}{}\n", "", figure(first),
                       std::max(1, kColumns - static_cast<int>(end.size())), end);
   return text + legend(plot);
 }

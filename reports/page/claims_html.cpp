@@ -66,7 +66,7 @@ std::string claim_html(const Document& document, const Judgement& judgement) {
       "<code>{1}</code></summary>\n",
       html_text(claim.id), html_text(judgement.id), html_text(marked_verdict(judgement)),
       html_text(claim.title));
-  html += "<div class=solve>" + readings_html(claim) + "<div>";
+  html += "<div class=decided>" + readings_html(claim) + "<div>";
   for (const Plot& plot : claim.plots) html += plot_html(plot);
   html += "</div></div>\n";
   claim.readings.clear();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -18,11 +19,12 @@ namespace {
 
 constexpr std::size_t kPoints = 40;  // a curve
 
-// Of a whole run or of two of its points: they have no curve.
-bool is_of_a_run(const std::string& column) {
-  constexpr std::array<const char*, 5> kWhole = {"milliseconds", "bend", "alignment", "deviation",
-                                                 "output_deviation"};
-  return std::ranges::find(kWhole, column) != kWhole.end();
+// What is drawn of a column: itself, what it is the shape of, or nothing where it is of a whole
+// run.
+std::string curve_of(const std::string& column) {
+  constexpr std::array<const char*, 3> kWhole = {"milliseconds", "alignment", "turn"};
+  if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
+  return column == "slowdown" ? "x_error" : column;
 }
 
 using Runs = std::vector<const Record*>;
@@ -33,16 +35,29 @@ Runs runs_of(const Json& alternative, const ByCell& runs) {
   return all;
 }
 
+// Kept points of a run, and that among them which is read.
+std::vector<std::size_t> points_of(const Curve& curve, const Place& place) {
+  std::vector<std::size_t> points = thinned(curve.iteration.size(), kPoints);
+  if (!place.iteration) return points;
+  const auto passed =
+      std::ranges::upper_bound(curve.iteration, *place.iteration) - curve.iteration.begin();
+  points.push_back(static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1));
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
 // A run that has ended keeps its last figure.
 void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_time) {
   const Curve& longest = (*std::ranges::max_element(runs, {}, [](const Record* run) {
                            return run->curve.iteration.size();
                          }))->curve;
   place.seconds.reset();
-  for (const std::size_t i : thinned(longest.iteration.size(), kPoints)) {
+  for (const std::size_t i : points_of(longest, place)) {
     place.iteration = longest.iteration[i];
     std::vector<Real> values;
     for (const Record* run : runs) values.push_back(term.scale * figure_of(*run, place));
+    if (std::ranges::any_of(values, [](Real value) { return std::isnan(value); })) continue;
     const auto [low, high] = std::ranges::minmax(values);
     term.x.push_back(is_over_time ? longest.processor_seconds.at(i)
                                   : static_cast<Real>(longest.iteration[i]));
@@ -52,17 +67,19 @@ void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_t
   }
 }
 
-// The option of the problems that has the terms' abscissas as its values.
+// The option of the problems, or of the optimizers, that has the terms' abscissas as its values.
 std::string abscissa_of(const std::vector<Term>& terms, const Json& cells, const ByCell& runs) {
-  const auto problem = [&](std::size_t i) -> const OptionValues& {
-    return runs_of(cells.at(i).at(0), runs).at(0)->request.problem.options;
-  };
   if (terms.size() < 2 || terms[0].at == terms[1].at) return "";
-  for (const NamedOption& option : problem(0)) {
-    bool is_own = true;
-    for (std::size_t i = 0; i < terms.size() && is_own; ++i)
-      is_own = problem(i).number(option.name, kNever) == terms[i].at;
-    if (is_own) return option.name;
+  for (const auto part : {&Request::problem, &Request::optimizer}) {
+    const auto options = [&](std::size_t i) -> const OptionValues& {
+      return (runs_of(cells.at(i).at(0), runs).at(0)->request.*part).options;
+    };
+    for (const NamedOption& option : options(0)) {
+      bool is_own = true;
+      for (std::size_t i = 0; i < terms.size() && is_own; ++i)
+        is_own = options(i).number(option.name, kNever) == terms[i].at;
+      if (is_own) return option.name;
+    }
   }
   return "";
 }
@@ -75,6 +92,7 @@ EvidenceTerm evidence_of_term(const Term& term, const Json& alternatives, const 
   const Json& optimizer = asked.at("optimizer");
   EvidenceTerm out{.problem = request.problem.spec,
                    .optimizer = optimizer.is_array() ? optimizer.at(chosen.alternative) : optimizer,
+                   .method = request.optimizer.name,
                    .at = term.at,
                    .scale = term.scale,
                    .iteration = place.iteration,
@@ -93,6 +111,7 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
   const Json& quantity = claim.at("quantity");
   Evidence out{.kind = quantity.at("kind"),
                .column = quantity.at("column"),
+               .curve = curve_of(quantity.at("column")),
                .published = published_value(claim.at("published")),
                .band = agreement_of(claim),
                .is_over_time = quantity.value("clock", "") == "seconds"};
@@ -107,9 +126,9 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
         out.terms.emplace_back(evidence_of_term(terms[i], cells.at(i), runs, asked, place));
     const Runs all = runs_of(cells.at(i).at(chosen_of(terms[i]).alternative), runs);
     if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
-    if (is_of_a_run(place.column) || all.at(0)->curve.iteration.empty()) continue;
-    if (place.column == "loss_peak") place.column = "loss";
-    add_curve(term, all, place, out.is_over_time);
+    place.column = out.curve;
+    if (!place.column.empty()) add_curve(term, all, place, out.is_over_time);
+    if (term.x.empty()) continue;
     const Real end = term.x.back();
     term.read_at = place.iteration ? std::min(static_cast<Real>(*place.iteration), end)
                                    : std::min(seconds, end);

@@ -22,6 +22,7 @@ struct EvidenceRun {
 // Of several alternatives the one that counts.
 struct EvidenceTerm {
   std::string problem, optimizer;         // the optimizer as the claim writes it
+  std::string method;                     // the optimizer's name alone
   Real at = 1, scale = 1;                 // its abscissa, and a factor of its figures
   std::optional<std::int64_t> iteration;  // where it is read; none: at the end
   Real read_at = 0;                       // the same on the axis of its curve
@@ -34,6 +35,7 @@ struct EvidenceTerm {
 
 struct Evidence {
   std::string kind, column;   // of the quantity
+  std::string curve;          // the column of the curves
   Real published = 0;         // of a table: no distance from it
   Agreement band;             // what agrees with that
   std::string abscissa;       // the option of the problem that is each term's, where there is one

@@ -13,7 +13,7 @@ namespace isoline::reports {
 namespace {
 
 bool has_abscissa(const Evidence& evidence) {
-  return evidence.kind == "slope" || evidence.kind == "crossing";
+  return evidence.kind.ends_with("slope") || evidence.kind == "crossing";
 }
 
 // A figure that is read at one point: what it should be there.
@@ -30,9 +30,10 @@ PlotSeries goal_at(Real x, Real value, const Agreement& band, Real unit) {
 std::vector<PlotSeries> goals_of(const Evidence& evidence) {
   const EvidenceTerm& first = evidence.terms.at(0);
   const std::string& kind = evidence.kind;
+  if (evidence.curve != evidence.column) return {};
   if (kind == "ratio")
     return {goal_at(first.read_at, evidence.published, evidence.band, evidence.terms.at(1).level)};
-  if (kind == "value" || kind == "greatest" || kind == "equality")
+  if (kind == "value" || kind == "greatest" || kind == "least")
     return {goal_at(first.read_at, evidence.published, evidence.band, 1)};
   return {};  // places and orders are no heights
 }
@@ -42,7 +43,7 @@ Plot curves(const Evidence& evidence) {
   Plot plot{.kind = Plot::Kind::lines,
             .title = evidence.is_over_time ? "Over processor time" : "Over iterations",
             .x_label = evidence.is_over_time ? "seconds of processor time" : "iterations",
-            .y_label = column_words(evidence.column)};
+            .y_label = column_words(evidence.curve)};
   const std::vector<std::string> names = term_names(evidence);
   for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
     const EvidenceTerm& term = evidence.terms[i];
@@ -69,13 +70,28 @@ Plot curves(const Evidence& evidence) {
   return plot;
 }
 
+// Terms by their abscissas.
+std::vector<const EvidenceTerm*> sorted(const Evidence& evidence, std::size_t first,
+                                        std::size_t last) {
+  std::vector<const EvidenceTerm*> terms;
+  for (std::size_t i = first; i < last; ++i) terms.push_back(&evidence.terms.at(i));
+  std::ranges::sort(terms, {}, &EvidenceTerm::at);
+  return terms;
+}
+
+std::string name_of(const std::vector<const EvidenceTerm*>& terms) {
+  const bool is_one = std::ranges::all_of(
+      terms, [&](const EvidenceTerm* term) { return term->optimizer == terms[0]->optimizer; });
+  return is_one ? shown_spec(terms[0]->optimizer) : terms[0]->method;
+}
+
 PlotSeries over_abscissa(const Evidence& evidence, std::size_t first, std::size_t last) {
-  PlotSeries line{.optimizer = {}, .name = evidence.terms.at(first).optimizer};
-  for (std::size_t i = first; i < last; ++i) {
-    const EvidenceTerm& term = evidence.terms[i];
-    const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
-    line.x.push_back(term.at);
-    line.y.push_back(term.level);
+  const auto terms = sorted(evidence, first, last);
+  PlotSeries line{.optimizer = {}, .name = name_of(terms)};
+  for (const EvidenceTerm* term : terms) {
+    const auto [low, high] = std::ranges::minmax(term->runs, {}, &EvidenceRun::figure);
+    line.x.push_back(term->at);
+    line.y.push_back(term->level);
     line.low.push_back(low.figure);
     line.high.push_back(high.figure);
   }
@@ -103,16 +119,38 @@ PlotSeries published_slope(const Evidence& evidence, const PlotSeries& line) {
   return out;
 }
 
+// The medians of the first half of the terms over those of the second.
+PlotSeries ratios_over_abscissa(const Evidence& evidence) {
+  const std::size_t n = evidence.terms.size();
+  const auto over = sorted(evidence, 0, n / 2), under = sorted(evidence, n / 2, n);
+  PlotSeries line{.optimizer = {}, .name = name_of(over) + " / " + name_of(under)};
+  for (std::size_t i = 0; i < std::min(over.size(), under.size()); ++i) {
+    line.x.push_back(over[i]->at);
+    line.y.push_back(over[i]->level / under[i]->level);
+  }
+  return line;
+}
+
+std::string abscissa_words(const Evidence& evidence) {
+  const auto is_iteration = [](const EvidenceTerm& term) {
+    return term.iteration && static_cast<Real>(*term.iteration) == term.at;
+  };
+  if (!evidence.abscissa.empty()) return evidence.abscissa;
+  return std::ranges::all_of(evidence.terms, is_iteration) ? "iterations" : "abscissa";
+}
+
 Plot figures_over_abscissa(const Evidence& evidence) {
   Plot plot{.kind = Plot::Kind::lines,
-            .title = "Over " + (evidence.abscissa.empty() ? "the terms" : evidence.abscissa),
-            .x_label = evidence.abscissa,
+            .title = "Over " + abscissa_words(evidence),
+            .x_label = abscissa_words(evidence),
             .y_label = column_words(evidence.column),
             .is_log_x = true};
   const std::size_t n = evidence.terms.size();
   plot.caption = "Medians over seeds with the least and the greatest as a band.";
-  if (evidence.kind == "slope") {
-    plot.series = {over_abscissa(evidence, 0, n)};
+  if (evidence.kind != "crossing") {
+    const bool is_of_ratios = evidence.kind == "ratio_slope";
+    plot.series = {is_of_ratios ? ratios_over_abscissa(evidence) : over_abscissa(evidence, 0, n)};
+    if (is_of_ratios) plot.y_label += ", ratio";
     plot.published = {published_slope(evidence, plot.series[0])};
     plot.caption +=
         " Broken: the published slope through the middle of the figures, with its error.";

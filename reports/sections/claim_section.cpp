@@ -13,8 +13,10 @@ namespace isoline::reports {
 namespace {
 
 std::string band_text(const Agreement& band) {
-  const std::string low = (band.is_low_open ? "more than " : "") + figure(band.low);
-  const std::string high = (band.is_high_open ? "less than " : "") + figure(band.high);
+  const bool is_narrow = band.low < band.high && figure(band.low) == figure(band.high);
+  const auto written = is_narrow ? exact_figure : static_cast<std::string (*)(Real)>(figure);
+  const std::string low = (band.is_low_open ? "more than " : "") + written(band.low);
+  const std::string high = (band.is_high_open ? "less than " : "") + written(band.high);
   if (band.low == -kNever) return band.is_high_open ? high : high + " or less";
   if (band.high == kNever) return band.is_low_open ? low : low + " or more";
   return band.low == band.high ? fmt::format("{} exactly", low)
@@ -30,14 +32,16 @@ std::string measured_sentence(const Judgement& judgement) {
 }
 
 std::string cells_sentence(const CellSet& set) {
-  std::string text =
-      fmt::format("{} of {} iterations: ", counted(set.planned, "run"), set.iterations);
-  if (set.is_deciding) return text + "all are here, and decide it.";
-  text += set.here == set.planned ? "all are here." : fmt::format("{} are here.", set.here);
-  if (set.here < set.planned)
-    text += set.is_long ? " With --long they are run; that takes hours."
-                        : " Without --no-run they are run.";
-  return text;
+  const std::string text =
+      fmt::format("{} of {} iterations", counted(set.planned, "run"), set.iterations);
+  const bool is_one = set.planned == 1;
+  if (set.is_deciding)
+    return fmt::format("{}, which {} here and {} it.", text, is_one ? "is" : "are",
+                       is_one ? "decides" : "decide");
+  if (set.here == set.planned) return text + ", which are here too.";
+  return fmt::format("{}, of which {} are here; {}.", text, set.here,
+                     set.is_long ? "--long runs the others, which takes hours"
+                                 : "without --no-run the others are run");
 }
 
 std::vector<Reading> readings_of(const Judgement& judgement) {
@@ -62,7 +66,6 @@ std::string read_text(const EvidenceTerm& term) {
 }
 
 Table terms_table(const Evidence& evidence, const std::string& id) {
-  const bool has_abscissa = !evidence.abscissa.empty();
   Table table{.id = "terms-" + id,
               .title = "Figures: " + column_words(evidence.column),
               .columns = {"of", "read", "median", "least", "greatest", "runs"},
@@ -71,10 +74,8 @@ Table terms_table(const Evidence& evidence, const std::string& id) {
   for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
     const EvidenceTerm& term = evidence.terms[i];
     const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
-    std::string name = names[i];
-    if (has_abscissa) name += fmt::format(", {} = {}", evidence.abscissa, figure(term.at));
     table.rows.push_back(
-        {std::move(name), read_text(term), TableCell(figure(term.level), {{"median", term.level}}),
+        {names[i], read_text(term), TableCell(figure(term.level), {{"median", term.level}}),
          figure(low.figure), figure(high.figure), std::to_string(term.runs.size())});
   }
   return table;

@@ -37,7 +37,7 @@ Extent extent_of_y(const Plot& plot) {
   const Extent medians = extent;
   constexpr Real kFurther = 3;
   const auto take_edge = [&](Real y) {
-    if (plot.is_log_y && !(y > 0)) return;
+    if (std::isnan(y) || medians.low > medians.high || (plot.is_log_y && !(y > 0))) return;
     const Real span = medians.high - medians.low;
     extent.take(plot.is_log_y ? std::clamp(y, medians.low / kFurther, kFurther * medians.high)
                               : std::clamp(y, medians.low - span, medians.high + span));
@@ -58,7 +58,9 @@ Extent extent_of_y(const Plot& plot) {
 
 Window window_of(const Plot& plot) {
   const Extent x = extent_of_x(plot), y = extent_of_y(plot);
-  const bool has_start = plot.is_log_x && x.low <= 1;  // iteration 0 is drawn left of the first
+  bool has_start = false;  // iteration 0 is drawn left of the first
+  for (const PlotSeries& line : plot.series)
+    has_start = has_start || (plot.is_log_x && !line.x.empty() && line.x.front() <= 0);
   return {has_start ? x.low / 2 : x.low, x.high, y.low, y.high};
 }
 

@@ -81,7 +81,7 @@ Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
   for (std::size_t i = 0; i < term.figures.size(); ++i) {
     std::vector<Real> values;
     for (const std::size_t seed : seeds) values.push_back(term.figures[i].at(seed));
-    const bool is_absent = std::ranges::any_of(values, [](Real v) { return std::isnan(v); });
+    const bool is_absent = std::ranges::all_of(values, [](Real v) { return std::isnan(v); });
     const Real median = is_absent ? kAbsent : term.scale * median_of(std::move(values));
     if (!chosen || (term.is_worst ? median > chosen->level : median < chosen->level))
       chosen = {i, median};

@@ -154,7 +154,8 @@ TEST(Audit, FindsNoFalseDeclarationInTheRegistry) {
   for (const AuditedOptimizer& each : everything()) {
     EXPECT_EQ(each.flags, std::vector<std::string>{}) << each.name;
     EXPECT_EQ(each.reason, "") << each.name;
-    const bool needs_network = each.name == "kfac" || each.name == "supervised";
+    const bool needs_network =
+        each.name == "kfac" || each.name == "supervised" || each.name == "two-stage";
     EXPECT_EQ(!each.network.empty(), needs_network) << each.name;
   }
 }

@@ -32,7 +32,7 @@ const FinishedMatrix& matrix() {
     const Suite suite{.name = "all",
                       .title = "",
                       .blocks = {{.problems = problems,
-                                  .optimizers = {"*"},
+                                  .optimizers = catalog().optimizers.names(),
                                   .seeds = {1},
                                   .budget = {.iterations = kIterations, .work = kWork}}}};
     return FinishedMatrix(catalog(), suite, Rates::builtin());

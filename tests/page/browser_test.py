@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import urllib.request
 
 import browser
 import colours
@@ -192,6 +193,78 @@ return [...document.querySelectorAll('#cells button.copy')].map((button) => butt
         answer = subprocess.run(f"{again} --out {self.folder.name} --dry-run", shell=True,
                                 check=True, capture_output=True, text=True).stdout
         self.assertIn("3 cells: 3 cached", answer)
+
+
+class Claims(unittest.TestCase):
+    """From the verdicts to the evidence of one claim, in one click."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        subprocess.run([sys.argv[1], "run", "notebook", "--out", cls.folder.name, "--quiet"],
+                       check=True, capture_output=True)
+        report = pathlib.Path(cls.folder.name, "report")
+        cls.json = json.loads((report / "report.json").read_text())
+        cls.address = (report / "index.html").as_uri()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def seen_at(self, page, claim):
+        """Where its head stands, and where the bars end."""
+        return page.wait("const claim = document.getElementById(arguments[0]);"
+                         "const top = claim.getBoundingClientRect().top;"
+                         "const bars = document.querySelector('.bars').getBoundingClientRect();"
+                         "return claim.open && Math.abs(top - bars.bottom) < 60"
+                         " ? [top, bars.bottom] : null", claim)
+
+    def test_a_row_leads_to_its_claim_and_its_address_too(self):
+        claim = "claim-" + self.json["claims"][12]["id"]
+        for size in ((1400, 900), (400, 800)):
+            page = browser.Browser()
+            try:
+                page.call("POST", "/goog/cdp/execute", {  # windows are never so narrow
+                    "cmd": "Emulation.setDeviceMetricsOverride",
+                    "params": {"width": size[0], "height": size[1], "deviceScaleFactor": 1,
+                               "mobile": False}})
+                page.open(self.address)
+                row = f'#claims th a[href="#{claim}"]'
+                page.run("document.querySelector(arguments[0])"
+                         ".scrollIntoView({behavior: 'instant', block: 'center'})", row)
+                page.click(row)
+                top, bars = self.seen_at(page, claim)
+                self.assertGreaterEqual(top, bars - 1, "its head is behind the bars")
+                page.open("about:blank")
+                page.open(f"{self.address}#{claim}")
+                top, bars = self.seen_at(page, claim)
+                self.assertGreaterEqual(top, bars - 1, "its head is behind the bars")
+                wide = page.run("return document.documentElement.scrollWidth - innerWidth")
+                self.assertLessEqual(wide, 0, "the page is wider than the window")
+                self.assertEqual(page.complaints(), [])
+            finally:
+                page.close()
+
+    def test_records_are_linked_and_the_command_repeats_the_claim(self):
+        page = browser.Browser()
+        try:
+            page.open(self.address)
+            links = page.run("return [...document.querySelectorAll('.claim td a')]"
+                             ".map((link) => link.href)")
+            commands = page.run("return [...document.querySelectorAll('.claim [data-command]')]"
+                                ".map((button) => button.dataset.command)")
+        finally:
+            page.close()
+        self.assertGreater(len(links), len(self.json["claims"]) // 2)
+        for link in links:
+            self.assertTrue(pathlib.Path(urllib.request.url2pathname(link[7:])).exists(), link)
+        decided = [claim for claim in self.json["claims"] if claim["sets"]]
+        self.assertEqual(commands, [claim["command"] for claim in decided])
+        again = commands[0].replace("./isoline", sys.argv[1])
+        answer = subprocess.run(again, shell=True, check=False, capture_output=True, text=True,
+                                cwd=self.folder.name)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn(decided[0]["sentence"], " ".join(answer.stdout.split()))
 
 
 if __name__ == "__main__":
