@@ -53,10 +53,12 @@ void Meter::set_scales() {
   const Real scale = std::isfinite(own) && own > 0 ? std::min(own, descent) : descent;
   if (std::isnan(descent) || !std::isfinite(scale)) return;
   trace_.scale = std::max(scale, 0.0);
+  next_target_ = kInfinity;
+  // The minimum of a learned problem is the best loss known, which a longer run may better.
+  if (budget_.target == 0 && problem_.is_learned()) return;
   const bool is_x_sought = trace_.aim == Aim::x;
   target_loss_ =
       target_at(is_x_sought ? budget_.target * std::abs(budget_.target) : budget_.target);
-  next_target_ = kInfinity;
 }
 
 void Meter::prepare() {

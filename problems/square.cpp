@@ -1,5 +1,5 @@
 // P(x) = (x1, x2²), y* = 0, L = ‖y − y*‖² without ½: Holl et al. (2022), Fig. 1 and the comparison
-// notebook of the Physics-based Deep Learning book.
+// notebook of the Physics-based Deep Learning book, which tests its inverse at y* = (2, 2).
 #include <cmath>
 
 #include "problems/dense_physics.h"
@@ -7,6 +7,13 @@
 
 namespace isoline::problems {
 namespace {
+
+struct Options {
+  std::string target;
+};
+void fields(Options& o, auto& field) {
+  field("target", o.target, {"", "test"}, "test: y* = (2, 2), as the notebook tests its inverse");
+}
 
 class Square final : public DensePhysics {
  public:
@@ -26,14 +33,16 @@ class Square final : public DensePhysics {
   }
 };
 
-ProblemParts make_square(const NoOptions&, const Draw& draw) {
+ProblemParts make_square(const Options& o, const Draw& draw) {
+  const Real y = o.target == "test" ? 2 : 0;
+  const Eigen::Vector2d truth(y, std::sqrt(y));
   return {.physics = std::make_unique<Square>(),
           .start = draw.start(Eigen::Vector2d(3, 3)),
-          .target = Vector::Zero(2),
+          .target = Vector::Constant(2, y),
           .loss = std::make_unique<HalfSquared>(2),
           .minimum = 0,
-          .truth = Vector::Zero(2),
-          .x_error = [](BatchRef x, const Batch&) { return x.norm(); },
+          .truth = Vector(truth),
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
           .window = {{-0.3, 3.2, -0.1, 3.5}},  // the axes and levels of Fig. 1
           .y_window = {{-0.3, 3.2, -0.1, 9.5}},
           .contour_spacing = "powers of two"};

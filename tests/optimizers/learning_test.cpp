@@ -26,6 +26,19 @@ Problem smooth(const std::string& batch) {
       batch + "]");
 }
 
+// What is known of a learned problem is the best loss of some run, which a longer one may better.
+TEST(LearnedRuns, GoOnPastTheBestLossKnownWhereEveryToleranceIsToBePassed) {
+  Problem problem = smooth("20");
+  const Real start = run(problem, "adam", iterations(1)).trace->start_loss;
+  problem.set_minimum(0.9 * start);
+  const auto end = [&](Real target) {
+    return run(problem, "adam[rate=0.01]", {.iterations = 300, .target = target}).trace->last;
+  };
+  EXPECT_EQ(end(0).iteration, 300);
+  EXPECT_LT(end(0).loss, 0.9 * start);
+  EXPECT_LT(end(1e-6).iteration, 300);
+}
+
 TEST(HalfInverse, KappaMinusOneIsGradientDescentOnANetwork) {
   for (const char* batch : {"1", "5", "60"})
     expect_near(run(smooth(batch), "hig[kappa=-1,cutoff=0,rate=1e-3]", iterations(5)).theta,
