@@ -126,7 +126,7 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
         out.terms.emplace_back(evidence_of_term(terms[i], cells.at(i), runs, asked, place));
     const Runs all = runs_of(cells.at(i).at(chosen_of(terms[i]).alternative), runs);
     if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
-    place.column = out.curve;
+    place.column = curve_of(place.column);
     if (!place.column.empty()) add_curve(term, all, place, out.is_over_time);
     if (term.x.empty()) continue;
     const Real end = term.x.back();

@@ -15,10 +15,10 @@ namespace isoline::reports {
 struct Document {
   Comparison comparison;  // of a study that must outlive it
   std::vector<Judgement> claims;
-  std::string out = {};  // the folder that it goes to, where that is known: links start there
-  std::string headline;              // "33 optimizers on 16 problems, …"
-  std::string statuses;              // "target 3, budget 2"
-  std::string incomplete;            // which cells are missing; empty where none is
+  std::string out = {};    // the folder that it goes to, where that is known: links start there
+  std::string headline;    // "33 optimizers on 16 problems, …"
+  std::string statuses;    // "target 3, budget 2"
+  std::string incomplete;  // which cells are missing; empty where none is
   std::vector<std::string> remarks;  // what a reader must know before believing the tables
   std::vector<Section> sections;
   std::vector<Figure> figures;

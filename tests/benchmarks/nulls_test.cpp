@@ -201,7 +201,7 @@ std::vector<Record> relabelled(const std::vector<Record>& runs, RandomStream& ra
 // How often each claim comes out well, of so many permutations.
 std::map<std::string, Real> survivals(const std::vector<Claim>& claims,
                                       const std::vector<Record>& runs) {
-  constexpr int kPermutations = 200;
+  constexpr int kPermutations = 50;
   const Json asked = json_of(claims);
   std::map<std::string, Real> shares;
   for (const Judgement& judgement : judge(asked, runs))

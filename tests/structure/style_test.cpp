@@ -21,6 +21,7 @@ const std::map<std::string, std::string> kLongFiles = {
      "every verb's arguments, in the one file that parses CLI11"},
     {"problems/conformance.cpp", "one examination: a law a function, at the same point"},
     {"optimizers/nlopt.cpp", "one library: its call, its checks and the list of its algorithms"},
+    {"reports/formats/terminal.cpp", "all that a terminal shows: tables, sections, a claim"},
     {"reports/page/svg.cpp", "one drawing of every kind of plot"},
     {"tests/benchmarks/merge_test.cpp", "one law of unions a test, over the same folders"},
     {"tests/cli/run_test.cpp", "one verb as a user meets it"},
