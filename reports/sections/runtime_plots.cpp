@@ -106,6 +106,7 @@ PlotSeries target_series(const Comparison& c, std::size_t s, std::size_t problem
 }  // namespace
 
 Plots runtime_plot(const Comparison& c) {
+  if (shown_optimizers(c, kMostLines) == 0) return {};
   const Measure by = cost_measure(c);
   Real most = 1;
   for (const Run& run : c.runs) most = std::max(most, in_units(by, spent_by(run, by)));
