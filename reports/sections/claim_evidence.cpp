@@ -17,7 +17,7 @@ namespace isoline::reports {
 using Json = nlohmann::json;
 namespace {
 
-constexpr std::size_t kPoints = 40;  // a curve
+constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
 
 // What is drawn of a column: itself, what it is the shape of, or nothing where it is of a whole
 // run.
@@ -35,13 +35,16 @@ Runs runs_of(const Json& alternative, const ByCell& runs) {
   return all;
 }
 
-// Kept points of a run, and that among them which is read.
+// Kept points of a run, close at the start and close at the end, and that which is read.
 std::vector<std::size_t> points_of(const Curve& curve, const Place& place) {
   std::vector<std::size_t> points = thinned(curve.iteration.size(), kPoints);
-  if (!place.iteration) return points;
-  const auto passed =
-      std::ranges::upper_bound(curve.iteration, *place.iteration) - curve.iteration.begin();
-  points.push_back(static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1));
+  const std::size_t stride = curve.iteration.size() / kPoints + 1;
+  for (std::size_t i = 0; i < curve.iteration.size(); i += stride) points.push_back(i);
+  if (place.iteration) {
+    const auto passed =
+        std::ranges::upper_bound(curve.iteration, *place.iteration) - curve.iteration.begin();
+    points.push_back(static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1));
+  }
   std::ranges::sort(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
