@@ -41,21 +41,25 @@ Real Frame::y(Real value) const {
 
 std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
   constexpr Real kMost = 8, kFewDoublings = 100;
+  constexpr int kBound =
+      64;  // of any axis: where a step is lost to rounding, none goes on for ever
   std::vector<Real> ticks;
   if (is_logarithmic) {
     Real factor = high / low <= kFewDoublings ? 2 : 10;
     const Real powers = std::log(high / low) / std::log(factor);
     factor = std::pow(factor, std::max(1.0, std::ceil(powers / kMost)));
     const Real first = std::pow(factor, std::ceil(std::log(low) / std::log(factor) - 1e-9));
-    for (Real tick = first; tick <= high * (1 + 1e-9); tick *= factor) ticks.push_back(tick);
+    for (Real tick = first; tick <= high * (1 + 1e-9) && std::ssize(ticks) < kBound; tick *= factor)
+      ticks.push_back(tick);
     return ticks;
   }
   const Real rough = (high - low) / kMost, power = std::pow(10.0, std::floor(std::log10(rough)));
   Real step = 10 * power;
   for (const Real digit : {5, 2, 1})
     if (digit * power >= rough) step = digit * power;
-  for (Real i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
-    ticks.push_back(i * step + 0.0);  // no −0
+  const Real first = std::ceil(low / step - 1e-9);
+  for (int i = 0; i < kBound && (first + i) * step <= high + 1e-9 * step; ++i)
+    ticks.push_back((first + i) * step + 0.0);  // no −0
   return ticks;
 }
 
@@ -67,8 +71,8 @@ std::vector<Real> heights_of(const Frame& frame) {
   if (!frame.is_log_y || frame.y_high > kNear * frame.y_low)
     return ticks_of(frame.y_low, frame.y_high, frame.is_log_y);
   std::vector<Real> ticks;
-  for (Real power = std::pow(10.0, std::floor(std::log10(frame.y_low))); power <= frame.y_high;
-       power *= 10)
+  Real power = std::pow(10.0, std::floor(std::log10(frame.y_low)));
+  for (int decade = 0; decade <= 3 && power <= frame.y_high; ++decade, power *= 10)
     for (const Real digit : {1, 2, 5})
       if (digit * power >= frame.y_low && digit * power <= frame.y_high)
         ticks.push_back(digit * power);

@@ -50,7 +50,10 @@ Extent extent_of_y(const Plot& plot) {
     }
   if (extent.low > extent.high) return {0.1, 1};
   if (plot.is_log_y) return {extent.low / 1.15, 1.15 * extent.high};  // some air
-  const Real air = extent.high > extent.low ? 0.05 * (extent.high - extent.low) : 0.5;
+  // Figures that differ by rounding alone are drawn as one.
+  const Real span = extent.high - extent.low;
+  const Real size = std::max(std::abs(extent.low), std::abs(extent.high));
+  const Real air = span > 1e-9 * size ? 0.05 * span : size > 0 ? 0.5 * size : 0.5;
   return {extent.low - air, extent.high + air};
 }
 

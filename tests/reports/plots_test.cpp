@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "core/json.h"
+#include "reports/page/frame.h"
 #include "reports/page/page.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
@@ -164,6 +165,22 @@ TEST(Plots, HaveTheirNumbersInTheReport) {
 TEST(Plots, OfNothingAreNone) {
   const Study none;
   EXPECT_TRUE(statistics_section(compare_optimizers(none)).plots.empty());
+}
+
+// Where ends are equal but for their last bits, or are none at all, a step is lost to rounding.
+TEST(Plots, HaveAxesOfFewTicksWhateverTheirEnds) {
+  const Real last = std::nextafter(1.0, 2.0);
+  for (const auto& [low, high] :
+       {std::pair{1.0, last}, std::pair{1e17, 1e17 + 16}, std::pair{-last, -1.0},
+        std::pair{0.0, 1e-320}, std::pair{0.0, 1.0}, std::pair{1e-300, 1e300}})
+    for (const bool is_logarithmic : {false, true})
+      EXPECT_LE(ticks_of(low, high, is_logarithmic).size(), 64U) << low << " to " << high;
+  EXPECT_EQ(ticks_of(0, 10, false).size(), 6U);  // 0, 2, … 10
+  Frame frame;
+  frame.y_low = 0;
+  frame.y_high = 5e-324;
+  frame.is_log_y = true;
+  EXPECT_LT(y_axis(frame, "", false).size(), 10000U);
 }
 
 }  // namespace
