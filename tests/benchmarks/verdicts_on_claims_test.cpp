@@ -41,7 +41,8 @@ std::vector<Record> run_of(const std::vector<Request>& requests) {
 std::vector<Record> run_learned() {
   std::vector<Request> requests = expand(catalog(), read_suite("sip-quick"), Rates::builtin());
   std::erase_if(requests, [&](const Request& request) {
-    return request.budget.iterations < 2000 || request.rates == "learn-tuned.json" ||
+    return request.budget.iterations < 2000 || request.budget.iterations > 10'000 ||
+           request.rates == "learn-tuned.json" ||
            request.problem.spec.find("phi") != std::string::npos ||
            request.problem.options.number("xi", 1) > 32;
   });
