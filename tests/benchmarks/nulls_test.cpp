@@ -67,6 +67,16 @@ bool has(const Claim& claim, const std::vector<std::string>& parts) {
   });
 }
 
+// Those whose cells take seconds.
+std::vector<Claim> quick_claims(std::int64_t most, int seeds) {
+  std::vector<Claim> all = shortened(most, seeds);
+  std::erase_if(all, [](const Claim& claim) {
+    return has(claim,
+               {"heat", "poisson", "phi", "watch", "steps", "theorem", "batch", "xi=48", "xi=64"});
+  });
+  return all;
+}
+
 bool is_good(const Judgement& judgement) { return judgement.verdict <= Verdict::consistent; }
 
 // At most one in twenty of those that were judged.
@@ -107,10 +117,7 @@ Record untrained(Record record) {
 }
 
 TEST(Nulls, AtMostOneClaimInTwentyOutlivesNetworksThatWereNeverTrained) {
-  std::vector<Claim> claims = shortened(1, 1);
-  std::erase_if(claims, [](const Claim& claim) {  // a step of these takes seconds
-    return has(claim, {"hessian-free", "fno", "watch", "steps", "theorem", "batch=32"});
-  });
+  const std::vector<Claim> claims = quick_claims(1, 1);
   std::vector<Record> runs = FinishedMatrix(catalog(), cells_of(claims, true)).records;
   for (Record& run : runs) run = untrained(std::move(run));
   expect_hardly_any(judge(json_of(claims), runs));
@@ -118,17 +125,8 @@ TEST(Nulls, AtMostOneClaimInTwentyOutlivesNetworksThatWereNeverTrained) {
 
 // --- runs that take seconds, far shorter than the claims speak of
 
-std::vector<Claim> quick_claims() {
-  std::vector<Claim> all = shortened(200, 3);
-  std::erase_if(all, [](const Claim& claim) {
-    return has(claim,
-               {"heat", "poisson", "phi", "watch", "steps", "theorem", "batch", "xi=48", "xi=64"});
-  });
-  return all;
-}
-
 struct Trained {
-  std::vector<Claim> claims = quick_claims();
+  std::vector<Claim> claims = quick_claims(200, 3);
   std::vector<Record> runs = FinishedMatrix(catalog(), cells_of(claims, true)).records;
 };
 
