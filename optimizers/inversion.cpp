@@ -178,8 +178,9 @@ std::unique_ptr<Inversion> make_inversion(const InversionOptions& o, Inverse kin
   return std::make_unique<ByLbfgs>(o.step, o.inverse_evaluations);
 }
 
-void add_needs(const InversionOptions& o, Inverse kind, OracleSet& needs) {
-  if (uses_own_inverse(o, kind)) {
+OracleSet needs_of(const InversionOptions& o, const Problem& problem) {
+  OracleSet needs{Oracle::forward, Oracle::network};
+  if (uses_own_inverse(o, problem.inverse_kind())) {
     needs.add(Oracle::inverse);
   } else if (o.inverse == "newton") {
     needs.add(Oracle::sensitivity);
@@ -187,6 +188,7 @@ void add_needs(const InversionOptions& o, Inverse kind, OracleSet& needs) {
   } else {
     needs.add(Oracle::pullback);
   }
+  return needs;
 }
 
 std::string objection_to(const InversionOptions& o, const Problem& problem) {

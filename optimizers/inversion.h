@@ -37,9 +37,19 @@ inline void fields(InversionOptions& o, auto& field) {
 }
 
 std::unique_ptr<Inversion> make_inversion(const InversionOptions& options, Inverse kind);
-void add_needs(const InversionOptions& options, Inverse kind, OracleSet& needs);
+OracleSet needs_of(const InversionOptions& options, const Problem& problem);  // and the network
 // Why it can't treat a problem, in words; empty if it can.
 std::string objection_to(const InversionOptions& options, const Problem& problem);
+
+// The same for the entry of a method whose options hold an `inversion`.
+template <class Options>
+OracleSet needs_of_inversion(const OptionValues& options, const Problem& problem) {
+  return needs_of(read_options<Options>(options).inversion, problem);
+}
+template <class Options>
+std::string objection_of_inversion(const OptionValues& options, const Problem& problem) {
+  return objection_to(read_options<Options>(options).inversion, problem);
+}
 
 // x̃ = x − V diag(sign(g̃ᵢ) lᵢ) Vᵀ, lᵢ = |g̃ᵢ/(Sᵢ + μ)|, at most `clip` where that is not 0: Newton's
 // step on ½‖P(x) − y*‖² against the gradient, with H = V diag(S) Vᵀ and g̃ = Vᵀ∇L.

@@ -60,16 +60,6 @@ class Sip final : public Optimizer {
   Matrix found_;  // (k, B) x̃
 };
 
-OracleSet needs_for(const OptionValues& options, const Problem& problem) {
-  OracleSet needs{Oracle::forward, Oracle::network};
-  add_needs(read_options<Options>(options).inversion, problem.inverse_kind(), needs);
-  return needs;
-}
-
-std::string objection(const OptionValues& options, const Problem& problem) {
-  return objection_to(read_options<Options>(options).inversion, problem);
-}
-
 }  // namespace
 
 void register_sip(OptimizerRegistry& registry) {
@@ -87,9 +77,9 @@ void register_sip(OptimizerRegistry& registry) {
                 .is_input_scale_invariant = true,
                 .options = option_table<Options>(),
                 .tunable = {.option = "step", .below = 5},
-                .needs_for = needs_for,
+                .needs_for = needs_of_inversion<Options>,
                 .inside = NetworkDescent::inside,
-                .objection = objection,
+                .objection = objection_of_inversion<Options>,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<Sip>(read_options<Options>(options), known);

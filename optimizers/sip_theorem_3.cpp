@@ -67,16 +67,6 @@ class SipTheorem3 final : public Optimizer {
   Matrix found_;  // (k, B) x̃
 };
 
-OracleSet needs_for(const OptionValues& options, const Problem& problem) {
-  OracleSet needs{Oracle::forward, Oracle::network};
-  add_needs(read_options<Options>(options).inversion, problem.inverse_kind(), needs);
-  return needs;
-}
-
-std::string objection(const OptionValues& options, const Problem& problem) {
-  return objection_to(read_options<Options>(options).inversion, problem);
-}
-
 }  // namespace
 
 void register_sip_theorem_3(OptimizerRegistry& registry) {
@@ -94,9 +84,9 @@ void register_sip_theorem_3(OptimizerRegistry& registry) {
                 .options = option_table<Options>(),
                 .tunable = {.option = "step", .below = 5},
                 .in_all = false,
-                .needs_for = needs_for,
+                .needs_for = needs_of_inversion<Options>,
                 .inside = NetworkDescent::inside,
-                .objection = objection,
+                .objection = objection_of_inversion<Options>,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
                   return std::make_unique<SipTheorem3>(read_options<Options>(options), known);

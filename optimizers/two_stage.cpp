@@ -70,17 +70,11 @@ class TwoStage final : public Optimizer {
   Matrix labels_;     // (k, B) x̃
 };
 
-OracleSet needs_for(const OptionValues& options, const Problem& problem) {
-  OracleSet needs{Oracle::forward, Oracle::network};
-  add_needs(read_options<Options>(options).inversion, problem.inverse_kind(), needs);
-  return needs;
-}
-
 // Without a network it would be the solver alone.
 std::string objection(const OptionValues& options, const Problem& problem) {
   if (problem.has_identity_network())
     return "it labels samples for a network to learn, and there is no network";
-  return objection_to(read_options<Options>(options).inversion, problem);
+  return objection_of_inversion<Options>(options, problem);
 }
 
 }  // namespace
@@ -98,7 +92,7 @@ void register_two_stage(OptimizerRegistry& registry) {
                 .options = option_table<Options>(),
                 .tunable = {.option = "network-optimizer"},
                 .in_all = false,
-                .needs_for = needs_for,
+                .needs_for = needs_of_inversion<Options>,
                 .inside = NetworkDescent::inside,
                 .objection = objection,
                 .make = [](const OptionValues& options,

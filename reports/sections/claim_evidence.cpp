@@ -40,11 +40,7 @@ std::vector<std::size_t> points_of(const Curve& curve, const Place& place) {
   std::vector<std::size_t> points = thinned(curve.iteration.size(), kPoints);
   const std::size_t stride = curve.iteration.size() / kPoints + 1;
   for (std::size_t i = 0; i < curve.iteration.size(); i += stride) points.push_back(i);
-  if (place.iteration) {
-    const auto passed =
-        std::ranges::upper_bound(curve.iteration, *place.iteration) - curve.iteration.begin();
-    points.push_back(static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1));
-  }
+  if (place.iteration) points.push_back(index_at(curve, place));
   std::ranges::sort(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
@@ -87,10 +83,8 @@ std::string abscissa_of(const std::vector<Term>& terms, const Json& cells, const
   return "";
 }
 
-EvidenceTerm evidence_of_term(const Term& term, const Json& alternatives, const ByCell& runs,
+EvidenceTerm evidence_of_term(const Term& term, const Chosen& chosen, const Runs& all,
                               const Json& asked, const Place& place) {
-  const Chosen chosen = chosen_of(term);
-  const Runs all = runs_of(alternatives.at(chosen.alternative), runs);
   const Request& request = all.at(0)->request;
   const Json& optimizer = asked.at("optimizer");
   EvidenceTerm out{.problem = request.problem.spec,
@@ -125,9 +119,10 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const Json& asked = quantity.at("terms").at(i);
     Place place = place_of(claim, asked);
+    const Chosen chosen = chosen_of(terms[i]);
+    const Runs all = runs_of(cells.at(i).at(chosen.alternative), runs);
     EvidenceTerm& term =
-        out.terms.emplace_back(evidence_of_term(terms[i], cells.at(i), runs, asked, place));
-    const Runs all = runs_of(cells.at(i).at(chosen_of(terms[i]).alternative), runs);
+        out.terms.emplace_back(evidence_of_term(terms[i], chosen, all, asked, place));
     if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
     place.column = curve_of(place.column);
     if (!place.column.empty()) add_curve(term, all, place, out.is_over_time);

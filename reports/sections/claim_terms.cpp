@@ -117,7 +117,7 @@ bool has_rivals(const Json& claim) {
       if (one.value("problem", "") == other.value("problem", "") &&
           one.at("optimizer") != other.at("optimizer"))
         return true;
-  return false;
+  return claim.contains("contrast") && has_rivals(claim.at("contrast"));
 }
 
 }  // namespace isoline::reports

@@ -39,7 +39,8 @@ std::vector<Term> terms_of(const nlohmann::json& claim, const nlohmann::json& ce
 std::vector<Real> equal_seconds(const nlohmann::json& cells, const ByCell& runs,
                                 std::int64_t iterations);
 
-// Whether the terms of a problem are of several optimizers: else none can be taken for another.
+// Whether terms of one problem are of several optimizers, in the claim or in what it is held
+// against: else none can be taken for another.
 bool has_rivals(const nlohmann::json& claim);
 
 }  // namespace isoline::reports

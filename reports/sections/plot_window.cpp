@@ -18,22 +18,23 @@ struct Extent {
   }
 };
 
-Extent extent_of_x(const Plot& plot) {
+Extent extent_of(const Plot& plot, std::vector<Real> PlotSeries::*values, bool is_logarithmic) {
   Extent extent;
   for (const auto* all : {&plot.series, &plot.published})
     for (const PlotSeries& line : *all)
-      for (const Real x : line.x)
-        if (x > 0 || !plot.is_log_x) extent.take(x);
+      for (const Real value : line.*values)
+        if (value > 0 || !is_logarithmic) extent.take(value);
+  return extent;
+}
+
+Extent extent_of_x(const Plot& plot) {
+  Extent extent = extent_of(plot, &PlotSeries::x, plot.is_log_x);
   if (!(extent.high > extent.low)) extent = {0, std::max(1.0, 2 * extent.low)};
   return extent;
 }
 
 Extent extent_of_y(const Plot& plot) {
-  Extent extent;
-  for (const auto* all : {&plot.series, &plot.published})
-    for (const PlotSeries& line : *all)
-      for (const Real y : line.y)
-        if (y > 0 || !plot.is_log_y) extent.take(y);
+  Extent extent = extent_of(plot, &PlotSeries::y, plot.is_log_y);
   const Extent medians = extent;
   constexpr Real kFurther = 3;
   const auto take_edge = [&](Real y) {

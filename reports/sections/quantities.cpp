@@ -41,13 +41,21 @@ Real crossing(const std::vector<Real>& m, const std::vector<Real>& at) {
   return kNever;
 }
 
-// Pairs in the order of the terms, less those against it, over all of them.
-Real order(const std::vector<Real>& m) {
+// Kendall's τ: pairs in the same order, less those in the opposite one, over all pairs.
+Real kendall(const Real* first, const Real* second, std::size_t n) {
+  const auto sign = [](Real d) { return d > 0 ? 1 : d < 0 ? -1 : 0; };
   Real with = 0, pairs = 0;
-  for (std::size_t i = 0; i < m.size(); ++i)
-    for (std::size_t j = i + 1; j < m.size(); ++j, ++pairs)
-      with += m[i] < m[j] ? 1 : m[i] > m[j] ? -1 : 0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j, ++pairs)
+      with += sign(first[i] - first[j]) * sign(second[i] - second[j]);
   return with / pairs;
+}
+
+// With the order of the terms.
+Real order(const std::vector<Real>& m) {
+  std::vector<Real> places(m.size());
+  std::iota(places.begin(), places.end(), 0);
+  return kendall(m.data(), places.data(), m.size());
 }
 
 // The first half of the terms over the second.
@@ -58,15 +66,10 @@ std::vector<Real> ratios(const std::vector<Real>& m) {
   return all;
 }
 
-// Kendall's τ of the first half of the terms with the second.
+// Of the first half of the terms with the second.
 Real agreement(const std::vector<Real>& m) {
   const std::size_t half = m.size() / 2;
-  const auto sign = [](Real d) { return d > 0 ? 1 : d < 0 ? -1 : 0; };
-  Real with = 0, pairs = 0;
-  for (std::size_t i = 0; i < half; ++i)
-    for (std::size_t j = i + 1; j < half; ++j, ++pairs)
-      with += sign(m[i] - m[j]) * sign(m[half + i] - m[half + j]);
-  return with / pairs;
+  return kendall(m.data(), m.data() + half, half);
 }
 
 // Of the first, from 1; those equal to it share the places that they take.

@@ -13,17 +13,6 @@ namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
 
-// The last kept point at or before the place.
-std::size_t index_at(const Curve& curve, const Place& place) {
-  const auto last = [](const auto& column, const auto& at) {
-    const std::ptrdiff_t passed = std::ranges::upper_bound(column, at) - column.begin();
-    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
-  };
-  if (place.iteration) return last(curve.iteration, *place.iteration);
-  if (place.seconds) return last(curve.processor_seconds, *place.seconds);
-  return curve.iteration.size() - 1;
-}
-
 // Running means begin with the first step: before it, what that saw.
 Real value_at(const std::vector<Real>& column, std::size_t index) {
   const bool is_before_any = index == 0 && std::isnan(column[0]) && column.size() > 1;
@@ -148,6 +137,16 @@ std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
     rows.push_back({record.curve.iteration.at(at), place.table[i], path.at(at)});
   }
   return rows;
+}
+
+std::size_t index_at(const Curve& curve, const Place& place) {
+  const auto last = [](const auto& column, const auto& at) {
+    const std::ptrdiff_t passed = std::ranges::upper_bound(column, at) - column.begin();
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
+  };
+  if (place.iteration) return last(curve.iteration, *place.iteration);
+  if (place.seconds) return last(curve.processor_seconds, *place.seconds);
+  return curve.iteration.size() - 1;
 }
 
 Real figure_of(const Record& record, const Place& place) {

@@ -27,6 +27,9 @@ struct PrintedRow {
 // the path is shorter.
 std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
 
+// The last kept point at or before the place.
+std::size_t index_at(const Curve& curve, const Place& place);
+
 // Not-a-number where the record does not hold it.
 Real figure_of(const Record& record, const Place& place);
 std::string column_words(const std::string& column);  // "error in x"

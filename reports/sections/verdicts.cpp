@@ -60,9 +60,7 @@ void name_survived_nulls(Judgement& out, Measured from) {
     return take(planted, from) && weaker_verdict(planted, from.claim) <= out.verdict;
   };
   if (is_survived(Null::untrained)) out.survives.emplace_back("networks that were never trained");
-  const bool is_of_rivals = has_rivals(from.claim) || (from.claim.contains("contrast") &&
-                                                       has_rivals(from.claim.at("contrast")));
-  if (is_of_rivals && is_survived(Null::twins))
+  if (has_rivals(from.claim) && is_survived(Null::twins))
     out.survives.emplace_back("one method under all its names");
 }
 
@@ -84,8 +82,6 @@ void measure_in(Judgement& out, const Measured& from) {
   out.is_drawn = set.contains("seeds");
   out.cells = cells_of(set);
   const bool is_known = take(out, from);
-  out.evidence = from.evidence(claim, "terms");
-  if (out.contrast) out.contrast->evidence = from.evidence(claim.at("contrast"), "contrast_terms");
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
   if (claim.contains("not_comparable")) {
@@ -100,6 +96,8 @@ void measure_in(Judgement& out, const Measured& from) {
     out.verdict = weaker_verdict(out, claim);
     if (out.verdict <= Verdict::consistent) name_survived_nulls(out, from);
   }
+  out.evidence = from.evidence(claim, "terms");
+  if (out.contrast) out.contrast->evidence = from.evidence(claim.at("contrast"), "contrast_terms");
 }
 
 Judgement judge_one(const Json& claim, const ByCell& runs) {

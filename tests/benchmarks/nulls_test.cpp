@@ -6,11 +6,10 @@
 #include <ranges>
 
 #include "benchmarks/plan/claim_cells.h"
-#include "benchmarks/plan/resources.h"
-#include "core/json.h"
 #include "core/random.h"
 #include "reports/report.h"
 #include "reports/sections/claim_terms.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {
@@ -19,11 +18,6 @@ using reports::judge;
 using reports::Judgement;
 using reports::Verdict;
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 void shorten(Json& asked, std::int64_t most) {
   Json& quantity = asked["quantity"];
@@ -42,7 +36,9 @@ std::vector<Claim> shortened(std::int64_t most, int seeds) {
   for (const auto& [name, text] : builtin_claims()) {
     Json file = parse_json(std::string(text), name);
     for (Json& claim : file["claims"]) {
-      if (!claim.contains("cells") || claim.contains("not_comparable")) continue;
+      if (claim.contains("not_comparable"))  // no run decides it
+        for (const char* part : {"cells", "quantity", "contrast"}) claim.erase(part);
+      if (!claim.contains("cells")) continue;
       Json cheapest = claim["cells"].back();
       Json& iterations = cheapest["budget"]["iterations"];
       iterations = std::min(most, iterations.get<std::int64_t>());
@@ -138,10 +134,7 @@ const Trained& trained() {
 // Those that name several optimizers of a problem: no other can take one for another.
 std::vector<Claim> claims_of_rivals() {
   std::vector<Claim> all = trained().claims;
-  std::erase_if(all, [](const Claim& claim) {
-    return !reports::has_rivals(*claim.json) &&
-           !(claim.json->contains("contrast") && reports::has_rivals(claim.json->at("contrast")));
-  });
+  std::erase_if(all, [](const Claim& claim) { return !reports::has_rivals(*claim.json); });
   return all;
 }
 

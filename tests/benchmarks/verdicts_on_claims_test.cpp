@@ -9,6 +9,7 @@
 #include "benchmarks/plan/claim_cells.h"
 #include "core/random.h"
 #include "reports/report.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {
@@ -18,11 +19,6 @@ using reports::Judgement;
 using reports::measured_text;
 using reports::Verdict;
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Json claims_of(const std::vector<std::string>& names) {
   return json_of(chosen_claims(builtin_claims_of(catalog()), names));

@@ -24,7 +24,6 @@ const std::map<std::string, std::string> kLongFiles = {
     {"reports/formats/terminal.cpp", "all that a terminal shows: tables, sections, a claim"},
     {"reports/page/svg.cpp", "one drawing of every kind of plot"},
     {"tests/benchmarks/merge_test.cpp", "one law of unions a test, over the same folders"},
-    {"tests/benchmarks/nulls_test.cpp", "three nulls, over the same short runs"},
     {"tests/cli/run_test.cpp", "one verb as a user meets it"},
     {"tests/reports/claims_test.cpp", "one law of verdicts a test, over the same two optimizers"},
     {"tests/reports/claim_evidence_test.cpp", "one claim's evidence in every format"},
