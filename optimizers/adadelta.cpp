@@ -34,6 +34,7 @@ void register_adadelta(OptimizerRegistry& registry) {
   registry.add(rule_entry<Adadelta>(
       {.name = "adadelta",
        .title = "Adadelta",
+       .kind = Kind::adaptive,
        .formula = "s ← ρ s + (1−ρ) ∇L²,  Δ = √(u+ε)/√(s+ε) ∇L,  u ← ρ u + (1−ρ) Δ²,  θ ← θ − η Δ",
        .source = "Zeiler (2012), algorithm 1",
        .tunable = {.option = "rate", .below = 2}}));

@@ -29,6 +29,7 @@ void fields(Adagrad& o, auto& field) {
 void register_adagrad(OptimizerRegistry& registry) {
   registry.add(rule_entry<Adagrad>({.name = "adagrad",
                                     .title = "Adagrad",
+                                    .kind = Kind::adaptive,
                                     .formula = "s ← s + ∇L²,  θ ← θ − η ∇L/(√s + ε)",
                                     .source = "Duchi, Hazan, Singer (2011), fig. 1",
                                     .tunable = {.option = "rate", .below = 0}}));

@@ -85,6 +85,7 @@ void register_adahessian(OptimizerRegistry& registry) {
       {.name = "adahessian",
        .title = "AdaHessian",
        .family = Family::curvature,
+       .kind = Kind::second_order,
        .formula = "D = z ⊙ ∇²L z,  m ← β₁ m + (1−β₁) ∇L,  v ← β₂ v + (1−β₂) D²,  "
                   "θ ← θ − η m̂/(√v̂ᵖ + ε)",
        .source = "Yao et al. (2021)",

@@ -37,6 +37,7 @@ void register_adam(OptimizerRegistry& registry) {
   registry.add(rule_entry<Adam>(
       {.name = "adam",
        .title = "Adam",
+       .kind = Kind::adaptive,
        .formula = "m ← β₁ m + (1−β₁) ∇L,  v ← β₂ v + (1−β₂) ∇L²,  θ ← θ − η m̂/(√v̂ + ε)",
        .source = "Kingma, Ba (2015), algorithm 1",
        .tunable = {.option = "rate", .below = 0}}));

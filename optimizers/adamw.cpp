@@ -38,6 +38,7 @@ void fields(Adamw& o, auto& field) {
 void register_adamw(OptimizerRegistry& registry) {
   registry.add(rule_entry<Adamw>({.name = "adamw",
                                   .title = "Adam with decoupled weight decay",
+                                  .kind = Kind::adaptive,
                                   .formula = "θ ← (1 − η λ) θ − η m̂/(√v̂ + ε)",
                                   .source = "Loshchilov, Hutter (2019), algorithm 2",
                                   .note = "Its fixed point is not the minimum of L but is pulled "

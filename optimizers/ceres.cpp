@@ -178,6 +178,7 @@ OptimizerEntry entry_of(const TrustRegion& m) {
   return {.name = m.name,
           .title = m.title,
           .family = Family::ceres,
+          .kind = Kind::least_squares,
           .formula = m.formula,
           .source = m.source,
           .note = m.note,
@@ -204,20 +205,22 @@ OptimizerEntry entry_of(const TrustRegion& m) {
 
 struct LineSearch {
   ceres::LineSearchDirectionType direction;
+  Kind kind;
   const char *name, *title, *formula, *source;
   Index most_unknowns = std::numeric_limits<Index>::max();
 };
 
 const LineSearch kLineSearches[] = {
-    {ceres::STEEPEST_DESCENT, "ceres-steepest-descent", "Steepest descent with line search (Ceres)",
-     "θ ← θ − α ∇L,  α by the Wolfe conditions",
+    {ceres::STEEPEST_DESCENT, Kind::gradient, "ceres-steepest-descent",
+     "Steepest descent with line search (Ceres)", "θ ← θ − α ∇L,  α by the Wolfe conditions",
      "Ceres 2.1; Nocedal, Wright (2006), algorithm 3.5"},
-    {ceres::NONLINEAR_CONJUGATE_GRADIENT, "ceres-ncg", "Nonlinear conjugate gradients (Ceres)",
-     "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d", "Ceres 2.1; Fletcher, Reeves (1964)"},
-    {ceres::BFGS, "ceres-bfgs", "BFGS (Ceres)",
+    {ceres::NONLINEAR_CONJUGATE_GRADIENT, Kind::gradient, "ceres-ncg",
+     "Nonlinear conjugate gradients (Ceres)", "d ← −∇L + β d,  β = ‖∇L‖²/‖∇L₋‖²,  θ ← θ + α d",
+     "Ceres 2.1; Fletcher, Reeves (1964)"},
+    {ceres::BFGS, Kind::quasi_newton, "ceres-bfgs", "BFGS (Ceres)",
      "θ ← θ − α B ∇L,  B ≈ H⁻¹ by rank-two updates, dense",
      "Ceres 2.1; Nocedal, Wright (2006), algorithm 6.1", 2048},
-    {ceres::LBFGS, "ceres-lbfgs", "Limited-memory BFGS (Ceres)",
+    {ceres::LBFGS, Kind::quasi_newton, "ceres-lbfgs", "Limited-memory BFGS (Ceres)",
      "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last 20 steps", "Ceres 2.1; Nocedal (1980)"},
 };
 
@@ -225,6 +228,7 @@ OptimizerEntry entry_of(const LineSearch& method) {
   return {.name = method.name,
           .title = method.title,
           .family = Family::ceres,
+          .kind = method.kind,
           .formula = method.formula,
           .source = method.source,
           .needs = {Oracle::forward, Oracle::pullback},

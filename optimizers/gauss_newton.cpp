@@ -48,6 +48,7 @@ void register_gauss_newton(OptimizerRegistry& registry) {
       {.name = "gauss-newton",
        .title = "Gauss-Newton",
        .family = Family::curvature,
+       .kind = Kind::least_squares,
        .formula = "θ ← θ − η J⁺ (y − y*)",
        .source = "Gauss (1809); Nocedal, Wright (2006), eq. 10.23",
        .note =

@@ -20,6 +20,7 @@ void register_gd(OptimizerRegistry& registry) {
   registry.add(rule_entry<GradientDescent>(
       {.name = "gd",
        .title = "Gradient descent",
+       .kind = Kind::gradient,
        .formula = "θ ← θ − η ∇L",
        .source = "Cauchy (1847)",
        .tunable = {.option = "rate", .below = 4, .unit = Tunable::Unit::cauchy}}));

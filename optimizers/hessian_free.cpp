@@ -159,6 +159,7 @@ void register_hessian_free(OptimizerRegistry& registry) {
       {.name = "hessian-free",
        .title = "Hessian-free optimization",
        .family = Family::curvature,
+       .kind = Kind::second_order,
        .formula = "(JᵀL''J + λI) d ≈ −∇L by conjugate gradients,  θ ← θ + α d",
        .source = "Martens (2010)",
        .note =

@@ -94,6 +94,7 @@ void register_hig(OptimizerRegistry& registry) {
       {.name = "hig",
        .title = "Half-inverse gradients",
        .family = Family::inversion,
+       .kind = Kind::half_inverse,
        .formula = "θ ← θ − η V Λ^(−κ) Uᵀ g,  J = U Λ Vᵀ,  g = ∂L/∂y",
        .source = "Schnell, Holl, Thuerey (2022)",
        .note =

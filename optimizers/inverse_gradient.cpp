@@ -46,6 +46,7 @@ void register_inverse_gradient(OptimizerRegistry& registry) {
       stepper_entry<InverseGradient>({.name = "inverse-gradient",
                                       .title = "Inverse gradient",
                                       .family = Family::inversion,
+                                      .kind = Kind::inversion,
                                       .formula = "θ ← θ + J⁻¹ Δy,  Δy = η (y* − y)",
                                       .source = "Holl, Koltun, Thuerey (2022), inverse gradients",
                                       .needs = {Oracle::forward, Oracle::jacobian},

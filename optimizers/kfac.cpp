@@ -135,6 +135,7 @@ void register_kfac(OptimizerRegistry& registry) {
       {.name = "kfac",
        .title = "Kronecker-factored curvature",
        .family = Family::curvature,
+       .kind = Kind::second_order,
        .formula = "[W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹,  A = ⟨ā āᵀ⟩, G = ⟨g gᵀ⟩",
        .source = "Martens, Grosse (2015)",
        .note = "For networks of dense layers. G is exact, by one pullback for each output; without "

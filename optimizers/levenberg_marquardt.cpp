@@ -122,6 +122,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
       stepper_entry<LevenbergMarquardt>({.name = "levenberg-marquardt",
                                          .title = "Levenberg-Marquardt",
                                          .family = Family::curvature,
+                                         .kind = Kind::least_squares,
                                          .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
                                          .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
                                          .note = "A rejected candidate is an iteration too.",

@@ -30,6 +30,7 @@ void register_momentum(OptimizerRegistry& registry) {
   registry.add(rule_entry<Momentum>(
       {.name = "momentum",
        .title = "Gradient descent with momentum",
+       .kind = Kind::gradient,
        .formula = "v ← μ v + ∇L,  θ ← θ − η v",
        .source = "Polyak (1964)",
        .tunable = {.option = "rate", .below = 4, .unit = Tunable::Unit::cauchy}}));

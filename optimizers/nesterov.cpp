@@ -31,6 +31,7 @@ void register_nesterov(OptimizerRegistry& registry) {
   registry.add(rule_entry<Nesterov>(
       {.name = "nesterov",
        .title = "Nesterov's accelerated gradient",
+       .kind = Kind::gradient,
        .formula = "v ← μ v + ∇L,  θ ← θ − η (∇L + μ v)",
        .source = "Nesterov (1983); Sutskever et al. (2013), eqs. 3-4",
        .note = "θ is the point at which the gradient is taken.",

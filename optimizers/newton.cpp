@@ -37,6 +37,7 @@ void register_newton(OptimizerRegistry& registry) {
       {.name = "newton",
        .title = "Newton's method",
        .family = Family::curvature,
+       .kind = Kind::second_order,
        .formula = "θ ← θ − η H⁻¹ ∇L,  H = ∇²L",
        .source = "Nocedal, Wright (2006), eq. 3.30",
        .note = "Without safeguards: saddles and maxima attract it as minima do.",

@@ -113,6 +113,7 @@ class Nlopt final : public Optimizer {
 
 struct Method {
   nlopt_algorithm algorithm;
+  Kind kind;
   const char *name, *title, *formula, *source;
   const char* note = "";
   bool is_input_scale_invariant = false;
@@ -127,22 +128,25 @@ constexpr const char* kFirstStepNote =
     "Its first trial step is the whole gradient; it gives up where that is far too long.";
 
 const Method kByGradient[] = {
-    {NLOPT_LD_LBFGS, "nlopt-lbfgs", "Limited-memory BFGS (NLopt)",
+    {NLOPT_LD_LBFGS, Kind::quasi_newton, "nlopt-lbfgs", "Limited-memory BFGS (NLopt)",
      "θ ← θ − α B ∇L,  B ≈ H⁻¹ from the last steps", "NLopt 2.7, Luksan's PLIS; Nocedal (1980)",
      kFirstStepNote},
-    {NLOPT_LD_VAR2, "nlopt-var2", "Shifted limited-memory variable metric (NLopt)",
+    {NLOPT_LD_VAR2, Kind::quasi_newton, "nlopt-var2",
+     "Shifted limited-memory variable metric (NLopt)",
      "θ ← θ − α (μI + S) ∇L,  S of rank two a step",
      "NLopt 2.7, Luksan's PLIP; Vlcek, Luksan (2006)", kFirstStepNote},
-    {NLOPT_LD_TNEWTON_PRECOND_RESTART, "nlopt-tnewton",
+    {NLOPT_LD_TNEWTON_PRECOND_RESTART, Kind::second_order, "nlopt-tnewton",
      "Truncated Newton, preconditioned, restarted (NLopt)",
      "H d ≈ −∇L by conjugate gradients, H d by differences of ∇L,  θ ← θ + α d",
      "NLopt 2.7, Luksan's PNET; Dembo, Steihaug (1983)", kFirstStepNote},
-    {NLOPT_LD_SLSQP, "nlopt-slsqp", "Sequential least-squares programming (NLopt)",
-     "min ∇Lᵀd + ½ dᵀB d,  θ ← θ + α d", "NLopt 2.7; Kraft (1994)",
+    {NLOPT_LD_SLSQP, Kind::quasi_newton, "nlopt-slsqp",
+     "Sequential least-squares programming (NLopt)", "min ∇Lᵀd + ½ dᵀB d,  θ ← θ + α d",
+     "NLopt 2.7; Kraft (1994)",
      "Dense, O(n³) a step; between evaluations it does not look at the clock.", false, 1000},
-    {NLOPT_LD_MMA, "nlopt-mma", "Method of moving asymptotes (NLopt)",
+    {NLOPT_LD_MMA, Kind::gradient, "nlopt-mma", "Method of moving asymptotes (NLopt)",
      "min of a convex separable upper approximation of L", "NLopt 2.7; Svanberg (2002)"},
-    {NLOPT_LD_CCSAQ, "nlopt-ccsaq", "Conservative convex separable approximation (NLopt)",
+    {NLOPT_LD_CCSAQ, Kind::gradient, "nlopt-ccsaq",
+     "Conservative convex separable approximation (NLopt)",
      "min L + ∇Lᵀd + ½ρ Σ (dᵢ/σᵢ)²,  ρ raised until conservative", "NLopt 2.7; Svanberg (2002)"},
 };
 
@@ -151,16 +155,16 @@ constexpr const char* kStartNote =
     "Its first steps are the size of the start's coordinates, and so follow their units.";
 
 const Method kWithoutGradient[] = {
-    {NLOPT_LN_BOBYQA, "nlopt-bobyqa", "BOBYQA (NLopt)",
+    {NLOPT_LN_BOBYQA, Kind::derivative_free, "nlopt-bobyqa", "BOBYQA (NLopt)",
      "min of a quadratic through 2n+1 points, ‖d‖ ≤ Δ", "NLopt 2.7; Powell (2009)", kStartNote,
      true},
-    {NLOPT_LN_COBYLA, "nlopt-cobyla", "COBYLA (NLopt)",
+    {NLOPT_LN_COBYLA, Kind::derivative_free, "nlopt-cobyla", "COBYLA (NLopt)",
      "min of a linear model through n+1 points, ‖d‖ ≤ Δ", "NLopt 2.7; Powell (1994)"},
-    {NLOPT_LN_NELDERMEAD, "nlopt-neldermead", "Nelder-Mead simplex (NLopt)",
+    {NLOPT_LN_NELDERMEAD, Kind::derivative_free, "nlopt-neldermead", "Nelder-Mead simplex (NLopt)",
      "reflect, expand, contract or shrink n+1 points", "NLopt 2.7; Nelder, Mead (1965)", kStartNote,
      true},
-    {NLOPT_LN_SBPLX, "nlopt-sbplx", "Subplex (NLopt)", "Nelder-Mead on a sequence of subspaces",
-     "NLopt 2.7; Rowan (1990)"},
+    {NLOPT_LN_SBPLX, Kind::derivative_free, "nlopt-sbplx", "Subplex (NLopt)",
+     "Nelder-Mead on a sequence of subspaces", "NLopt 2.7; Rowan (1990)"},
 };
 
 const OptionField kRemembered{
@@ -171,6 +175,7 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
       .name = m.name,
       .title = m.title,
       .family = family,
+      .kind = m.kind,
       .formula = m.formula,
       .source = m.source,
       .note = m.note,

@@ -65,6 +65,23 @@ inline std::string_view name_of(Family family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }
 
+// What a step is by its mathematics, whoever wrote it: charts colour by it.
+enum class Kind {
+  other,
+  gradient,         // along ∇L, with momentum, a line search or a separable model
+  adaptive,         // ∇L over its own history, component by component
+  quasi_newton,     // curvature from differences of ∇L
+  second_order,     // curvature from H, or products with it, or factors of it
+  least_squares,    // Jᵀ J instead of H: Gauss-Newton and Levenberg-Marquardt
+  half_inverse,     // a root of J's singular values
+  inversion,        // the physics inverted, exactly or step by step
+  derivative_free,  // losses alone
+};
+inline constexpr std::array<std::string_view, 9> kKindNames = {
+    "other",         "gradient",     "adaptive",  "quasi-newton",   "second-order",
+    "least-squares", "half-inverse", "inversion", "derivative-free"};
+inline std::string_view name_of(Kind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
+
 // The one option of a method that tuning chooses. A grid has the default, so many values below it
 // and the rest above, each `factor` times the one before.
 struct Tunable {
@@ -84,6 +101,7 @@ using OptimizerRegistry = Registry<OptimizerEntry>;
 struct OptimizerEntry {
   std::string name, title;
   Family family = Family::first_order;
+  Kind kind = Kind::other;
   std::string formula;    // of the update, plain text with the mathematical letters of Unicode
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know

@@ -63,6 +63,7 @@ void register_rescaled(OptimizerRegistry& registry) {
   registry.add({.name = "rescaled",
                 .title = "Rescaled gradients",
                 .family = Family::inversion,
+                .kind = Kind::inversion,
                 .formula = "x̃ = x − d/‖d‖,  d = ∂L/∂x;  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
                 .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
                 .note = "by=truth has d = x − x*, as the published script does.",

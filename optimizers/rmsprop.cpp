@@ -30,6 +30,7 @@ void fields(Rmsprop& o, auto& field) {
 void register_rmsprop(OptimizerRegistry& registry) {
   registry.add(rule_entry<Rmsprop>({.name = "rmsprop",
                                     .title = "RMSprop",
+                                    .kind = Kind::adaptive,
                                     .formula = "s ← α s + (1−α) ∇L²,  θ ← θ − η ∇L/(√s + ε)",
                                     .source = "Tieleman, Hinton (2012), lecture 6e",
                                     .tunable = {.option = "rate", .below = 2}}));

@@ -47,6 +47,7 @@ void register_saddle_free_newton(OptimizerRegistry& registry) {
       {.name = "saddle-free-newton",
        .title = "Saddle-free Newton with a step limit",
        .family = Family::curvature,
+       .kind = Kind::second_order,
        .formula = "H = V diag(S) Vᵀ, g̃ = Vᵀ∇L;  θ ← θ − η V d,  dᵢ = sign(g̃ᵢ)·(|g̃ᵢ/Sᵢ| where "
                   "Sᵢ > S̄, else min(|g̃ᵢ/Sᵢ|, Δ/|g̃ᵢ|))",
        .source = "Holl, Koltun, Thuerey (2022), published script; Dauphin et al. (2014)",

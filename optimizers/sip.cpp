@@ -66,6 +66,7 @@ void register_sip(OptimizerRegistry& registry) {
   registry.add({.name = "sip",
                 .title = "Scale-invariant physics",
                 .family = Family::inversion,
+                .kind = Kind::inversion,
                 .formula = "x̃ = P⁻¹(y + η (y* − y); x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
                 .source = "Holl, Koltun, Thuerey (2022), Fig. 3",
                 .note =

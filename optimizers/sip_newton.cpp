@@ -51,6 +51,7 @@ void register_sip_newton(OptimizerRegistry& registry) {
   registry.add({.name = "sip-newton",
                 .title = "Taught by Newton's step in x",
                 .family = Family::inversion,
+                .kind = Kind::inversion,
                 .formula = "x̃ = x − sign(g) |g/h|,  g = ∂L/∂x, h = ∂²L/∂x²;  "
                            "θ ← one step on (1/B) Σ ½‖x − x̃‖²",
                 .source = "Holl, Koltun, Thuerey (2022), published script: train_exp.py",

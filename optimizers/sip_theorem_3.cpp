@@ -73,6 +73,7 @@ void register_sip_theorem_3(OptimizerRegistry& registry) {
   registry.add({.name = "sip-theorem-3",
                 .title = "Scale-invariant physics, stopped by theorem 3",
                 .family = Family::inversion,
+                .kind = Kind::inversion,
                 .formula = "x̃ = x + U;  θ ← steps on (1/B) Σ ½‖x − x̃‖² until L ≤ (1 − τ/2) L(x),  "
                            "τ = 1 − L(x + U)/L(x)",
                 .source = "Holl, Koltun, Thuerey (2022), theorem 3",

@@ -42,6 +42,7 @@ void register_supervised(OptimizerRegistry& registry) {
   registry.add({.name = "supervised",
                 .title = "Supervised training",
                 .family = Family::inversion,
+                .kind = Kind::inversion,
                 .formula = "θ ← one step on (1/B) Σ ½‖x − x*‖²",
                 .source = "Holl, Koltun, Thuerey (2022)",
                 .note = "Sees the x* that made each y*. Where the inverse has several branches it "

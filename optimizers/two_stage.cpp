@@ -83,6 +83,7 @@ void register_two_stage(OptimizerRegistry& registry) {
   registry.add({.name = "two-stage",
                 .title = "Two-stage supervised training",
                 .family = Family::inversion,
+                .kind = Kind::inversion,
                 .formula = "x̃ = P⁻¹(y*; x₀);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
                 .source = "Holl, Koltun, Thuerey (2022)",
                 .note = "The labels are a solver's from a fixed x₀, not the x* that made y*; those "

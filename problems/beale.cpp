@@ -39,6 +39,7 @@ ProblemParts make_beale(const NoOptions&, const Draw& draw) {
 void register_beale(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "beale",
                               .title = "Beale's function",
+                              .group = Group::classical,
                               .formula = "fᵢ = yᵢ − x₁(1 − x₂ⁱ),  y = (1.5, 2.25, 2.625),  "
                                          "L = ½Σfᵢ²",
                               .source = "Moré, Garbow, Hillstrom (1981), problem 5; Beale (1958)"},

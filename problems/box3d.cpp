@@ -62,6 +62,7 @@ void register_box3d(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "box3d",
        .title = "Box's three-dimensional function",
+       .group = Group::classical,
        .formula = "fᵢ = exp(−tᵢx₁) − exp(−tᵢx₂) − x₃(exp(−tᵢ) − exp(−10tᵢ)),  tᵢ = i/10,  "
                   "L = ½Σfᵢ²",
        .source = "Moré, Garbow, Hillstrom (1981), problem 12; Box (1966)"},

@@ -27,6 +27,7 @@ ProblemParts make_brown_badly_scaled(const NoOptions&, const Draw& draw) {
 void register_brown_badly_scaled(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "brown-badly-scaled",
                               .title = "Brown's badly scaled function",
+                              .group = Group::classical,
                               .formula = "f = (x₁ − 10⁶, x₂ − 2·10⁻⁶, x₁x₂ − 2),  L = ½Σfᵢ²",
                               .source = "Moré, Garbow, Hillstrom (1981), problem 4"},
                              make_brown_badly_scaled));

@@ -81,6 +81,7 @@ void register_broyden_tridiagonal(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "broyden-tridiagonal",
        .title = "Broyden's tridiagonal function",
+       .group = Group::classical,
        .formula = "fᵢ = (3 − 2xᵢ)xᵢ − xᵢ₋₁ − 2xᵢ₊₁ + 1,  x₀ = xₙ₊₁ = 0,  L = ½Σfᵢ²",
        .source = "Moré, Garbow, Hillstrom (1981), problem 30; Broyden (1965)",
        .note = "The error in x is to the root that Newton's method finds from the standard start."},

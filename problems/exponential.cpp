@@ -117,6 +117,7 @@ void register_exponential(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "exponential",
        .title = "Exponential",
+       .group = Group::toy,
        .formula = "Pᵢ(x) = exp(xᵢ),  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
        .note = "Published as a learning problem; seed 0 takes the quantiles of its distribution.",

@@ -160,6 +160,7 @@ void register_heat(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "heat",
        .title = "Heat flow backwards",
+       .group = Group::physics,
        .formula = "ŷₖ = x̂ₖ exp(−8 (2π)² |k|²),  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 6c",
        .note =

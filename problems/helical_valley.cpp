@@ -56,6 +56,7 @@ void register_helical_valley(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "helical-valley",
        .title = "Helical valley",
+       .group = Group::classical,
        .formula = "f = (10(x₃ − 10θ), 10(ρ − 1), x₃),  (x₁, x₂) = ρ(cos 2πθ, sin 2πθ),  L = ½Σfᵢ²",
        .source = "Moré, Garbow, Hillstrom (1981), problem 7; Fletcher and Powell (1963)",
        .note = "θ jumps from ¾ to −¼ across x₁ = 0 > x₂."},

@@ -114,6 +114,7 @@ void register_hig_toy(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "hig-toy",
        .title = "Toy of half-inverse gradients",
+       .group = Group::toy,
        .formula = "x = N(t; θ),  P(x) = (x₁, λx₂),  y*(t) = (sin 6t, cos 9t)",
        .source = "Schnell, Holl, Thuerey (2022), toy example, as drawn in the book",
        .note = "The published batch, start and rates are unknown: 256 fixed samples of t and "

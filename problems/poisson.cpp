@@ -105,6 +105,7 @@ void register_poisson(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "poisson",
        .title = "Poisson equation",
+       .group = Group::physics,
        .formula = "P(x) = ∇⁻²x,  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 6a",
        .note =

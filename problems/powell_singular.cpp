@@ -72,6 +72,7 @@ void register_powell_singular(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "powell-singular",
        .title = "Powell's singular function",
+       .group = Group::classical,
        .formula = "f = (x₁ + 10x₂, √5(x₃ − x₄), (x₂ − 2x₃)², √10(x₁ − x₄)²),  L = ½Σfᵢ²",
        .source = "Moré, Garbow, Hillstrom (1981), problem 13; Powell (1962)"},
       make_powell_singular));

@@ -188,8 +188,17 @@ class Draw {
   std::string problem_;  // without options: sweeps see the same draws
 };
 
+// Where a problem comes from: columns of tables stand together by it.
+enum class Group { other, toy, physics, classical };
+inline constexpr std::array<std::string_view, 4> kGroupNames = {"other", "toy", "physics",
+                                                                "classical"};
+inline std::string_view name_of(Group group) {
+  return kGroupNames[static_cast<std::size_t>(group)];
+}
+
 struct ProblemEntry {
   std::string name, title;
+  Group group = Group::other;
   std::string formula;    // plain text with the mathematical letters of Unicode
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know

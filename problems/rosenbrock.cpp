@@ -32,6 +32,7 @@ ProblemParts make_rosenbrock(const NoOptions&, const Draw& draw) {
 void register_rosenbrock(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "rosenbrock",
                               .title = "Rosenbrock's valley",
+                              .group = Group::classical,
                               .formula = "f = (10(x₂ − x₁²), 1 − x₁),  L = ½Σfᵢ²",
                               .source = "Moré, Garbow, Hillstrom (1981), problem 1; "
                                         "Rosenbrock (1960)"},

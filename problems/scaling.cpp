@@ -57,6 +57,7 @@ ProblemParts make_scaling(const Options& o, const Draw& draw) {
 void register_scaling(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "scaling",
                               .title = "One scaled coordinate",
+                              .group = Group::toy,
                               .formula = "P(x) = (x₁, αx₂),  L = ½‖P(x)‖²",
                               .source = "Thuerey et al., Physics-based Deep Learning, chapter "
                                         "Scale-Invariance and Inversion",

@@ -140,6 +140,7 @@ void register_sine(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "sine",
        .title = "Rotated sine",
+       .group = Group::toy,
        .formula = "P(x) = (sin(γz₁/ξ), γξz₂),  z = R_φ x,  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 5",
        .note = "form=code is what the published scripts compute; form=paper, (sin(γz₁)/ξ, γξz₂), "

@@ -53,6 +53,7 @@ ProblemParts make_square(const Options& o, const Draw& draw) {
 void register_square(ProblemRegistry& registry) {
   registry.add(problem_entry({.name = "square",
                               .title = "One squared coordinate",
+                              .group = Group::toy,
                               .formula = "P(x) = (x₁, x₂²),  L = ‖P(x)‖²",
                               .source = "Holl, Koltun, Thuerey (2022), Fig. 1",
                               .note = "The loss has no factor ½, as in the published notebook.",

@@ -59,6 +59,7 @@ void register_variably_dimensioned(ProblemRegistry& registry) {
   registry.add(
       problem_entry({.name = "variably-dimensioned",
                      .title = "Variably dimensioned function",
+                     .group = Group::classical,
                      .formula = "fᵢ = xᵢ − 1,  fₙ₊₁ = t,  fₙ₊₂ = t²,  t = Σ j(xⱼ − 1),  L = ½Σfᵢ²",
                      .source = "Moré, Garbow, Hillstrom (1981), problem 25"},
                     make_variably_dimensioned));

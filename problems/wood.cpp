@@ -43,6 +43,7 @@ void register_wood(ProblemRegistry& registry) {
   registry.add(problem_entry(
       {.name = "wood",
        .title = "Wood's function",
+       .group = Group::classical,
        .formula = "f = (10(x₂ − x₁²), 1 − x₁, √90(x₄ − x₃²), 1 − x₃, √10(x₂ + x₄ − 2), "
                   "(x₂ − x₄)/√10),  L = ½Σfᵢ²",
        .source = "Moré, Garbow, Hillstrom (1981), problem 14; Colville (1968)"},

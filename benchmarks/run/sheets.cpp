@@ -144,6 +144,7 @@ Sheet described_problem(const Catalog& catalog, const Component& component) {
   const ProblemEntry& entry = catalog.problems.at(component.name);
   Sheet sheet = described("problem", entry, component);
   sheet.aim = entry.aim;
+  sheet.group = std::string(name_of(entry.group));
   sheet.panels = entry.panels;
   return sheet;
 }
@@ -153,6 +154,7 @@ Sheet described_optimizer(const Catalog& catalog, const Component& component) {
   Sheet sheet = described("optimizer", entry, component);
   sheet.oracles = names_of(entry.needs);
   sheet.family = std::string(name_of(entry.family));
+  sheet.mathematics = std::string(name_of(entry.kind));
   sheet.tunable = entry.tunable.option;
   return sheet;
 }

@@ -72,6 +72,8 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field("oracles", sheet.oracles);
   field("privileges", sheet.privileges);
   field("family", sheet.family);
+  field.optional("mathematics", sheet.mathematics);
+  field.optional("group", sheet.group);
   field.optional("tunable", sheet.tunable);
   field("inverse", sheet.inverse);
   field("unknowns", sheet.unknowns);

@@ -51,7 +51,9 @@ struct Sheet {
   std::string options_text;             // describe_options() as JSON text
   std::vector<std::string> oracles;     // offered by a problem, needed by an optimizer
   std::vector<std::string> privileges;  // of an optimizer
-  std::string family;                   // of an optimizer
+  std::string family;                   // of an optimizer: whose it is, by what it asks
+  std::string mathematics;              // of an optimizer: what its step is, whoever wrote it
+  std::string group;                    // of a problem: toy, physics, classical
   std::string tunable;                  // of an optimizer: the option that tuning chooses, if any
   std::string inverse;                  // of a problem: none, exact, damped or estimate
   Index unknowns = 0, residuals = 0;    // of a problem

@@ -8,6 +8,7 @@
 #include "core/digest.h"
 #include "core/json.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/method_pairs.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -145,6 +146,18 @@ Json leader_json(const Comparison& c, const std::optional<Lead>& lead) {
           {"others", rivals_json(c, *lead)}};
 }
 
+// [a, b, wins, losses, ties, neither, typical, its interval]
+Json pairs_json(const Comparison& c) {
+  Json list = Json::array();
+  for (const MethodPair& pair : all_pairs(c)) {
+    const auto [low, high] = pair.pairing.interval();
+    list.push_back({c.optimizers[pair.a].label, c.optimizers[pair.b].label, pair.pairing.wins,
+                    pair.pairing.losses, pair.pairing.ties, pair.pairing.neither,
+                    pair.pairing.typical(), low, high});
+  }
+  return list;
+}
+
 Json missing_json(const Comparison& c) {
   Json list = Json::array();
   for (const PlannedCell& cell : c.missing)
@@ -217,6 +230,7 @@ std::string json_report(const Document& document) {
                   {"leader", leader_json(c, c.lead)},
                   {"open_leader", leader_json(c, c.open_lead)},
                   {"optimizers", standings_json(c)},
+                  {"pairs", pairs_json(c)},
                   {"profiles", profiles_json(c)},
                   {"statistics", statistics_json(document)},
                   {"cells", cells}};

@@ -1,4 +1,4 @@
-// The bar that chooses what is shown: lists of optimizers and problems, and the slider of tolerance.
+// The bar that chooses what is shown: lists of methods and problems, the measure, the tolerance.
 'use strict';
 
 function element(tag, properties = {}, ...children) {
@@ -8,8 +8,8 @@ function element(tag, properties = {}, ...children) {
 }
 
 const groupOf = {
-  s: (index) => DATA.families[index],
-  p: (index) => DATA.problems[index].name,
+  s: (index) => DATA.kinds[index],
+  p: (index) => DATA.problems[index].group,
 };
 
 // Names of the presets, and what each shows.
@@ -17,8 +17,8 @@ function presetsOf(kind) {
   const all = KINDS[kind].names.map((_, index) => index);
   const presets = {all, none: []};
   if (kind === 's' && DATA.privileges.some((sees) => sees !== '') && DATA.privileges.includes('')) {
-    presets['not privileged'] = all.filter((index) => DATA.privileges[index] === '');
-    presets['privileged'] = all.filter((index) => DATA.privileges[index] !== '');
+    presets['without privileges'] = all.filter((index) => DATA.privileges[index] === '');
+    presets['with privileges'] = all.filter((index) => DATA.privileges[index] !== '');
   }
   if (kind === 's' && all.length > 10) presets['best 10'] = all.slice(0, 10);
   return presets;
@@ -51,7 +51,7 @@ function groupElement(kind, name, indices) {
 
 function fillPanel(kind, panel) {
   const search = element('input', {type: 'search', placeholder: 'search', autocomplete: 'off'});
-  search.setAttribute('aria-label', kind === 's' ? 'Search optimizers' : 'Search problems');
+  search.setAttribute('aria-label', kind === 's' ? 'Search methods' : 'Search problems');
   const presets = element('div', {className: 'presets'},
       ...Object.entries(presetsOf(kind)).map(([name, indices]) => pressable(name, undefined, () => show(kind, indices))));
   const groups = new Map();
@@ -59,7 +59,7 @@ function fillPanel(kind, panel) {
     const name = groupOf[kind](index);
     groups.set(name, [...groups.get(name) ?? [], index]);
   });
-  const isGrouped = kind === 's' && groups.size > 1;
+  const isGrouped = groups.size > 1;
   const lists = isGrouped
       ? [...groups].map(([name, indices]) => groupElement(kind, name, indices))
       : [element('fieldset', {}, element('div', {className: 'choices'}, ...KINDS[kind].names.map((_, index) => choiceOf(kind, index))))];
@@ -96,33 +96,49 @@ function makePick(pick) {
 }
 
 function makeSlider(slider) {
-  const presets = document.getElementById('target-presets');
-  for (const target of DATA.rungs) {
-    const button = pressable(tauName(target), target === view.target, () => changeView(() => { view.target = target; }));
-    button.dataset.target = target;
-    presets.append(button);
-  }
-  slider.addEventListener('input', () => changeView(() => { view.target = Number(slider.value); }));
+  slider.max = TARGETS.length - 1;
+  slider.addEventListener('input', () => changeView(() => { view.target = TARGETS[slider.value]; }));
   FOLLOWERS.push(() => {
-    slider.value = view.target;
+    slider.value = TARGETS.indexOf(view.target);
     slider.setAttribute('aria-valuetext', `τ = ${tauName(view.target)}`);
     document.getElementById('tau').textContent = tauName(view.target);
-    for (const button of presets.children) button.setAttribute('aria-pressed', Number(button.dataset.target) === view.target);
   });
+}
+
+function makeMeasures(place) {
+  for (const [index, name] of MEASURES.entries()) {
+    const button = pressable(name, index === view.measure, () => changeView(() => { view.measure = index; }));
+    place.append(button);
+    FOLLOWERS.push(() => button.setAttribute('aria-pressed', index === view.measure));
+  }
+}
+
+// What a reader must know who looks at less, or at another tolerance, than the report was made for.
+function noteOf() {
+  const notes = [];
+  if (isFiltered())
+    notes.push(`${shownOf('s').length} of ${KINDS.s.names.length} methods and ${shownOf('p').length} of ${KINDS.p.names.length} ` +
+        'problems are shown; every figure is still that of all of them.');
+  if (!isOwn())
+    notes.push(`Tables and curves are to τ = ${tauName(view.target)} by ${measureNow().counted}; sentences, intervals and statistics ` +
+        `to the report’s own τ = ${tauName(DEFAULT_TARGET)} by ${DATA.measures[DEFAULT_MEASURE].counted}.`);
+  return notes.join(' ');
 }
 
 function makeBar(bar) {
   bar.hidden = false;
   bar.querySelectorAll('details').forEach(makePick);
+  makeMeasures(document.getElementById('measures'));
   makeSlider(document.getElementById('target'));
-  const reset = document.getElementById('reset'), told = document.getElementById('told');
+  const reset = document.getElementById('reset'), told = document.getElementById('told'), note = document.getElementById('filtered');
   reset.addEventListener('click', () => changeView(() => {
-    view.target = DEFAULT_TARGET;
-    view.hidden = {s: new Set(), p: new Set()};
+    Object.assign(view, {target: DEFAULT_TARGET, measure: DEFAULT_MEASURE, hidden: {s: new Set(), p: new Set()}});
   }));
   FOLLOWERS.push(() => {
-    reset.hidden = isPlain();
-    told.textContent = `${shownOf('s').length} of ${KINDS.s.names.length} optimizers and ${shownOf('p').length} of ` +
-        `${KINDS.p.names.length} problems are shown, to τ = ${tauName(view.target)}`;
+    const text = noteOf();
+    reset.hidden = text === '';
+    note.hidden = text === '';
+    note.textContent = text;
+    told.textContent = text;
   });
 }

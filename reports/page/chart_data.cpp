@@ -1,18 +1,18 @@
-// What the charts of the page draw: curves, profiles, contours and paths as compact JSON.
+// What the page draws of one problem: medians, curves, contours and paths as compact JSON.
+#include "reports/page/chart_data.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
-#include <string_view>
-#include <unordered_map>
 
+#include "reports/page/compact_json.h"
 #include "reports/page/contour.h"
 #include "reports/page/page.h"
 #include "reports/page/target_codes.h"
 #include "reports/read/curves.h"
-#include "reports/read/reached.h"
-#include "reports/sections/measure_words.h"
+#include "reports/read/equal_work.h"
+#include "reports/read/grounds.h"
 #include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 
@@ -30,23 +30,7 @@ std::size_t points_per_path(std::size_t paths) {
   return std::clamp(kAll / std::max<std::size_t>(1, paths), kLeast, kMost);
 }
 
-std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
-std::string coarse(Real value) {  // three digits: enough for a curve
-  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "null";
-}
-
-// "[a,b,c]" of whatever `item` writes.
-template <class Range, class Item>
-std::string list(const Range& range, Item item) {
-  std::string text = "[";
-  for (const auto& one : range) {
-    if (text.size() > 1) text += ',';
-    text += item(one);
-  }
-  return text + "]";
-}
-
-// [s, iterations, work, seconds, gap, its least, its greatest, error in x, its least, its
+// [s, iterations, work, cost, ms, gap, its least, its greatest, error in x, its least, its
 // greatest]; what says nothing is empty: a range where seeds agree, an error where no truth is
 // known.
 std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
@@ -54,33 +38,49 @@ std::string curve_json(const MedianCurve& curve, std::size_t optimizer) {
     if (low == high) return std::string("[],[]");
     return list(low, coarse) + "," + list(high, coarse);
   };
-  std::string text = fmt::format("[{},{},{},{},{},{}", optimizer, list(curve.iteration, number),
-                                 list(curve.work, number), list(curve.seconds, coarse),
-                                 list(curve.gap, coarse), band(curve.gap_low, curve.gap_high));
+  const auto milliseconds = [](Real seconds) { return coarse(1e3 * seconds); };
+  const bool is_cost_work = curve.cost == curve.work;
+  std::string text = fmt::format(
+      "[{},{},{},{},{},{},{}", optimizer, list(curve.iteration, number), list(curve.work, number),
+      is_cost_work ? "[]" : list(curve.cost, coarse), list(curve.seconds, milliseconds),
+      list(curve.gap, coarse), band(curve.gap_low, curve.gap_high));
   if (std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); }))
     text += "," + list(curve.x_error, coarse) + "," + band(curve.x_error_low, curve.x_error_high);
   return text + "]";
 }
 
-// [optimizer, targets reached by each run, work, time, runs failed, runs missing]: tables and
-// profiles of the page are made of it. The optimizer alone where the pair makes no sense.
-std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
+// In the order of measures_of; 0 where they are those of the first.
+std::string medians_json(const Comparison& c, const TargetMedians& medians) {
+  const std::vector<std::size_t> targets = targets_of(c);
+  const auto of = [&](Measure by) {
+    std::vector<Real> taken;
+    for (const std::size_t target : targets)
+      if (const Real median = medians.at(by, target); median < kNever) taken.push_back(median);
+    return taken;
+  };
+  const std::vector<Measure> measures = measures_of(c);
+  return list(measures, [&](Measure by) {
+    if (by != measures[0] && of(by) == of(measures[0])) return std::string("0");
+    return '"' + target_codes(of(by), by) + '"';
+  });
+}
+
+// [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing]: what
+// the page chooses from. The optimizer alone where the pair makes no sense.
+std::string cell_json(const Comparison& c, const Ladders& ladders, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
-  const TargetMedians medians = target_medians(c, cell);
+  const TargetMedians& medians = ladders.at(p, s);
   const std::size_t missing = cell.planned - cell.runs.size();
-  return fmt::format("[{},{},\"{}\",\"{}\"{}]", s,
-                     list(medians.reached, [](std::size_t n) { return std::to_string(n); }),
-                     target_codes(medians.counted, c.yardstick.by),
-                     target_codes(medians.seconds, Measure::time),
+  return fmt::format("[{},{},{}{}]", s, indices(medians.reached), medians_json(c, medians),
                      cell.failed + missing > 0 ? fmt::format(",{},{}", cell.failed, missing) : "");
 }
 
-std::string cells_json(const Comparison& c, std::size_t p) {
+std::string cells_json(const Comparison& c, const Ladders& ladders, std::size_t p) {
   std::vector<std::size_t> asked;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     if (c.cell(p, s).planned > 0) asked.push_back(s);
-  return list(asked, [&](std::size_t s) { return cell_json(c, p, s); });
+  return list(asked, [&](std::size_t s) { return cell_json(c, ladders, p, s); });
 }
 
 // In order of rank, so that the page can show the best by default.
@@ -89,21 +89,6 @@ std::string curves_json(const Comparison& c, std::size_t problem) {
   return list(ranking(c, problem), [&](std::size_t s) {
     return curve_json(median_curve(c, c.cell(problem, s), points), s);
   });
-}
-
-std::string indices_json(const std::vector<std::size_t>& all) {
-  return list(all, [](std::size_t index) { return std::to_string(index); });
-}
-
-// Who is compared with whom, and on what; and how those are that stand apart.
-std::string orders_json(const Comparison& c) {
-  const auto placed_json = [](const Placed& placed) {
-    return fmt::format("{{\"s\":{},\"settings\":{},\"methods\":{}}}", placed.optimizer,
-                       indices_json(placed.among.settings), indices_json(placed.among.methods));
-  };
-  return fmt::format("{{\"settings\":{},\"methods\":{},\"apart\":{}}}",
-                     indices_json(c.order.settings), indices_json(c.order.methods),
-                     list(c.apart, placed_json));
 }
 
 std::string point(Real a, Real b) { return number(a) + "," + number(b); }
@@ -156,13 +141,46 @@ std::string goal_json(const Comparison& c, std::size_t p) {
   return scales.empty() ? "" : fmt::format(",\"goal\":{}", number(median_of(scales)));
 }
 
-std::string problem_json(const Comparison& c, std::size_t p) {
+// What is learned, at equal work: [optimizer, error in x, its least, its greatest, loss, runs].
+std::string learned_json(const Comparison& c, std::size_t p) {
+  if (!c.problems[p].is_learned) return "";
+  const EqualWork equal = equal_work(c, p);
+  const auto row = [&](std::size_t s) {
+    const AtEqualWork& at = *equal.methods[s];
+    return fmt::format("[{},{},{},{},{},{}]", s, number(at.x_error.median), number(at.x_error.low),
+                       number(at.x_error.high), number(at.loss.median), at.x_error.n);
+  };
+  return fmt::format(",\"learned\":{{\"work\":{},\"rows\":{}}}", number(equal.work),
+                     list(equal.nearest_first(), row));
+}
+
+}  // namespace
+
+std::vector<std::size_t> targets_of(const Comparison& c) {
+  constexpr std::size_t kMostForAll = 5000;  // cells: some 200 bytes each for all targets
+  std::vector<std::size_t> targets;
+  if (c.problems.size() * c.optimizers.size() > kMostForAll) {
+    for (const Tolerance& tolerance : c.yardstick.tolerances) targets.push_back(tolerance.rung);
+    return targets;
+  }
+  for (std::size_t j = 0; j < kTargets; ++j) targets.push_back(j);
+  return targets;
+}
+
+std::vector<Measure> measures_of(const Comparison& c) {
+  std::vector<Measure> measures = {Measure::work, Measure::cost, Measure::time};
+  if (c.yardstick.by == Measure::iterations) measures.push_back(Measure::iterations);
+  return measures;
+}
+
+std::string problem_data(const Comparison& c, const Ladders& ladders, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
-  std::string text =
-      fmt::format("{{\"spec\":{},\"asked\":{},\"name\":{},\"cells\":{},\"curves\":{}",
-                  json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec),
-                  json_quoted(problem.name), cells_json(c, p), curves_json(c, p));
-  text += origins_json(c, p) + goal_json(c, p);
+  std::string text = fmt::format(
+      "{{\"spec\":{},\"asked\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
+      "\"curves\":{}",
+      json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec), json_quoted(problem.name),
+      problem.group(), is_ordered(c, p), cells_json(c, ladders, p), curves_json(c, p));
+  text += origins_json(c, p) + goal_json(c, p) + learned_json(c, p);
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)
@@ -171,66 +189,6 @@ std::string problem_json(const Comparison& c, std::size_t p) {
       text += ",\"y\":" + plane_json(*sheet->landscape_y, all, &Path::y, sheet->target);
   }
   return text + "}";
-}
-
-// {"id": [optimizers, problems]}: what the cells that decide a claim are about.
-std::string claims_about(const Document& document) {
-  const Comparison& c = document.comparison;
-  std::unordered_map<std::string_view, const Run*> by_cell;
-  for (const Run& run : c.runs) by_cell.emplace(run.record->cell, &run);
-  const auto indices = [](const std::set<std::size_t>& all) {
-    return list(all, [](std::size_t index) { return std::to_string(index); });
-  };
-  std::string text = "{";
-  for (const Judgement& judgement : document.claims) {
-    std::set<std::size_t> optimizers, problems;
-    for (const std::string& cell : judgement.cells)
-      if (const auto at = by_cell.find(cell); at != by_cell.end()) {
-        optimizers.insert(at->second->optimizer);
-        problems.insert(at->second->problem);
-      }
-    text += fmt::format("{}{}:[{},{}]", text.size() > 1 ? "," : "", json_quoted(judgement.id),
-                        indices(optimizers), indices(problems));
-  }
-  return text + "}";
-}
-
-}  // namespace
-
-std::string page_data(const Document& document) {
-  const Comparison& c = document.comparison;
-  std::string text = fmt::format(
-      "{{\"by\":\"{}\",\"unit\":\"{}\",\"counted\":\"{}\",\"mark\":\"{}\",\"rungs\":{},"
-      "\"optimizers\":{},\"methods\":{},\"families\":{},\"privileges\":{},\"claims\":{},"
-      "\"order\":{},\"figures\":{},\"problems\":[",
-      name_of(c.yardstick.by), unit_name(c), counted_name(c),
-      c.yardstick.by == Measure::time && c.is_any_timed_together ? "≈" : "",
-      list(c.yardstick.tolerances,
-           [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
-      list(c.optimizers,
-           [](const OptimizerAxis& optimizer) { return json_quoted(shown_spec(optimizer.label)); }),
-      list(c.optimizers,
-           [](const OptimizerAxis& optimizer) { return json_quoted(optimizer.method); }),
-      list(c.optimizers,
-           [](const OptimizerAxis& optimizer) {
-             return json_quoted(family_title(optimizer.family()));
-           }),
-      list(
-          c.optimizers,
-          [](const OptimizerAxis& optimizer) { return json_quoted(joined(optimizer.privileges)); }),
-      claims_about(document), orders_json(c), figures_json(document.figures));
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    if (p > 0) text += ',';
-    text += problem_json(c, p);
-  }
-  text += "]}";
-  std::string safe;  // no </script and no <!-- can stand in it
-  for (const char letter : text)
-    if (letter == '<')
-      safe += "\\u003c";
-    else
-      safe += letter;
-  return safe;
 }
 
 }  // namespace isoline::reports

@@ -1,4 +1,4 @@
-// Charts over the page's data: axes, and learning curves with their range over seeds.
+// Charts over the page's data: axes, and curves with their range over seeds.
 'use strict';
 
 function axis(title, rest = {}) {
@@ -11,8 +11,12 @@ function axis(title, rest = {}) {
   };
 }
 
+// Within a factor of three a linear axis says as much, and has figures on it.
+const LEAST_FACTOR = 3;
+
 // Powers of ten are labelled, not more of them than fit; within two decades also 2 and 5 times these.
 function logAxis(title, low, high) {
+  if (high / low < LEAST_FACTOR) return axis(title, {type: 'linear', min: low, max: high, ticks: {includeBounds: false}});
   const decades = Math.ceil(Math.log10(high / low));
   const every = Math.max(1, Math.ceil(decades / 8));
   return axis(title, {
@@ -72,41 +76,70 @@ function least(values) {
   return values.reduce((low, value) => (value > 0 && value < low ? value : low), Infinity);
 }
 
-// The range over seeds, where the curve has one: two unseen lines with what is between them filled.
-function bandDatasets(curve, state, place) {
-  const low = curve[`${state.vertical}_low`], high = curve[`${state.vertical}_high`];
-  if (low === undefined || state.seeds !== 'band' || state.visible.size > FEW) return [];
-  const band = {
-    bandOf: curve.s, borderWidth: 0, pointRadius: 0, pointHitRadius: 0, pointHoverRadius: 0, showLine: true,
-    backgroundColor: colourOf(curve.s) + BAND, order: 4,
-  };
-  const line = (values, never) => place((i) => (values[i] === null ? never : values[i]));
-  return [{...band, data: line(low, null), fill: false}, {...band, data: line(high, HIGHEST), fill: '-1'}];
+// Of a direct problem the best loss so far, which holds until a better one is evaluated: a staircase
+// through the very medians of the tables, so that a line crosses τ where the table says. Points
+// between and beyond them come from the kept iterations.
+function stairs(curve, cell, vertical) {
+  const key = measureNow().name, xs = curve[key === 'iterations' ? 'iterations' : key], points = [];
+  if (xs === undefined) return points;
+  const medians = vertical === 'gap' ? mediansOf(cell, view.measure) : [];
+  const first = medians[0] ?? Infinity, last = medians[medians.length - 1] ?? -Infinity;
+  const keep = (x, i) => curve[vertical][i] !== null && x !== null && (x < first || x > last);
+  xs.forEach((x, i) => { if (keep(x, i)) points.push({x, y: curve[vertical][i]}); });
+  medians.forEach((x, place) => points.push({x, y: tauOf(TARGETS[place])}));
+  points.sort((a, b) => a.x - b.x || b.y - a.y);
+  if (vertical === 'gap')
+    for (let i = 1; i < points.length; ++i) points[i].y = Math.min(points[i].y, points[i - 1].y);
+  const ends = points.filter((point, i) => i === 0 || i === points.length - 1 || point.y !== points[i - 1].y);
+  return ends;
 }
 
 // Zero has no logarithm: it is drawn below all others, and what is below the floor on the floor.
-function curveDatasets(state) {
-  const curves = state.problem.curves.filter((curve) => curve[state.vertical] !== undefined);
-  const zeroX = least(curves.flatMap((curve) => curve[state.horizontal])) / 2;
-  const zeroY = Math.max(LOWEST, least(curves.flatMap((curve) => curve[state.vertical])) / 10);
-  return curves.filter((curve) => state.visible.has(curve.s) && isShown('s', curve.s)).flatMap((curve) => {
-    const place = (height) => curve[state.horizontal].flatMap((x, i) => {
-      const y = curve[state.vertical][i] === null ? null : height(i);
-      return x === null || y === null ? [] : [{x: x > 0 ? x : zeroX, y: Math.max(y, zeroY)}];
-    });
-    const data = place((i) => curve[state.vertical][i]);
-    return [{label: DATA.optimizers[curve.s], data, ...lineStyle(curve.s)}, ...bandDatasets(curve, state, place)];
-  });
-}
-
 const HIGHEST = 1e3;  // of a loss gap: a run that diverges would flatten all others
 const LOWEST = 1e-12;  // of a loss gap or error: below lies rounding
-const AXES = {
-  iterations: 'iterations', work: 'work, forward solves', seconds: 'time, s',
-  gap: 'what is left of the loss', x_error: 'error in x',
-};
 
-// The tolerance of the page, as a line to cross: of what is left of the loss, or of x.
+function linesOf(state) {
+  const {problem, vertical} = state;
+  return problem.curves.filter((curve) => state.visible.has(curve.s) && isShown('s', curve.s) && curve[vertical] !== undefined)
+      .map((curve) => ({curve, points: problem.learned === undefined || vertical === 'gap' && problem.isOrdered
+          ? stairs(curve, cellOf(problem, curve.s), vertical) : pointsAlong(curve, vertical)}));
+}
+
+// Of a learned problem what the network of each kept iteration is worth.
+function pointsAlong(curve, vertical) {
+  const xs = curve[measureNow().name === 'iterations' ? 'iterations' : measureNow().name];
+  return xs.map((x, i) => ({x, y: curve[vertical][i]})).filter(({x, y}) => x !== null && y !== null);
+}
+
+// The range over seeds, where the curve has one: two unseen stairs with what is between them filled.
+function bandDatasets(curve, state, place) {
+  const low = curve[`${state.vertical}_low`], high = curve[`${state.vertical}_high`];
+  if (low === undefined || state.visible.size > FEW) return [];
+  const xs = curve[measureNow().name === 'iterations' ? 'iterations' : measureNow().name];
+  const band = {
+    bandOf: curve.s, borderWidth: 0, pointRadius: 0, pointHitRadius: 0, pointHoverRadius: 0, showLine: true, stepped: true,
+    backgroundColor: colourOf(curve.s) + BAND, order: 4,
+  };
+  const line = (values, never) => xs.map((x, i) => ({x, y: values[i] ?? never})).filter(({x, y}) => x !== null && y !== null).map(place);
+  return [{...band, data: line(low, null), fill: false}, {...band, data: line(high, HIGHEST), fill: '-1'}];
+}
+
+function curveDatasets(state) {
+  const lines = linesOf(state), points = lines.flatMap((line) => line.points);
+  const zeroX = least(points.map((point) => point.x)) / 2, zeroY = Math.max(LOWEST, least(points.map((point) => point.y)) / 10);
+  const place = ({x, y}) => ({x: x > 0 ? x : zeroX, y: Math.max(y, zeroY)});
+  return lines.flatMap(({curve, points: own}) => [
+    {
+      label: DATA.optimizers[curve.s], data: own.map(place), ...lineStyle(curve.s), stepped: true,
+      pointRadius: own.length > 60 ? 0 : 1.8, pointStyle: markerOf(curve.s),
+    },
+    ...bandDatasets(curve, state, place)]);
+}
+
+const AXES = {gap: 'relative loss gap, best so far', x_error: 'error in x'};
+const axisName = (state) => (state.vertical === 'gap' && state.problem.learned !== undefined ? 'relative loss gap' : AXES[state.vertical]);
+
+// The tolerance of the page, as a line to cross: of the relative loss gap, or of x.
 function toleranceLine(scale, from, to) {
   const tau = scale * tauOf(view.target);
   return {
@@ -117,7 +150,7 @@ function toleranceLine(scale, from, to) {
 
 function drawCurves(place, state, reading) {
   const datasets = curveDatasets(state);
-  const points = datasets.flatMap((set) => set.data);
+  const points = datasets.filter((set) => set.label !== undefined).flatMap((set) => set.data);
   const ends = (key) => {
     const values = points.map((point) => point[key]);
     if (values.length === 0) return [1, 10];
@@ -131,8 +164,9 @@ function drawCurves(place, state, reading) {
   } else if (state.problem.goal !== undefined) {
     datasets.push(toleranceLine(state.problem.goal, ...across));
   }
-  const scales = {x: logAxis(AXES[state.horizontal], ...across), y: logAxis(AXES[state.vertical], ...up)};
-  const label = `${AXES[state.vertical]} against ${AXES[state.horizontal]} on ${state.problem.spec}. ${reading}`;
+  const {counted, unit} = measureNow(), title = counted === unit ? counted : `${counted}, ${unit}`;
+  const scales = {x: logAxis(title, ...across), y: logAxis(axisName(state), ...up)};
+  const label = `${axisName(state)} against ${title} on ${state.problem.spec}. ${reading}`;
   return newChart(place, label, datasets, scales,
       tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`), true);
 }

@@ -63,7 +63,7 @@ std::string claim_html(const Document& document, const Judgement& judgement) {
   link_records(document, claim);
   std::string html = fmt::format(
       "<details class=claim id=\"{0}\" data-claim=\"{1}\"><summary><b>{2}</b> {3} "
-      "<code>{1}</code></summary>\n",
+      "<code>{1}</code></summary><noscript>\n",
       html_text(claim.id), html_text(judgement.id), html_text(marked_verdict(judgement)),
       html_text(claim.title));
   html += "<div class=decided>" + readings_html(claim) + "<div>";
@@ -72,7 +72,7 @@ std::string claim_html(const Document& document, const Judgement& judgement) {
   claim.readings.clear();
   claim.plots.clear();
   if (!claim.tables.empty()) html += section_html(claim);
-  return html + "<p><a href=\"#claims\">All verdicts</a></p></details>\n";
+  return html + "<p><a href=\"#claims\">All verdicts</a></p></noscript></details>\n";
 }
 
 }  // namespace

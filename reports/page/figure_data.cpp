@@ -57,6 +57,18 @@ Json lines_json(const std::vector<FigureLine>& lines) {
   return list;
 }
 
+Json published_json(const std::vector<PublishedMark>& marks) {
+  Json list = Json::array();
+  for (const PublishedMark& mark : marks)
+    list.push_back({{"s", mark.optimizer},
+                    {"name", mark.name},
+                    {"x", mark.x},
+                    {"y", mark.y},
+                    {"low", numbers({mark.low})[0]},
+                    {"high", numbers({mark.high})[0]}});
+  return list;
+}
+
 std::string problem_attribute(const Comparison& c, const Figure& figure) {
   const auto at = std::ranges::find_if(c.problems, [&](const ProblemAxis& problem) {
     return shown_spec(problem.spec) == shown_spec(figure.problem);
@@ -93,6 +105,8 @@ std::string figures_json(const std::vector<Figure>& all) {
                     {"log_x", figure.is_log_x},
                     {"log_y", figure.is_log_y},
                     {"diagonal", figure.has_diagonal},
+                    {"published", published_json(figure.published)},
+                    {"paper", figure.of_the_paper},
                     {"lines", lines_json(figure.lines)},
                     {"pictures", pictures_json(figure.pictures)}});
   return json_text(list);

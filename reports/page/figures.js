@@ -20,7 +20,7 @@ function figureDatasets(figure, visible) {
     const isScatter = figure.kind === 'scatter', isSparse = line.x.length <= 16;
     sets.push({
       ...style, label: name, data: pointsOf(figure, line.x, line.y), showLine: !isScatter,
-      pointRadius: isScatter ? 2 : isSparse ? 3 : 0, pointStyle: MARKERS[STYLES[line.s].marker === 'circle' ? 0 : 1],
+      pointRadius: isScatter ? 2 : isSparse ? 3 : 0, pointStyle: markerOf(line.s),
     });
     if (line.low.length === 0 || isScatter) continue;
     const band = {
@@ -39,29 +39,55 @@ function extent(points, key) {
   return high > low ? [low, high] : [low, low === 0 ? 1 : low + Math.abs(low)];
 }
 
-// All lines at first where they are not too many, but for the tuned twins of published settings.
+// The methods that the paper's claims are about, else one of each kind. Not the tuned twins of
+// published settings.
 function firstLines(figure) {
-  const published = figure.lines.map((line) => line.s).filter((s) => isShown('s', s) && !DATA.optimizers[s].endsWith(', tuned'));
-  return new Set(published.length <= MOST_LINES ? published : published.slice(0, SHOWN_AT_FIRST));
+  const untuned = figure.lines.map((line) => line.s).filter((s) => !DATA.optimizers[s].endsWith(', tuned'));
+  if (figure.paper.length > 0) return new Set(figure.paper);
+  return new Set(untuned.length <= MOST_LINES ? untuned : untuned.filter((s) => LEADERS.includes(s)));
+}
+
+// The fence of Tukey (1977), three ranges of the middle half beyond it, in the logarithm where the
+// axis has it: one step that diverged sets no axis.
+function robustExtent(values, isLog) {
+  if (values.length === 0) return [1, 10];
+  const to = isLog ? Math.log : (v) => v, back = isLog ? Math.exp : (v) => v;
+  const sorted = values.map(to).sort((x, y) => x - y), at = (share) => sorted[Math.round(share * (sorted.length - 1))];
+  const reach = 3 * (at(0.75) - at(0.25)), low = back(Math.max(sorted[0], at(0.25) - reach)), high = back(Math.min(sorted[sorted.length - 1], at(0.75) + reach));
+  return high > low ? [low, high] : isLog ? [low / 2, 2 * low] : [low, low === 0 ? 1 : low + Math.abs(low)];
 }
 
 // A path is shown where it settles: the overshoot of a first step would flatten all others.
 function extentOf(figure, sets, key) {
-  if (figure.kind !== 'path') return extent(sets.flatMap((set) => set.data), key);
-  const [low, high] = extent(sets.flatMap((set) => set.data.slice(set.data.length / 2)), key);
-  const margin = 0.3 * (high - low);
-  return [low - margin, high + margin];
+  const lines = sets.filter((set) => set.bandOf === undefined), isLog = figure[`log_${key}`];
+  const kept = figure.kind === 'path' ? lines.flatMap((set) => set.data.slice(set.data.length / 2)) : lines.flatMap((set) => set.data);
+  const [low, high] = key === 'x' && figure.kind !== 'path' ? extent(kept, key) : robustExtent(kept.map((point) => point[key]), isLog);
+  const published = figure.published.flatMap((mark) => (key === 'x' ? [mark.x] : [mark.y, mark.low, mark.high]));
+  const inside = published.filter((value) => value !== null && (!isLog || value > 0));
+  const margin = figure.kind === 'path' ? 0.3 * (high - low) : 0;
+  return [Math.min(low - margin, ...inside), Math.max(high + margin, ...inside)];
+}
+
+// The paper's values, with the error of reading them.
+function publishedDatasets(figure, visible) {
+  return figure.published.filter((mark) => visible.has(mark.s) && isShown('s', mark.s)).flatMap((mark) => {
+    const colour = cssColour('--ink'), bar = [mark.low, mark.high].filter((y) => y !== null).map((y) => ({x: mark.x, y}));
+    return [
+      {label: mark.name, data: [{x: mark.x, y: mark.y}], pointStyle: 'rectRot', pointRadius: 7, pointHitRadius: 9, borderWidth: 2, borderColor: colour, backgroundColor: colourOf(mark.s), order: 0},
+      {data: bar, showLine: true, pointStyle: 'line', pointRadius: 4, pointHitRadius: 0, borderWidth: 1.5, borderColor: colour, order: 0}];
+  });
 }
 
 function drawFigure(place, figure, visible, reading) {
   const sets = figureDatasets(figure, visible);
   const across = extentOf(figure, sets, 'x'), up = extentOf(figure, sets, 'y');
+  sets.push(...publishedDatasets(figure, visible));
   if (figure.diagonal)
     sets.push({
       data: [{x: across[0], y: across[0]}, {x: across[1], y: across[1]}], showLine: true, pointRadius: 0,
       pointHitRadius: 0, borderColor: cssColour('--soft'), borderDash: [4, 4], borderWidth: 1.2, order: 5,
     });
-  const scale = (isLog, title, [low, high]) => (isLog ? logAxis(title, low, high) : axis(title, {type: 'linear', ...(figure.kind === 'path' ? {min: low, max: high} : {})}));
+  const scale = (isLog, title, [low, high]) => (isLog ? logAxis(title, low, high) : axis(title, {type: 'linear', min: low, max: high, ticks: {includeBounds: false}}));
   const scales = {x: scale(figure.log_x, figure.x_label, across), y: scale(figure.log_y, figure.y_label, up)};
   return newChart(place, `${figure.title}: ${figure.y_label} against ${figure.x_label}. ${reading}`, sets, scales,
       tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`));
@@ -92,15 +118,32 @@ function figureDrawer(element, figure) {
     element.append(row);
     return () => {};
   }
-  const ranked = figure.lines.map((line) => line.s), place = document.createElement('div');
-  const choice = newChoice(ranked, () => firstLines(figure)), reading = element.querySelector('.reading').textContent;
-  const draw = redrawer(place, () => drawFigure(place, figure, choice(), reading));
-  const legend = newLegend(ranked, draw, (index) => highlight(draw.chart, index));
-  element.append(place, legend.place);
+  const place = document.createElement('div'), legend = document.createElement('div');
+  const visible = firstLines(figure), reading = element.querySelector('.reading').textContent;
+  const draw = redrawer(place, () => drawFigure(place, figure, visible, reading));
+  element.append(place, legend);
   return () => {
     draw();
-    legend.fill(choice());
+    legend.replaceChildren(...figureNames(figure, visible, draw, (index) => highlight(draw.chart, index)));
   };
+}
+
+// The names of the lines, shown and hidden by a press.
+function figureNames(figure, visible, redraw, light) {
+  const names = figure.lines.map((line) => line.s).filter((s) => isShown('s', s)).map((s) => {
+    const button = pressable(DATA.optimizers[s], visible.has(s), () => {
+      if (!visible.delete(s)) visible.add(s);
+      button.setAttribute('aria-pressed', visible.has(s));
+      redraw();
+    });
+    button.className = 'name';
+    button.prepend(swatch(s));
+    for (const [event, lit] of [['pointerenter', s], ['pointerleave', undefined], ['focus', s], ['blur', undefined]])
+      button.addEventListener(event, () => light(lit));
+    return button;
+  });
+  const marks = figure.published.length === 0 ? [] : [element('p', {className: 'legend'}, `◆ published, with the error of reading: ${[...new Set(figure.published.map((mark) => mark.name.split(': ')[1]))].join(', ')}.`)];
+  return [element('div', {className: 'names'}, ...names), ...marks];
 }
 
 function liveFigure(element) {

@@ -1,16 +1,9 @@
-// The lines of the charts: one colour a method, highlighting, and names at their ends.
+// The lines of the charts: a colour a kind of method, highlighting, and names at their ends.
 'use strict';
 
 const DATA = JSON.parse(document.getElementById('data').textContent);
-const SHOWN_AT_FIRST = 8;
-// Near Okabe and Ito (2008), moved apart until every two differ to readers with any colour blindness.
-const COLOURS = {
-  light: ['#1a4796', '#9a3d04', '#0d8b59', '#ce97af', '#f29102', '#07b7ff', '#04014f', '#6a556f'],
-  dark: ['#587ba7', '#c65a00', '#14c56f', '#f1c8cd', '#ffa50e', '#b7c7ff', '#c562f8', '#887e7b'],
-};
-const DASHES = [[], [7, 3], [2, 3], [9, 3, 2, 3], [14, 4]];
 const MARKERS = ['circle', 'rect', 'triangle', 'rectRot', 'crossRot'];
-const FEW = 12;  // as many lines are all shown at first
+const FEW = 12;  // as many lines have their range drawn
 const BAND = '22';  // how much of its colour a range over seeds has
 const NARROW = 640;  // pixels
 
@@ -21,23 +14,15 @@ function isDark() {
 
 const cssColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// One colour a method in every chart; settings of the same method differ by dash and marker.
-const STYLES = (() => {
-  const methods = new Map(), variants = new Map();
-  return DATA.methods.map((method) => {
-    if (!methods.has(method)) methods.set(method, methods.size);
-    const variant = variants.get(method) ?? 0;
-    variants.set(method, variant + 1);
-    const place = methods.get(method);
-    return {colour: place % 8, dash: (Math.floor(place / 8) + variant) % DASHES.length, marker: MARKERS[variant % MARKERS.length]};
-  });
-})();
-const colourOf = (index) => COLOURS[isDark() ? 'dark' : 'light'][STYLES[index].colour];
-const dashOf = (index) => DASHES[STYLES[index].dash];
+// Kind, dash and marker of each, fixed by its name: the style sheet has the same.
+const colourOf = (index) => cssColour(`--${DATA.styles[index][0]}`);
+const dashOf = (index) => DATA.styles[index][1].split(' ').filter(Boolean).map(Number);
+const markerOf = (index) => MARKERS[DATA.styles[index][2]];
 
 function lineStyle(index) {
+  const colour = colourOf(index);
   return {
-    optimizer: index, borderColor: colourOf(index), backgroundColor: colourOf(index), borderDash: dashOf(index),
+    optimizer: index, borderColor: colour, backgroundColor: colour, borderDash: dashOf(index),
     borderWidth: 1.8, pointRadius: 0, pointHoverRadius: 4, pointHitRadius: 6, tension: 0, showLine: true,
   };
 }
@@ -58,25 +43,37 @@ function highlight(chart, index) {
   chart.update('none');
 }
 
-// Names at the ends of the lines, pushed apart; where the chart is narrow the legend must do.
+const END_HEIGHT = 13;  // of a name, in pixels
+
+// Where each name goes: below those above it that it would meet, in one pass from top to bottom.
+// Each is placed once, so that no rounding can make this go on.
+function placedEnds(ends) {
+  const placed = [];
+  for (const end of [...ends].sort((a, b) => a.y - b.y)) {
+    let y = end.y;
+    for (const other of placed)  // from top to bottom, as they were placed
+      if (end.x < other.x + other.width && other.x < end.x + end.width && Math.abs(other.y - y) < END_HEIGHT) y = other.y + END_HEIGHT;
+    placed.push({...end, y});
+    placed.sort((a, b) => a.y - b.y);
+  }
+  return placed;
+}
+
+// Names at the ends of the lines; where the chart is narrow the table beside it must do.
 const END_LABELS = {
   id: 'endLabels',
   afterDatasetsDraw(chart) {
     if (chart.width < NARROW || !chart.options.hasEndLabels) return;
-    const context = chart.ctx, height = 13, placed = [];
-    const ends = chart.data.datasets.filter((set) => set.optimizer !== undefined && set.data.length > 0).map((set) => {
-      const last = set.data[set.data.length - 1];
-      return {set, x: chart.scales.x.getPixelForValue(last.x) + 5, y: chart.scales.y.getPixelForValue(last.y)};
-    }).sort((a, b) => a.y - b.y);
+    const context = chart.ctx;
     context.save();
     context.font = '11.5px system-ui, sans-serif';
     context.textBaseline = 'middle';
-    for (const end of ends) {
-      const width = context.measureText(end.set.label).width;
-      const meets = (other) => Math.abs(other.y - end.y) < height && end.x < other.x + other.width && other.x < end.x + width;
-      end.x = Math.min(end.x, chart.width - width - 2);
-      for (let other; (other = placed.find(meets));) end.y = other.y + height;
-      placed.push({x: end.x, y: end.y, width});
+    const ends = chart.data.datasets.filter((set) => set.optimizer !== undefined && set.data.length > 0).map((set) => {
+      const last = set.data[set.data.length - 1], width = context.measureText(set.label).width;
+      const x = Math.min(chart.scales.x.getPixelForValue(last.x) + 5, chart.width - width - 2);
+      return {set, x, width, y: chart.scales.y.getPixelForValue(last.y)};
+    });
+    for (const end of placedEnds(ends)) {
       if (end.y > chart.height - 30) continue;
       context.lineWidth = 3;
       context.strokeStyle = cssColour('--paper');

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
 #include "reports/formats/escape.h"
+#include "reports/page/kinds.h"
 #include "reports/page/page.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/measure_words.h"
@@ -157,48 +157,26 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
   const Deeds deeds = deeds_of(c, s);
   std::string html = fmt::format(
-      "<article class=optimizer id=optimizer-{0} data-s={0}><h3>{1}{2}</h3>{3}"
+      "<article class=\"optimizer one\" id=optimizer-{0} data-s={0}><noscript><h3>{1}{2}</h3>{3}"
       "<p class=reading>{4}</p><dl>",
       s, html_text(shown_spec(axis.label)), dagger(axis.privileges), sheet_html(axis),
       html_text(reading(c, s)));
-  if (axis.sheet != nullptr)
-    html += row("family", html_text(family_title(axis.sheet->family))) +
-            row("asks for", list_html(axis.sheet->oracles));
+  html += row("kind", kind_title(axis.mathematics()));
+  if (axis.sheet != nullptr) html += row("asks for", list_html(axis.sheet->oracles));
   if (!axis.privileges.empty())
     html += row("sees", "<span class=privilege>" + list_html(axis.privileges) + "</span>");
   html += list_row("best on", deeds.won) + list_row("does not solve", deeds.unsolved) +
           list_row("failed on", deeds.failed) + list_row("not applicable to", deeds.inapplicable);
   return html + "</dl>" + (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) +
-         "</article>\n";
+         "</noscript></article>\n";
 }
 
 }  // namespace
 
-std::string family_title(const std::string& family) {
-  static const std::map<std::string, std::string> kTitles = {
-      {"first-order", "First order"},
-      {"curvature", "Curvature"},
-      {"inversion", "Inversion of the physics"},
-      {"ceres", "Ceres"},
-      {"nlopt", "NLopt, with gradients"},
-      {"nlopt-derivative-free", "NLopt, without derivatives"}};
-  const auto at = kTitles.find(family);
-  return at != kTitles.end() ? at->second : family.empty() ? "Others" : family;
-}
-
 std::string optimizers_html(const Comparison& c) {
-  std::map<std::string, std::string> families;  // links to the sections
   std::string html;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    families[family_title(c.optimizers[s].family())] +=
-        fmt::format("<a href=\"#optimizer-{0}\" data-s={0}>{1}</a>\n", s,
-                    html_text(shown_spec(c.optimizers[s].label)));
-    html += optimizer_html(c, s);
-  }
-  std::string index;
-  for (const auto& [family, links] : families)
-    index += fmt::format("<p class=index><b>{}</b> {}</p>", html_text(family), links);
-  return index + html;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += optimizer_html(c, s);
+  return html;
 }
 
 }  // namespace isoline::reports

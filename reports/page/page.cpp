@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "reports/formats/escape.h"
+#include "reports/page/kinds.h"
 #include "reports/read/grounds.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
@@ -23,15 +26,15 @@ std::string_view embedded_chart_js();
 std::string_view embedded_lines_js();
 std::string_view embedded_view_js();
 std::string_view embedded_cells_js();
+std::string_view embedded_tabs_js();
 std::string_view embedded_bar_js();
-std::string_view embedded_legends_js();
 std::string_view embedded_charts_js();
 std::string_view embedded_planes_js();
 std::string_view embedded_figures_js();
 std::string_view embedded_tables_js();
-std::string_view embedded_standings_js();
-std::string_view embedded_glance_js();
-std::string_view embedded_reached_js();
+std::string_view embedded_overview_js();
+std::string_view embedded_pair_js();
+std::string_view embedded_problem_js();
 std::string_view embedded_page_js();
 
 namespace {
@@ -50,30 +53,6 @@ std::string filled(std::string_view page,
   return out.append(page);
 }
 
-std::string alerts_html(const Document& document) {
-  const Comparison& c = document.comparison;
-  std::string html;
-  if (!document.incomplete.empty())
-    html += fmt::format("<p class=alert role=alert><b>Incomplete.</b> {}</p>\n",
-                        html_text(document.incomplete));
-  const std::size_t unread = c.study->unreadable.size();
-  if (!c.failures.empty() || unread > 0)
-    html += fmt::format(
-        "<p class=alert><b>{} failed</b>{} — <a href=\"#failures\">see below</a></p>\n",
-        c.failures.size(), unread > 0 ? fmt::format(", {} unreadable files", unread) : "");
-  return html;
-}
-
-std::string tiles_html(const Comparison& c) {
-  std::string html = fmt::format("<li><b>{}<small>/{}</small></b>planned runs are here</li>",
-                                 c.answered, c.planned);
-  for (const auto& [status, count] : c.statuses)
-    html += fmt::format("<li class=\"{}\"><b>{}</b>{}<small>{}</small></li>",
-                        is_failure(status) ? "bad" : "", count, status_meaning(status),
-                        name_of(status));
-  return html;
-}
-
 std::string remarks_html(const Document& document) {
   std::string html;
   for (const std::string& remark : document.remarks)
@@ -81,16 +60,47 @@ std::string remarks_html(const Document& document) {
   return html.empty() ? "" : "<ul class=remarks>" + html + "</ul>";
 }
 
-// Empty where problems are too few to say anything: then there is no chart either.
+// "quick · 2026-11-22 · 1a2b3c4 · 38 optimizers on …": the suites, the last day a run began, the
+// commits of the programs that ran.
+std::string head_html(const Document& document) {
+  const Comparison& c = document.comparison;
+  constexpr std::size_t kDay = 10, kShort = 7;
+  std::vector<std::string> parts = c.study->plan.suites;
+  std::string day;
+  std::set<std::string> commits;
+  for (const Run& run : c.runs) {
+    const Provenance& from = run.record->provenance;
+    day = std::max(day, from.run.started.substr(0, kDay));
+    if (!from.build->commit.empty()) commits.insert(from.build->commit.substr(0, kShort));
+  }
+  if (!day.empty()) parts.push_back(day);
+  if (commits.size() == 1) parts.push_back(*commits.begin());
+  if (commits.size() > 1) parts.push_back(counted(commits.size(), "commit"));
+  parts.push_back(document.headline);
+  return html_text(joined(parts, " · "));
+}
+
+// The plot itself stands among the statistics.
 std::string profile_html(const Comparison& c) {
   if (!has_order(c))
-    return fmt::format(
-        "<p class=reading>With {} a profile says no more than the table above; none is drawn.</p>",
-        counted_settings(c, c.problems.size()));
-  return fmt::format(
-      "<p class=reading id=profile-reading>{}</p><div class=\"chart profile\"></div>",
-      html_text(profile_reading(c, kTightest)));
+    return fmt::format("With {} a profile says no more than the standings; none is drawn.",
+                       counted_settings(c, c.problems.size()));
+  return html_text(profile_reading(c, kTightest));
 }
+
+struct Script {
+  const char* name;
+  std::string_view (*text)();
+};
+constexpr Script kScripts[] = {
+    {"chart-js", embedded_chart_js},       {"lines-js", embedded_lines_js},
+    {"view-js", embedded_view_js},         {"cells-js", embedded_cells_js},
+    {"tabs-js", embedded_tabs_js},         {"bar-js", embedded_bar_js},
+    {"charts-js", embedded_charts_js},     {"planes-js", embedded_planes_js},
+    {"figures-js", embedded_figures_js},   {"tables-js", embedded_tables_js},
+    {"overview-js", embedded_overview_js}, {"pair-js", embedded_pair_js},
+    {"problem-js", embedded_problem_js},   {"page-js", embedded_page_js},
+};
 
 }  // namespace
 
@@ -99,42 +109,26 @@ std::string html_report(const Document& document) {
   std::map<std::string, std::string, std::less<>> parts = {
       {"style",
        std::string(embedded_page_css()).append(embedded_parts_css()).append(embedded_plots_css())},
-      {"headline", html_text(document.headline)},
+      {"headline", head_html(document)},
       {"tau", tau_name(c)},
-      {"success", html_text(success_text(c))},
       {"counted", std::string(counted_name(c))},
       {"unit", std::string(unit_name(c))},
       {"setting", std::string(setting_noun(c))},
-      {"prices", c.yardstick.by == Measure::work
-                     ? ": each gradient, Jacobian or inverse at its declared price"
-                     : ""},
-      {"alerts", alerts_html(document)},
-      {"tiles", tiles_html(c)},
+      {"kinds", kind_rules(c)},
+      {"overview", overview_html(document)},
+      {"endings", endings_html(c)},
       {"remarks", remarks_html(document)},
-      {"glance", glance_html(c)},
       {"standings", standings_html(c)},
-      {"matrix", matrix_html(c)},
+      {"heat", heat_html(c)},
       {"profile", profile_html(c)},
       {"details", details_html(c)},
       {"figures", figures_html(document)},
       {"claims", claims_html(document)},
       {"problems", problems_html(c)},
+      {"methods", methods_html(c)},
       {"optimizers", optimizers_html(c)},
-      {"data", page_data(document)},
-      {"chart-js", std::string(embedded_chart_js())},
-      {"lines-js", std::string(embedded_lines_js())},
-      {"view-js", std::string(embedded_view_js())},
-      {"cells-js", std::string(embedded_cells_js())},
-      {"bar-js", std::string(embedded_bar_js())},
-      {"legends-js", std::string(embedded_legends_js())},
-      {"charts-js", std::string(embedded_charts_js())},
-      {"planes-js", std::string(embedded_planes_js())},
-      {"figures-js", std::string(embedded_figures_js())},
-      {"tables-js", std::string(embedded_tables_js())},
-      {"standings-js", std::string(embedded_standings_js())},
-      {"glance-js", std::string(embedded_glance_js())},
-      {"reached-js", std::string(embedded_reached_js())},
-      {"page-js", std::string(embedded_page_js())}};
+      {"data", page_data(document)}};
+  for (const Script& script : kScripts) parts.emplace(script.name, script.text());
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
   return filled(embedded_page_html(), parts);

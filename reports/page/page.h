@@ -16,11 +16,13 @@ std::string plot_html(const Plot& plot);
 std::string plot_svg(const Plot& plot);
 
 // What the scripts redraw, and what no other format has.
+std::string overview_html(const Document& document);     // alerts, verdict, what is settled
+std::string endings_html(const Comparison& comparison);  // how the runs ended
 std::string standings_html(const Comparison& comparison);
-std::string matrix_html(const Comparison& comparison);
+std::string heat_html(const Comparison& comparison);  // what each took on each problem, by kind
 std::string details_html(const Comparison& comparison);
-std::string glance_html(const Comparison& comparison);      // the first screen
 std::string problems_html(const Comparison& comparison);    // one article each
+std::string methods_html(const Comparison& comparison);     // the grid of properties
 std::string optimizers_html(const Comparison& comparison);  // one article each
 std::string figures_html(const Document& document);
 std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
@@ -32,7 +34,5 @@ std::string json_quoted(const std::string& text);
 
 // A dagger that tells what an optimizer sees; empty where it sees no more than others.
 std::string dagger(const std::vector<std::string>& privileges);
-
-std::string family_title(const std::string& family);
 
 }  // namespace isoline::reports

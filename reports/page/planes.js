@@ -1,4 +1,4 @@
-// Charts of paths over contours, and of performance profiles.
+// Charts of paths over contours, to scale: a unit across is a unit up, since both are of one plane.
 'use strict';
 
 function pairs(flat) {
@@ -28,13 +28,23 @@ const isShort = (path) => path.points.length <= 2 * 16;
 
 function pathDataset(path) {
   const style = lineStyle(path.s);
-  if (!isShort(path)) return {...style, borderDash: dashOf(path.s), borderWidth: 2.2, pointHitRadius: 2};
-  const isCross = STYLES[path.s].marker === 'crossRot';
+  if (!isShort(path)) return {...style, borderWidth: 2.2, pointHitRadius: 2};
+  const marker = markerOf(path.s);
   return {
-    ...style, borderDash: [3, 3], borderWidth: 1.2, pointRadius: isCross ? 5 : 4.2, pointStyle: STYLES[path.s].marker,
+    ...style, borderDash: [3, 3], borderWidth: 1.2, pointRadius: marker === 'crossRot' ? 5 : 4.2, pointStyle: marker,
     pointBorderWidth: 1.6, backgroundColor: cssColour('--paper'),
   };
 }
+
+// The window, widened to the shape of the drawing, so that both axes have one scale.
+function toScale([left, right, bottom, top], width, height) {
+  const unit = Math.max((right - left) / width, (top - bottom) / height);  // of data, a pixel
+  const x = (left + right) / 2, y = (bottom + top) / 2;
+  return [x - unit * width / 2, x + unit * width / 2, y - unit * height / 2, y + unit * height / 2];
+}
+
+// Planes stretched beyond this are not to scale, and say so: a valley would be a line.
+const MOST_STRETCH = 12;
 
 function drawPlane(place, state, space) {
   const plane = state.problem[space];
@@ -45,39 +55,31 @@ function drawPlane(place, state, space) {
   if (plane.paths.length > 0) datasets.push(markerDataset(pairs(plane.paths[0].points)[0], 'circle', 'start'));
   if (plane.goal.length === 2) datasets.push(markerDataset(pairs(plane.goal)[0], 'star', space === 'x' ? 'solution' : 'target'));
   const [left, right, bottom, top] = plane.window;
+  const stretch = Math.max((right - left) / (top - bottom), (top - bottom) / (right - left));
+  const isToScale = stretch <= MOST_STRETCH;
   const plain = {ticks: {autoSkip: true, includeBounds: false}, grid: {display: false, borderColor: cssColour('--line')}};
   const scales = {
     x: axis(`${space}₁`, {min: left, max: right, ...plain}), y: axis(`${space}₂`, {min: bottom, max: top, ...plain}),
   };
-  return newChart(place, `Paths in ${space} on ${state.problem.spec}`, datasets, scales,
+  const chart = newChart(place, `Paths in ${space} on ${state.problem.spec}${isToScale ? ', both axes to one scale' : ''}`, datasets, scales,
       tooltipOf((point) => `(${short(point.x)}, ${short(point.y)})`));
+  if (isToScale) keepScale(chart, plane.window);
+  else place.append(element('p', {className: 'legend'}, `Not to scale: one axis is ${short(stretch)} times as long as the other.`));
+  return chart;
 }
 
-// ρ(τ) as a staircase over log2 τ.
-function staircase([problems, ...ratios], end) {
-  const points = [{x: 0, y: 0}];
-  ratios.forEach((ratio, i) => {
-    const x = Math.log2(ratio);
-    if (x > end) return;
-    points.push({x, y: 100 * i / problems}, {x, y: 100 * (i + 1) / problems});
-  });
-  points.push({x: end, y: points[points.length - 1].y});
-  return points;
-}
-
-// `profile` holds what is shown; `visible` is chosen in the legend.
-function drawProfile(place, profile, visible, reading) {
-  const chosen = [...visible].filter((s) => profile.has(s));
-  const ratios = chosen.flatMap((s) => profile.get(s).slice(1));
-  const end = Math.min(Math.ceil(Math.max(2, ...ratios.map(Math.log2)) + 0.5), 10);
-  const datasets = chosen.map((s) => ({
-    label: DATA.optimizers[s], problems: profile.get(s)[0], data: staircase(profile.get(s), end), ...lineStyle(s),
-  }));
-  const scales = {
-    x: axis('work, as a multiple of the least on the same problem', {min: 0, max: end, ticks: {stepSize: 1, callback: (x) => `${2 ** x}×`}}),
-    y: axis('problems solved', {min: 0, max: 100, ticks: {callback: (y) => `${y} %`}}),
+// After each change of size the window fits the drawing anew.
+function keepScale(chart, window) {
+  const fit = () => {
+    const {left, right, top, bottom} = chart.chartArea;
+    if (!(right > left && bottom > top)) return;
+    const [low, high, down, up] = toScale(window, right - left, bottom - top), {x, y} = chart.options.scales;
+    if (Math.abs(x.min - low) + Math.abs(x.max - high) + Math.abs(y.min - down) + Math.abs(y.max - up) < 1e-9 * (high - low)) return;
+    Object.assign(x, {min: low, max: high});
+    Object.assign(y, {min: down, max: up});
+    chart.update('none');
   };
-  const tooltip = tooltipOf((point) => `${point.y.toFixed(0)} % within ${short(2 ** point.x)}×`);
-  tooltip.callbacks.afterLabel = (item) => `of ${item.dataset.problems} problems`;
-  return newChart(place, `Performance profile. ${reading}`, datasets, scales, tooltip, true);
+  chart.options.onResize = () => requestAnimationFrame(() => { if (chart.ctx !== null) fit(); });
+  fit();
+  fit();  // the axis of other numbers may have another width
 }

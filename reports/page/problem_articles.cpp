@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "reports/formats/escape.h"
 #include "reports/page/contour.h"
@@ -59,6 +60,7 @@ std::string about_html(const Sheet& sheet) {
     facts += fmt::format("{} unknown{}, ", sheet.unknowns, sheet.unknowns == 1 ? "" : "s");
   if (sheet.residuals > 0)
     facts += fmt::format("{} residual{}, ", sheet.residuals, sheet.residuals == 1 ? "" : "s");
+  if (sheet.condition) facts += fmt::format("condition of J {}, ", figure(*sheet.condition));
   facts +=
       sheet.inverse.empty() || sheet.inverse == "none" ? "no inverse" : sheet.inverse + " inverse";
   std::string html = fmt::format(
@@ -71,26 +73,32 @@ std::string about_html(const Sheet& sheet) {
 std::string problem_html(const Comparison& c, std::size_t p) {
   const ProblemAxis& problem = c.problems[p];
   const Sheet* sheet = problem.sheet;
-  std::string html = fmt::format("<article class=problem id=problem-{0} data-p={0}><h3>{1}</h3>", p,
-                                 html_text(shown_spec(problem.spec)));
+  std::string html =
+      fmt::format("<article class=\"problem one\" id=problem-{0} data-p={0}><noscript><h3>{1}</h3>",
+                  p, html_text(shown_spec(problem.spec)));
   if (sheet != nullptr) html += about_html(*sheet);
   html += fmt::format(
       "<p class=reading>{}</p><div class=solve><div class=curves></div><div "
       "class=reached></div></div>",
       html_text(curve_reading(c, p)));
-  return html + planes_html(c, p) + "</article>\n";
+  return html + planes_html(c, p) + "</noscript></article>\n";
 }
 
 }  // namespace
 
+// By group, each a row of links.
 std::string problems_html(const Comparison& c) {
+  std::map<std::string, std::string> groups;
   std::string index, html;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    index += fmt::format("<a href=\"#problem-{0}\" data-p={0}>{1}</a>\n", p,
-                         html_text(shown_spec(c.problems[p].spec)));
+    groups[c.problems[p].group()] += fmt::format("<a href=\"#problem-{0}\" data-p={0}>{1}</a>\n", p,
+                                                 html_text(shown_spec(c.problems[p].spec)));
     html += problem_html(c, p);
   }
-  return "<p class=index>" + index + "</p>" + html;
+  for (const char* group : {"toy", "physics", "classical", "learned", "other"})
+    if (groups.contains(group))
+      index += fmt::format("<p class=index><b>{}</b> {}</p>", group, groups[group]);
+  return index + html;
 }
 
 }  // namespace isoline::reports

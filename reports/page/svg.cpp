@@ -32,7 +32,7 @@ std::string opened(const Topic& topic, std::optional<std::size_t> colour = std::
   if (topic.optimizer) tag += fmt::format(" data-s={}", *topic.optimizer);
   if (topic.problem) tag += fmt::format(" data-p={}", *topic.problem);
   if (!topic.method.empty()) tag += fmt::format(" data-method=\"{}\"", html_text(topic.method));
-  if (colour) tag += fmt::format(" class=c{}", *colour % 8);
+  if (colour && !topic.optimizer) tag += fmt::format(" class=c{}", *colour % 8);
   return tag + ">";
 }
 
@@ -216,9 +216,10 @@ std::string marks_html(const Plot& plot) {
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
     const PlotSeries& series = plot.series[s];
     const std::size_t place = place_of(plot, s);
-    html += fmt::format("<span{} class=c{}><b>{}</b> {}</span> ",
-                        series.optimizer ? fmt::format(" data-s={}", *series.optimizer) : "",
-                        place % 8, mark_of(place), html_text(series.name));
+    html += fmt::format("<span{}><b>{}</b> {}</span> ",
+                        series.optimizer ? fmt::format(" data-s={}", *series.optimizer)
+                                         : fmt::format(" class=c{}", place % 8),
+                        mark_of(place), html_text(series.name));
   }
   return html + "</p>";
 }

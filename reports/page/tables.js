@@ -26,13 +26,24 @@ function cellAt(row, column) {
 }
 
 function sortTable(table, column, isDescending) {
-  const body = table.tBodies[0];
-  const keyed = [...body.rows].map((row) => ({row, key: sortKey(cellAt(row, column))}));
+  const body = table.tBodies[0], rows = rowsOf(table);
+  const keyed = rows.map((row) => ({row, key: sortKey(cellAt(row, column))}));
   const isEmpty = (key) => key.group === 2;  // stays last in both directions
   keyed.sort((a, b) => isEmpty(a.key) || isEmpty(b.key) || !isDescending
       ? compareKeys(a.key, b.key) : compareKeys(b.key, a.key));
-  body.append(...keyed.map(({row}) => row));
+  const sorted = keyed.map(({row}) => row);
+  if (LONG.has(table)) {
+    LONG.get(table).rows = sorted;
+    LONG.get(table).show();
+  } else {
+    body.append(...sorted);
+  }
 }
+
+// Of a long table so many rows stand in the page; the others wait for a filter, an order, or paper.
+const MOST_IN_PAGE = 200;
+const LONG = new Map();  // {rows, show} of each
+const rowsOf = (table) => LONG.get(table)?.rows ?? [...table.tBodies[0].rows];
 
 function makeSortable(table) {
   const heads = [...table.tHead.rows[0].cells];
@@ -52,22 +63,29 @@ function makeSortable(table) {
   });
 }
 
-// Shows the rows that hold every word of the input, among those of the view; returns how to count anew.
+// Shows the rows that hold every word of the input, among those of the view; returns how to do so anew.
 function makeFilter(input, table, output) {
-  const rows = [...table.tBodies[0].rows];
-  let texts;
-  const apply = () => {
-    const words = input.value.toLowerCase().split(/\s+/).filter(Boolean);
-    texts ??= words.length > 0 ? rows.map((row) => row.textContent.toLowerCase()) : undefined;
-    let shown = 0;
-    rows.forEach((row, i) => {
-      row.hidden = !words.every((word) => texts[i].includes(word));
-      if (!row.hidden && isShown('s', Number(row.dataset.s)) && isShown('p', Number(row.dataset.p))) ++shown;
-    });
-    output.textContent = `${shown} of ${rows.length} rows`;
+  const texts = new Map(), all = pressable('', undefined, () => { most = Infinity; show(); });
+  let most = MOST_IN_PAGE;
+  const textOf = (row) => {
+    if (!texts.has(row)) texts.set(row, row.textContent.toLowerCase());
+    return texts.get(row);
   };
-  input.addEventListener('input', apply);
-  return apply;
+  const show = () => {
+    const words = input.value.toLowerCase().split(/\s+/).filter(Boolean), {rows} = LONG.get(table);
+    const wanted = rows.filter((row) => isShown('s', Number(row.dataset.s)) && isShown('p', Number(row.dataset.p)) &&
+        words.every((word) => textOf(row).includes(word)));
+    table.tBodies[0].replaceChildren(...wanted.slice(0, most));
+    all.hidden = wanted.length <= most;
+    all.textContent = `all ${wanted.length} rows`;
+    output.textContent = `${wanted.length} of ${rows.length} rows`;
+  };
+  LONG.set(table, {rows: [...table.tBodies[0].rows], show});
+  output.after(' ', all);
+  input.addEventListener('input', show);
+  addEventListener('beforeprint', () => { most = Infinity; show(); });
+  show();
+  return show;
 }
 
 // A claim is of interest as long as one of its optimizers and one of its problems are.
@@ -77,21 +95,6 @@ function hideClaims() {
     for (const place of document.querySelectorAll(`[data-claim="${id}"]`))
       place.hidden = !isOf('s', optimizers) || !isOf('p', problems);
   }
-}
-
-// A claim that is led to stands open, with its head below the bars.
-function openClaim(address) {
-  const claim = address.startsWith('#claim-') ? document.getElementById(address.slice(1)) : null;
-  if (claim === null) return;
-  claim.open = true;
-  claim.scrollIntoView();
-}
-
-function leadToClaims() {
-  for (const link of document.querySelectorAll('a[href^="#claim-"]'))
-    link.addEventListener('click', () => setTimeout(() => openClaim(link.getAttribute('href'))));
-  addEventListener('hashchange', () => openClaim(location.hash));
-  openClaim(location.hash);
 }
 
 // Rows of an SVG plot move up into the places of those filtered out.
@@ -107,19 +110,18 @@ function closeRows(plot) {
   plot.setAttribute('viewBox', `${left} ${top} ${width} ${edge + step * place}`);
 }
 
-const OWN_TAU = tauName(DEFAULT_TARGET);
-const COUNTED_IN_CELLS = DATA.by === 'time' ? 'work' : DATA.counted;
-
-// What the table of all cells says of one of them: the matrix has no room for it.
-function explanationOf(row) {
-  const [problem, optimizer, runs, , , work, , , time, loss, error, fate] = [...row.cells].map((cell) => {
-    const range = cell.querySelector('small')?.textContent;
-    return (cell.firstChild?.textContent ?? '') + (range ? ` (${range})` : '');
-  });
-  const lines = work === '' ? [fate] : [
-    `${runs} runs to ${OWN_TAU}`, `${COUNTED_IN_CELLS} to ${OWN_TAU}: ${work}`, `time: ${time} ms`, `final loss: ${loss}`,
-    ...(error === '' ? [] : [`error in x: ${error}`]), `ended by: ${fate}`];
-  return [`${optimizer} on ${problem}`, ...lines];
+// What is known of a cell of the heat table, at the tolerance and by the measure of the page.
+function explanationOf(p, s) {
+  const problem = DATA.problems[p], cell = cellOf(problem, s), title = `${DATA.labels[s]} on ${problem.spec}`;
+  if (cell === undefined) return [title, 'never planned'];
+  if (!isMeasured(cell)) return [title, 'not applicable'];
+  const learned = problem.learned?.rows.find((row) => row.s === s);
+  const lines = learned === undefined ? [] : [`error in x at equal work: ${figure(learned.error)} (${figure(learned.low ?? Infinity)}–${figure(learned.high ?? Infinity)})`, `loss in y there: ${figure(learned.loss)}`];
+  lines.push(`${reachedOf(cell)}/${cell.reached.length} runs reach τ = ${tauName(view.target)}`);
+  MEASURES.forEach((name, measure) => lines.push(`${name}: ${figure(takenBy(cell, view.target, measure))} ${DATA.measures[measure].unit}`));
+  if (cell.failed > 0) lines.push(`${cell.failed} failed`);
+  if (cell.missing > 0) lines.push(`${cell.missing} missing`);
+  return [title, ...lines];
 }
 
 function showTip(tip, [title, ...lines], near) {
@@ -137,14 +139,11 @@ function showTip(tip, [title, ...lines], near) {
   tip.style.top = `${isBelow ? box.bottom + 6 : box.top - tip.offsetHeight - 6}px`;
 }
 
-function explainMatrix(matrix, details) {
+function explainMatrix(matrix) {
   const tip = document.getElementById('tip');
-  let rows;
   const explain = (event) => {
-    rows ??= new Map([...details().tBodies[0].rows].map((row) => [`${row.dataset.s},${row.dataset.p}`, row]));
-    const cell = event.target.closest('td');
-    const row = cell && rows.get(`${cell.parentElement.dataset.s},${cell.dataset.p}`);
-    if (row) showTip(tip, explanationOf(row), cell); else tip.hidden = true;
+    const cell = event.target.closest('td[data-p]');
+    if (cell !== null) showTip(tip, explanationOf(Number(cell.dataset.p), Number(cell.parentElement.dataset.s)), cell); else tip.hidden = true;
   };
   matrix.addEventListener('pointerover', explain);
   matrix.addEventListener('click', explain);

@@ -40,8 +40,8 @@ std::string digits_code(const std::string& text) {
 }
 std::string time_code(Real seconds) { return digits_code(milliseconds(seconds)); }
 
-// Of costs, which are no whole numbers and no less than one.
-std::string cost_code(Real cost) { return digits_code(fmt::format("{:.9g}", cost)); }
+// Of costs, which are no whole numbers: a digit more than tables print.
+std::string cost_code(Real cost) { return digits_code(fmt::format("{:.5g}", cost)); }
 
 auto code_of(Measure by) {
   return by == Measure::time ? time_code : by == Measure::cost ? cost_code : work_code;
@@ -51,12 +51,13 @@ auto code_of(Measure by) {
 
 std::string target_codes(const std::vector<Real>& medians, Measure by) {
   const auto code = code_of(by);
-  std::string text, last;
-  for (std::size_t j = 0; j < medians.size(); ++j) {
+  std::string text;
+  for (std::size_t j = 0; j < medians.size();) {
     const std::string one = code(medians[j]);
-    if (j > 0) text += ',';
-    if (one != last) text += one;
-    last = one;
+    std::size_t count = 1;
+    while (j + count < medians.size() && code(medians[j + count]) == one) ++count;
+    text += (j > 0 ? "," : "") + one + (count > 1 ? fmt::format("*{}", count) : "");
+    j += count;
   }
   return text;
 }

@@ -9,7 +9,7 @@
 
 namespace isoline::reports {
 
-// Comma-separated, of the finite ones; nothing stands for the same as before. Counts are halves in
+// Comma-separated, of the finite ones; "8*3" is one that stands three times. Counts are halves in
 // base 36; costs, and times in seconds, are the digits of a number and a letter for its power of
 // ten.
 std::string target_codes(const std::vector<Real>& medians, Measure by);

@@ -1,16 +1,20 @@
-// What the reader looks at: which optimizers and problems, to which tolerance. Kept in the address,
-// so that a view can be shared. Any element with data-s or data-p follows, whoever made it.
+// What the reader looks at: which methods and problems, to which tolerance, by what measure. Kept in
+// the address, so that a view can be shared. Any element with data-s or data-p follows, whoever made
+// it: a filter hides, and changes no number.
 'use strict';
 
-const TARGETS = 51;  // τ = 10^(−j/5), j from 0
+const TARGETS = DATA.targets;  // those there are medians to, of τ = 10^(−j/5)
 const DEFAULT_TARGET = DATA.rungs[DATA.rungs.length - 1];  // the report's own
 const KINDS = {s: {names: DATA.optimizers, address: 'o'}, p: {names: DATA.problems.map((problem) => problem.spec), address: 'p'}};
-const view = {target: DEFAULT_TARGET, hidden: {s: new Set(), p: new Set()}};
+const MEASURES = DATA.measures.map((measure) => measure.name);
+const DEFAULT_MEASURE = MEASURES.indexOf(DATA.by);
+const view = {target: DEFAULT_TARGET, measure: DEFAULT_MEASURE, hidden: {s: new Set(), p: new Set()}};
+const measureNow = () => DATA.measures[view.measure];
 
 const isShown = (kind, index) => !view.hidden[kind].has(index);
 const shownOf = (kind) => KINDS[kind].names.map((_, index) => index).filter((index) => isShown(kind, index));
 const isFiltered = () => view.hidden.s.size > 0 || view.hidden.p.size > 0;
-const isPlain = () => !isFiltered() && view.target === DEFAULT_TARGET;
+const isOwn = () => view.target === DEFAULT_TARGET && view.measure === DEFAULT_MEASURE;  // as the report was made
 const tauOf = (target) => 10 ** (-target / 5);
 
 function tauName(target) {
@@ -42,6 +46,11 @@ function writeAddress() {
     for (const index of isShort ? hidden : shown) asked.append(isShort ? `-${address}` : address, names[index]);
   }
   if (view.target !== DEFAULT_TARGET) asked.set('tau', tauName(view.target));
+  if (view.measure !== DEFAULT_MEASURE) asked.set('by', MEASURES[view.measure]);
+  if (pair.isChosen === true) {
+    asked.set('a', DATA.optimizers[pair.a]);
+    asked.set('b', DATA.optimizers[pair.b]);
+  }
   const text = asked.toString();
   try {
     history.replaceState(null, '', (text === '' ? location.pathname : `?${text}`) + location.hash);
@@ -57,7 +66,9 @@ function readAddress() {
     });
   }
   const tau = Number(asked.get('tau'));
-  if (tau > 0) view.target = Math.min(TARGETS - 1, Math.max(0, Math.round(-5 * Math.log10(tau))));
+  if (MEASURES.includes(asked.get('by'))) view.measure = MEASURES.indexOf(asked.get('by'));
+  const wanted = -5 * Math.log10(tau);
+  if (tau > 0) view.target = TARGETS.reduce((best, target) => (Math.abs(target - wanted) < Math.abs(best - wanted) ? target : best));
 }
 
 // What is drawn anew when the view changes: at once where it is seen, else when it comes into sight.
@@ -85,8 +96,6 @@ function refreshAll() {
     SIGHT.observe(element);  // tells at once whether it is seen
   }
 }
-
-addEventListener('beforeprint', () => [...STALE].forEach(refresh));  // paper does not scroll
 
 const FOLLOWERS = [];  // called after each change, before anything is drawn
 let isChanging = false;

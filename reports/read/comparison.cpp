@@ -9,6 +9,8 @@
 #include <unordered_set>
 
 #include "reports/read/axes.h"
+#include "reports/read/brief.h"
+#include "reports/read/equal_work.h"
 #include "reports/read/leaders.h"
 #include "reports/read/reached.h"
 
@@ -176,6 +178,8 @@ std::map<std::string, std::vector<std::size_t>> problems_by_name(const Compariso
 }
 
 std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem) {
+  if (comparison.problems[problem].is_learned)
+    return equal_work(comparison, problem).nearest_first();
   std::vector<std::size_t> order;
   for (std::size_t s = 0; s < comparison.optimizers.size(); ++s)
     if (comparison.cell(problem, s).is_measured()) order.push_back(s);
@@ -187,11 +191,23 @@ std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t probl
   return order;
 }
 
+namespace {
+
+void fill_brief(std::vector<OptimizerAxis>& optimizers) {
+  std::vector<std::string> labels;
+  for (const OptimizerAxis& optimizer : optimizers) labels.push_back(optimizer.label);
+  const std::vector<std::string> brief = brief_labels(labels);
+  for (std::size_t s = 0; s < optimizers.size(); ++s) optimizers[s].brief = brief[s];
+}
+
+}  // namespace
+
 Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
   Comparison c{.study = &study, .yardstick = yardstick};
   const OptimizerLabels label(study);
   c.problems = problem_axis(study);
   c.optimizers = optimizer_axis(study, label);
+  fill_brief(c.optimizers);
   fill_cells(c, label);
   for (auto& row : c.cells)
     for (Cell& cell : row) aggregate(c, cell);

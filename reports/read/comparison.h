@@ -61,6 +61,12 @@ struct ProblemAxis {
   bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
   Aim aim = Aim::loss;              // what its user wants, as its records say
   bool is_learned = false;
+
+  // "toy", "physics", "classical", "learned"; "other" where its sheet says nothing.
+  std::string group() const {
+    if (is_learned) return "learned";
+    return sheet == nullptr || sheet->group.empty() ? "other" : sheet->group;
+  }
 };
 
 // How an optimizer did on the settings on which it is compared.
@@ -76,6 +82,7 @@ struct Standing {
 
 struct OptimizerAxis {
   std::string label;   // its spec; its name alone where a file of rates chose the options
+  std::string brief;   // the same, where it is long with the options alone that tell it apart
   std::string method;  // its name
   // Where a method sees more on some problems than on others, each meaning has a row of its own:
   // "sip, given P⁻¹" and "sip". Then all of them stand under this label.
@@ -89,6 +96,10 @@ struct OptimizerAxis {
 
   const Standing& tightest() const { return standings[kTightest]; }
   std::string family() const { return sheet == nullptr ? "" : sheet->family; }
+  // What its step is by its mathematics, whoever wrote it; "other" where its sheet is older.
+  std::string mathematics() const {
+    return sheet == nullptr || sheet->mathematics.empty() ? "other" : sheet->mathematics;
+  }
   std::string name_of_all() const { return is_meaning ? whole : label; }
 };
 
@@ -97,6 +108,7 @@ struct Order {
   std::vector<std::size_t> settings, methods;  // problems; optimizers, best first
 
   bool has(std::size_t optimizer) const;
+  bool has_setting(std::size_t problem) const;
 };
 
 // Where a method that is not in the common order would stand.
@@ -145,7 +157,7 @@ Costs median_costs(const Comparison& comparison, std::size_t tolerance, Measure 
 std::map<std::string, std::vector<std::size_t>> problems_by_name(const Comparison& comparison);
 
 // The optimizers that ran on a problem, best first: by what the yardstick counts, from the tightest
-// tolerance to the loosest, then by final loss.
+// tolerance to the loosest, then by final loss; of a learned one by the error in x at equal work.
 std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem);
 
 }  // namespace isoline::reports

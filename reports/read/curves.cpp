@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "reports/read/reached.h"
+
 namespace isoline::reports {
 namespace {
 
@@ -16,10 +18,10 @@ std::size_t point_at(const Curve& curve, std::int64_t iteration) {
              : static_cast<std::size_t>(after - curve.iteration.begin()) - 1;
 }
 
-// A run's curve with what is taken off its losses.
+// A run's curve, with what it cost and what is left of its loss at each of its points.
 struct Traced {
   const Curve* curve;
-  Real minimum, scale;
+  std::vector<Real> cost, gap;
 };
 
 std::vector<std::int64_t> iterations_of(const std::vector<Traced>& curves, std::size_t points) {
@@ -42,9 +44,13 @@ Spread spread_at(const std::vector<Traced>& curves, const std::vector<std::size_
   return spread_of(std::move(values));
 }
 
-Real gap_of(const Traced& traced, std::size_t point) {
-  return traced.scale > 0 ? std::max(traced.curve->loss[point] - traced.minimum, 0.0) / traced.scale
-                          : kNever;
+// Of a direct problem the best so far, which holds until a better one is evaluated; of a learned
+// one what the network of that iteration is worth.
+std::vector<Real> gaps_of(const Run& run, bool is_learned) {
+  std::vector<Real> gaps = losses_left(run);
+  for (std::size_t i = 1; i < gaps.size() && !is_learned; ++i)
+    if (!(gaps[i] <= gaps[i - 1])) gaps[i] = gaps[i - 1];
+  return gaps;
 }
 
 void add(const Spread& spread, std::vector<Real>& median, std::vector<Real>& low,
@@ -58,8 +64,10 @@ std::vector<Traced> curves_of(const Comparison& comparison, const Cell& cell) {
   std::vector<Traced> curves;
   for (const std::size_t index : cell.runs) {
     const Run& run = comparison.runs[index];
-    if (!run.record->curve.iteration.empty())
-      curves.push_back({&run.record->curve, run.minimum, run.scale});
+    if (run.record->curve.iteration.empty()) continue;
+    const ProblemAxis& problem = comparison.problems[run.problem];
+    curves.push_back({&run.record->curve, problem.prices.curve_costs(*run.record),
+                      gaps_of(run, problem.is_learned)});
   }
   return curves;
 }
@@ -94,12 +102,15 @@ MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::si
       return spread_at(curves, at, lost, value);
     };
     const auto work = [](const Traced& t, At i) { return t.curve->work[i]; };
+    const auto cost = [](const Traced& t, At i) { return t.cost[i]; };
+    const auto gap = [](const Traced& t, At i) { return t.gap[i]; };
     const auto seconds = [](const Traced& t, At i) { return t.curve->wall_seconds[i]; };
     const auto x_error = [](const Traced& t, At i) { return t.curve->x_error[i]; };
     median.iteration.push_back(static_cast<Real>(iteration));
     median.work.push_back(over_all(0, work).median);
+    median.cost.push_back(over_all(0, cost).median);
     median.seconds.push_back(over_all(0, seconds).median);
-    add(over_all(without_curve, gap_of), median.gap, median.gap_low, median.gap_high);
+    add(over_all(without_curve, gap), median.gap, median.gap_low, median.gap_high);
     add(over_all(without_curve, x_error), median.x_error, median.x_error_low, median.x_error_high);
   }
   return median;

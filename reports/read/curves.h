@@ -10,9 +10,10 @@ namespace isoline::reports {
 
 // Columns of equal length. At each iteration the median over seeds of every column; a run that has
 // ended keeps its last values, a run without a curve counts as infinite. The gap is what is left of
-// the loss, (f − f_L) / s: the τ of the tables is a height in its plot.
+// the loss, (f − f_L) / s: the τ of the tables is a height in its plot. Of a direct problem it is
+// the least so far.
 struct MedianCurve {
-  std::vector<Real> iteration, work, seconds, gap, x_error;
+  std::vector<Real> iteration, work, cost, seconds, gap, x_error;
   std::vector<Real> gap_low, gap_high, x_error_low, x_error_high;  // least and greatest over seeds
 };
 MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::size_t points);

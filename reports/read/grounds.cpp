@@ -32,7 +32,8 @@ std::vector<std::size_t> shared_settings(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const auto asked = std::ranges::count_if(
         methods, [&](const auto& columns) { return is_any_asked(c, p, columns); });
-    if (2 * static_cast<std::size_t>(asked) > methods.size()) shared.push_back(p);
+    if (is_ordered(c, p) && 2 * static_cast<std::size_t>(asked) > methods.size())
+      shared.push_back(p);
   }
   return shared;
 }
@@ -43,6 +44,10 @@ std::size_t asked_of(const Comparison& c, const std::vector<std::size_t>& settin
 }
 
 }  // namespace
+
+bool is_ordered(const Comparison& c, std::size_t p) {
+  return !c.problems[p].is_learned || std::ranges::all_of(c.problems, &ProblemAxis::is_learned);
+}
 
 Order common_order(const Comparison& c) {
   Order order;
@@ -63,7 +68,7 @@ Order common_order(const Comparison& c) {
 std::vector<Order> orders_beside(const Comparison& c, const Order& common) {
   std::map<std::vector<std::size_t>, std::vector<std::size_t>> settings;  // by who was given them
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    if (std::ranges::find(common.settings, p) != common.settings.end()) continue;
+    if (!is_ordered(c, p) || common.has_setting(p)) continue;
     std::vector<std::size_t> methods;
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
       if (is_asked(c, p, s)) methods.push_back(s);
@@ -87,7 +92,7 @@ Placed placed_in(const Comparison& c, std::size_t optimizer) {
     if (is_asked(c, p, optimizer)) among.settings.push_back(p);
   const bool is_beside = among.settings.empty();  // none of its settings is common
   for (std::size_t p = 0; p < c.problems.size() && is_beside; ++p)
-    if (is_asked(c, p, optimizer)) among.settings.push_back(p);
+    if (is_ordered(c, p) && is_asked(c, p, optimizer)) among.settings.push_back(p);
   for (const std::size_t s : c.order.methods)
     if (asked_of(c, among.settings, s) == among.settings.size()) among.methods.push_back(s);
   among.methods.push_back(optimizer);

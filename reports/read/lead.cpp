@@ -90,6 +90,11 @@ bool is_behind(const Rival& rival) { return mean_of(rival.pairing.doublings) < 0
 
 Real Pairing::typical() const { return doublings.empty() ? 1 : std::exp2(-median_of(doublings)); }
 
+std::array<Real, 2> Pairing::interval() const {
+  const MedianInterval interval = median_interval(doublings);
+  return {std::exp2(-interval.high), std::exp2(-interval.low)};
+}
+
 Pairing pairing_of(const Costs& costs, const Groups& groups, std::size_t a, std::size_t b) {
   Pairing pairing;
   for (const auto& rows : groups) {

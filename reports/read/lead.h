@@ -2,6 +2,7 @@
 // costs alone.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Pairing {
   std::size_t neither = 0;                     // names that neither solves: left out of all else
 
   Real typical() const;  // what b costs as a multiple of what a costs: 2^(−median); 1 of nothing
+  std::array<Real, 2> interval() const;  // of it: 95 % of that median
 };
 Pairing pairing_of(const Costs& costs, const Groups& groups, std::size_t a, std::size_t b);
 

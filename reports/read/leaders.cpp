@@ -23,37 +23,54 @@ void count(OptimizerAxis& optimizer, const Cell& cell) {
 }
 
 // The middle of the costs over the least, in logarithms: infinite where half is unsolved.
-Real typical_of(const Costs& costs, std::size_t s) {
+Real typical_of(const Costs& ratios, std::size_t s) {
   std::vector<Real> doublings;
-  for (const auto& row : costs)
-    if (const auto ratio = cost_ratios(row)[s]) doublings.push_back(std::log2(*ratio));
+  for (const auto& row : ratios)
+    if (row[s]) doublings.push_back(std::log2(*row[s]));
   return std::exp2(median_of(std::move(doublings)));
 }
 
-// How s stands in an order, at one tolerance.
-Standing standing_in(const Comparison& c, const Order& order, const Costs& costs, std::size_t s,
-                     std::size_t tolerance) {
-  Standing standing{.typical = typical_of(costs, s)};
+}  // namespace
+
+std::map<std::size_t, Standing> standings_in(const Comparison& c, const Order& order,
+                                             const Costs& costs, const RunsThere& runs_there) {
+  Costs ratios;
+  for (const auto& row : costs) ratios.push_back(cost_ratios(row));
+  std::map<std::size_t, Standing> standings;
+  for (const std::size_t s : order.methods) {
+    Standing& standing = standings[s];
+    standing.typical = typical_of(ratios, s);
+    for (const std::size_t p : order.settings) {
+      const Cell& cell = c.cell(p, s);
+      if (!cell.is_measured()) continue;
+      standing.runs += cell.runs.size();
+      standing.reached += runs_there(p, s);
+    }
+  }
   for (const Scored& scored : ranked_by(costs)) {
-    if (scored.optimizer != s) continue;
+    Standing& standing = standings[scored.optimizer];
     standing.settings = scored.problems;
     standing.solved = scored.solved;
     standing.wins = scored.wins;
     standing.score = scored.score;
   }
-  for (const std::size_t p : order.settings) {
-    const Cell& cell = c.cell(p, s);
-    if (!cell.is_measured()) continue;
-    const Spread& spread = cell.headline[tolerance];
-    standing.runs += cell.runs.size();
-    standing.reached += spread.n - spread.unsolved;
-  }
-  return standing;
+  return standings;
+}
+
+namespace {
+
+std::map<std::size_t, Standing> standings_to(const Comparison& c, const Order& order,
+                                             std::size_t tolerance) {
+  return standings_in(c, order, costs_within(c, order, tolerance, c.yardstick.by),
+                      [&](std::size_t p, std::size_t s) {
+                        const Spread& spread = c.cell(p, s).headline[tolerance];
+                        return spread.n - spread.unsolved;
+                      });
 }
 
 void mark_best(Comparison& c, std::size_t p, std::size_t tolerance) {
   std::vector<Cell>& row = c.cells[p];
-  const bool is_common = std::ranges::find(c.order.settings, p) != c.order.settings.end();
+  const bool is_common = c.order.has_setting(p);
   Real least = kNever;
   for (std::size_t s = 0; s < row.size(); ++s)
     if (!is_common || c.order.has(s)) least = std::min(least, row[s].headline[tolerance].median);
@@ -64,11 +81,9 @@ void mark_best(Comparison& c, std::size_t p, std::size_t tolerance) {
 }
 
 void fill_common(Comparison& c) {
-  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-    const Costs costs = common_costs(c, t);
-    for (const std::size_t s : c.order.methods)
-      c.optimizers[s].standings[t] = standing_in(c, c.order, costs, s, t);
-  }
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    for (const auto& [s, standing] : standings_to(c, c.order, t))
+      c.optimizers[s].standings[t] = standing;
 }
 
 void sort_by_score(Order& order, const Costs& costs) {
@@ -88,10 +103,9 @@ void fill_apart(Comparison& c) {
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     if (c.order.has(s)) continue;
     Placed placed = placed_in(c, s);
-    for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-      const Costs costs = costs_within(c, placed.among, t, c.yardstick.by);
-      c.optimizers[s].standings[t] = standing_in(c, placed.among, costs, s, t);
-    }
+    if (placed.among.settings.empty()) continue;  // it learns alone
+    for (std::size_t t = 0; t < kTolerances.size(); ++t)
+      c.optimizers[s].standings[t] = standings_to(c, placed.among, t)[s];
     const Costs costs = costs_within(c, placed.among, kTightest, c.yardstick.by);
     placed.place = place_of(ranked_by(costs), s);
     sort_by_score(placed.among, costs);
@@ -154,6 +168,10 @@ Costs without_privileged(const Comparison& c, Costs costs) {
 
 bool Order::has(std::size_t optimizer) const {
   return std::ranges::find(methods, optimizer) != methods.end();
+}
+
+bool Order::has_setting(std::size_t problem) const {
+  return std::ranges::find(settings, problem) != settings.end();
 }
 
 void add_missing(std::vector<std::string>& all, const std::vector<std::string>& some) {

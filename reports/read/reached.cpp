@@ -128,6 +128,16 @@ void fill_reached(Run& run, const BestKnown& best, const Prices& prices,
       run.is_bound[t] = aimed[j].is_bound;
 }
 
+Real TargetMedians::at(Measure by, std::size_t target) const {
+  const std::vector<Real>& medians = taken[static_cast<std::size_t>(by)];
+  return target < medians.size() ? medians[target] : kNever;
+}
+
+std::size_t TargetMedians::runs_at(std::size_t target) const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(reached, [target](std::size_t count) { return count > target; }));
+}
+
 TargetMedians target_medians(const Comparison& comparison, const Cell& cell) {
   std::vector<std::vector<Reached>> runs;
   TargetMedians medians;
@@ -137,10 +147,9 @@ TargetMedians target_medians(const Comparison& comparison, const Cell& cell) {
     medians.reached.push_back(runs.back().size());
   }
   for (std::size_t j = 0; j < kTargets && !runs.empty(); ++j) {
-    const Real counted = median_at(runs, j, comparison.yardstick.by);
-    if (!(counted < kNever)) break;
-    medians.counted.push_back(counted);
-    medians.seconds.push_back(median_at(runs, j, Measure::time));
+    if (!(median_at(runs, j, Measure::work) < kNever)) break;
+    for (const Measure by : kMeasures)
+      medians.taken[static_cast<std::size_t>(by)].push_back(median_at(runs, j, by));
   }
   return medians;
 }

@@ -58,8 +58,12 @@ std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t
 
 // What each of the targets took, over seeds: what the page's slider of tolerance reads.
 struct TargetMedians {
-  std::vector<Real> counted, seconds;  // of targets of finite median: by the yardstick; times
-  std::vector<std::size_t> reached;    // how many targets each run reached, by seed
+  // By measure: of the targets of finite median, as many of each.
+  std::array<std::vector<Real>, kMeasures.size()> taken;
+  std::vector<std::size_t> reached;  // how many targets each run reached, by seed
+
+  Real at(Measure by, std::size_t target) const;  // infinite where the median run is not there
+  std::size_t runs_at(std::size_t target) const;  // that get there
 };
 TargetMedians target_medians(const Comparison& comparison, const Cell& cell);
 

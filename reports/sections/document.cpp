@@ -29,6 +29,7 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
                        failures_section(c),
                        builds_section(c)};
   document.figures = figures(c);
+  add_published(document.figures, c, document.claims);
   return document;
 }
 

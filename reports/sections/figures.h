@@ -1,10 +1,13 @@
 // The figures of the papers, from the runs of a study: each panel that a problem's sheet asks for.
 #pragma once
 
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "reports/read/comparison.h"
+#include "reports/sections/verdicts.h"
 
 namespace isoline::reports {
 
@@ -21,16 +24,31 @@ struct Picture {
   std::vector<Real> values;
 };
 
+// A value of the paper's, read off its figure or its text, with the error of reading.
+struct PublishedMark {
+  std::size_t optimizer = 0;  // index in the comparison: of the method that it is of
+  std::string name;           // "adam, published: error in x, running mean over 256 steps"
+  Real x = 0, y = 0, low = 0, high = 0;
+};
+
 struct Figure {
   std::string problem, title, kind;
   std::string x_label, y_label;
   bool is_log_x = false, is_log_y = false;
-  bool has_diagonal = false;  // y = x
+  bool has_diagonal = false;                              // y = x
+  bool is_relative = false;                               // divided by an option of the problem
+  std::vector<std::pair<std::string, Real>> places = {};  // of a sweep: problems, with their x
   std::vector<FigureLine> lines;
+  std::vector<PublishedMark> published = {};
+  std::set<std::size_t> of_the_paper = {};  // optimizers that its claims are about
   std::vector<Picture> pictures;
   std::string reading;  // what it shows, in a sentence of these numbers
 };
 
 std::vector<Figure> figures(const Comparison& comparison);
+
+// Draws into them what the papers say: levels of an error in x, and which methods they are of.
+void add_published(std::vector<Figure>& all, const Comparison& comparison,
+                   const std::vector<Judgement>& claims);
 
 }  // namespace isoline::reports

@@ -173,6 +173,8 @@ std::vector<std::string> verdict(const Comparison& c) {
     return std::ranges::any_of(
         row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
   });
+  const bool is_all_learned = std::ranges::all_of(c.problems, &ProblemAxis::is_learned);
+  if (is_all_learned && !c.problems.empty()) return learned_sentences(c);
   if (!is_any_solved)
     return {fmt::format("No optimizer solves any of the problems to {}.", tau_name(c))};
   if (!has_order(c) || !c.lead) return problem_sentences(c);
@@ -184,6 +186,7 @@ std::vector<std::string> verdict(const Comparison& c) {
                   joined(lead_sentences(c, *c.open_lead), " "));
   all.push_back(prices_text(c));
   all.push_back(apart_sentence(c));
+  for (std::string& sentence : learned_sentences(c)) all.push_back(std::move(sentence));
   std::erase(all, "");
   return all;
 }

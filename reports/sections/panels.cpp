@@ -73,7 +73,7 @@ std::vector<FigureLine> lines_of(const Comparison& c, std::size_t problem, Draw 
 }
 
 std::string label(const Comparison& c, const FigureLine& line) {
-  return shown_spec(c.optimizers[line.optimizer].label);
+  return shown_spec(c.optimizers[line.optimizer].brief);
 }
 
 // "At the end sip has 0.0129, adam 0.31 (24×), …": the last values, least first.
@@ -92,7 +92,10 @@ std::string ends_reading(const Comparison& c, std::vector<FigureLine> lines) {
 }
 
 Figure curve_figure(const Comparison& c, std::size_t p) {
-  Figure out{.x_label = "iterations", .y_label = "error in x", .is_log_x = true, .is_log_y = true};
+  Figure out{.x_label = "iterations",
+             .y_label = "error in x, on the validation",
+             .is_log_x = true,
+             .is_log_y = true};
   out.lines = lines_of(c, p, [](const auto& records) {
     return line_over_iterations(records, [](const Record& r) { return &r.curve.x_error; });
   });
@@ -194,9 +197,13 @@ Figure decades_figure(const Comparison& c, std::size_t p) {
 
 Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel) {
   Figure out{.x_label = panel.over,
-             .y_label = panel.divided_by.empty() ? "error in x"
-                                                 : fmt::format("error in x / {}", panel.divided_by),
-             .is_log_y = true};
+             .y_label = panel.divided_by.empty()
+                            ? "error in x, on the validation"
+                            : fmt::format("error in x / {}, on the validation", panel.divided_by),
+             .is_log_y = true,
+             .is_relative = !panel.divided_by.empty()};
+  for (const auto& [value, problem] : sweep)
+    out.places.emplace_back(shown_spec(c.problems[problem].spec), value);
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     FigureLine line{.optimizer = s};
     for (const auto& [value, problem] : sweep) {

@@ -25,6 +25,9 @@ Section builds_section(const Comparison& comparison);
 
 // Sentences of them that others say too.
 std::vector<std::string> verdict(const Comparison& comparison);  // who leads, and how sure that is
+std::string short_verdict(const Comparison& comparison);         // a sentence that its tests sign
+std::vector<Reading> settled_readings(const Comparison& comparison);       // settled, not, not run
+std::vector<std::string> learned_sentences(const Comparison& comparison);  // at equal work
 std::string profile_reading(const Comparison& comparison, std::size_t tolerance);
 std::string curve_reading(const Comparison& comparison, std::size_t problem);
 std::string claims_reading(const std::vector<Judgement>& judgements);  // how many of each verdict

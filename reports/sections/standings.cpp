@@ -110,7 +110,7 @@ Section standings_section(const Comparison& c) {
   Section section{.id = "standings",
                   .title = fmt::format("Who solves the problems to {}", tau_name(c))};
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
-  section.tables.push_back(standings_table(c));
+  if (!c.order.settings.empty()) section.tables.push_back(standings_table(c));
   if (!c.apart.empty()) section.tables.push_back(apart_table(c));
   if (!c.other_orders.empty()) section.tables.push_back(orders_table(c));
   return section;

@@ -122,7 +122,7 @@ std::string ordinal(std::size_t place) {
 }
 
 std::string optimizer_text(const Comparison& c, std::size_t s) {
-  return shown_spec(c.optimizers[s].label) + (c.optimizers[s].privileges.empty() ? "" : " †");
+  return shown_spec(c.optimizers[s].brief) + (c.optimizers[s].privileges.empty() ? "" : " †");
 }
 
 std::string status_meaning(Status status) {

@@ -188,4 +188,21 @@ std::vector<Real> holm(const std::vector<Real>& p) {
   return adjusted(p, false, [&](std::size_t i) { return Real(p.size() - i); });
 }
 
+MedianInterval median_interval(std::vector<Real> values) {
+  if (values.empty()) return {};
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  // From the k-th of the values to the k-th from their end: it misses the median where fewer than k
+  // lie on one side of it, P(Binomial(n, ½) < k) on each.
+  std::size_t k = 0;
+  Real term = std::pow(0.5, Real(n)), misses = term;
+  while (misses <= (1 - kConfidence) / 2 && 2 * k < n) {
+    ++k;
+    term *= Real(n - k + 1) / Real(k);
+    misses += term;
+  }
+  const std::size_t first = std::max<std::size_t>(k, 1) - 1;
+  return {median_of(values), values[first], values[n - 1 - first]};
+}
+
 }  // namespace isoline::reports

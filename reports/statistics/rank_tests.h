@@ -26,6 +26,14 @@ struct RatioEstimate {
 RatioEstimate ratio_estimate(const std::vector<Real>& a, const std::vector<Real>& b);
 inline constexpr Real kConfidence = 0.95;
 
+// 95 % of the median, the test of signs inverted: order statistics that leave out at most 2.5 % of
+// Binomial(n, ½) on either side, whatever the distribution. Of fewer than six values their range;
+// of none 0. The page's scripts have the same function, of a pair that a reader chooses.
+struct MedianInterval {
+  Real median = 0, low = 0, high = 0;
+};
+MedianInterval median_interval(std::vector<Real> values);
+
 // p adjusted for their number, in the order given: at most q of the discoveries below q are false
 // (Benjamini, Hochberg 1995); the chance of any false one below q is at most q (Holm 1979).
 std::vector<Real> benjamini_hochberg(const std::vector<Real>& p);

@@ -38,7 +38,7 @@ TEST(Targets, AgreeWithTheTablesAtEachTolerance) {
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {
       const Spread& work = c.cell(0, 0).headline[t];
       const std::size_t hit = kTolerances[t].rung;
-      EXPECT_EQ(medians.counted.at(hit), work.median);
+      EXPECT_EQ(medians.at(Measure::work, hit), work.median);
       const auto reached =
           std::ranges::count_if(medians.reached, [hit](std::size_t count) { return count > hit; });
       EXPECT_EQ(static_cast<std::size_t>(reached), work.n - work.unsolved);
@@ -51,7 +51,7 @@ TEST(Targets, EndWhereTheMedianIsNeverReached) {
   study.runs[1].hits->iteration.at(10) = -1;  // two of three runs miss target 21
   study.runs[1].hits->work.at(10) = -1;
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(target_medians(c, c.cell(0, 0)).counted.size(), 21U);
+  EXPECT_EQ(target_medians(c, c.cell(0, 0)).taken[0].size(), 21U);
   EXPECT_EQ(target_medians(c, c.cell(0, 0)).reached, (std::vector<std::size_t>{51, 10, 21}));
 }
 
@@ -63,9 +63,9 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
       study.runs.push_back(record_of({.problem = problem, .optimizer = optimizer}));
   const std::string page = html_report(document_of(compare_optimizers(study)));
   for (const char* part :
-       {"<article class=problem id=problem-1 data-p=1>",
-        "<article class=optimizer id=optimizer-1 data-s=1>", "<tr data-p=1 data-s=1><th>b",
-        "<th scope=col data-p=1>", "<a href=\"#optimizer-1\" data-s=1>"})
+       {"<article class=\"problem one\" id=problem-1 data-p=1>",
+        "<article class=\"optimizer one\" id=optimizer-1 data-s=1>", "<tr data-p=1 data-s=1><th>b",
+        "<th scope=col data-p=1>", "<tr data-s=1"})
     EXPECT_TRUE(has(page, part)) << part;
 }
 

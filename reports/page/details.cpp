@@ -1,4 +1,4 @@
-// The tables of the page. Scripts sort and filter them; without scripts they are complete.
+// The table of all cells. Scripts sort and filter it; without scripts it is complete.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,40 +13,7 @@
 namespace isoline::reports {
 namespace {
 
-// How far from the best, as a class of the style sheet: h0 the least, then by factors of two.
-std::string heat(Real work, Real least, Measure by) {
-  constexpr Real kDarkest = 7;
-  const Real unit = by == Measure::time ? 1e-6 : 1;  // less counts as that
-  const Real doublings = std::log2(std::max(work, unit) / std::max(least, unit));
-  return fmt::format("h{:.0f}", std::min(std::ceil(doublings), kDarkest));
-}
-
 std::string shown_html(const std::string& spec) { return html_text(shown_spec(spec)); }
-
-// Cells and rows are left open, as HTML allows: with ten thousand of them it is a megabyte.
-std::string matrix_cell(const Comparison& c, const Cell& cell, std::size_t p, Real least) {
-  const std::string text = matrix_text(c, cell, kTightest);
-  if (cell.planned == 0) return fmt::format("<td data-p={} class=none>", p);
-  if (cell.runs.empty()) return fmt::format("<td data-p={} class=lost>missing", p);
-  if (!cell.is_measured()) return fmt::format("<td data-p={} class=na>n/a", p);
-  const Spread& work = cell.headline[kTightest];
-  const bool is_partial = work.unsolved > 0 && work.unsolved < work.n;
-  const bool is_told = is_partial || cell.failed > 0 || cell.planned > cell.runs.size();
-  const std::string count =
-      is_told ? fmt::format("<small>{}</small>", count_text(cell, kTightest)) : "";
-  if (!work.is_solved()) return fmt::format("<td data-p={} class=no>✗{}", p, count);
-  return fmt::format(
-      "<td data-p={} class={}>{}{}", p,
-      cell.is_best[kTightest] ? "\"h0 best\"" : heat(work.median, least, c.yardstick.by), text,
-      count);
-}
-
-Real least_work(const Comparison& c, std::size_t problem) {
-  Real least = kNever;
-  for (const Cell& cell : c.cells[problem])
-    least = std::min(least, cell.headline[kTightest].median);
-  return least;
-}
 
 std::string spread_cell(const Spread& spread, const char* kind = "") {
   if (spread.n == 0) return "<td>";
@@ -85,7 +52,7 @@ std::string again_cell(const Comparison& c, const Cell& cell, std::size_t s,
   const auto at = std::ranges::find(budgets, budget);
   const auto place = at - budgets.begin();
   if (at == budgets.end()) budgets.push_back(budget);
-  const bool is_shown = shown_spec(c.optimizers[s].label) == spec;
+  const bool is_shown = shown_spec(c.optimizers[s].brief) == spec;
   return fmt::format("<td data-again=\"{} {}{}\">", place, seeds_of(c, cell),
                      is_shown ? "" : " " + html_text(spec));
 }
@@ -114,63 +81,15 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
          fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, s, budgets));
 }
 
-std::string standing_row(const Comparison& c, std::size_t s) {
-  const OptimizerAxis& optimizer = c.optimizers[s];
-  const Standing& standing = optimizer.tightest();
-  const Real share =
-      standing.settings == 0 ? 0 : 100 * Real(standing.solved) / Real(standing.settings);
-  return fmt::format(
-      "<tr data-s={}><td>{}<th scope=row><a href=\"#optimizer-{}\">{}</a>{}<td>{:.3f}<td "
-      "class=bar><i style=--w:{:.0f}></i>{}<small>/{}</small>"
-      "<td>{}<td>{}<td>{}<small>/{}</small><td{}>{}\n",
-      s, c.order.has(s) ? std::to_string(s + 1) : "–", s, shown_html(optimizer.label),
-      dagger(optimizer.privileges), standing.score, share, standing.solved, standing.settings,
-      standing.wins == 0 ? "·" : std::to_string(standing.wins),
-      standing.typical == kNever ? "✗" : fmt::format("{:.3g}×", standing.typical), standing.reached,
-      standing.runs, optimizer.failed > 0 ? " class=lost" : "",
-      optimizer.failed == 0 ? "·" : std::to_string(optimizer.failed));
-}
-
 }  // namespace
 
-std::string standings_html(const Comparison& c) {
-  std::string html = fmt::format(
-      "<table class=\"standings sortable\" id=standings-table><caption>Standings to {}</caption>"
-      "<thead><tr><th scope=col>#<th scope=col>optimizer<th scope=col>score"
-      "<th scope=col>{}s solved<th scope=col>best on<th scope=col>× least {}"
-      "<th scope=col>runs<th scope=col>failed<tbody>\n",
-      tau_name(c), common_noun(c), name_of(c.yardstick.by));
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += standing_row(c, s);
-  return html + "</table>";
-}
-
-std::string matrix_html(const Comparison& c) {
-  std::string html = fmt::format(
-      "<table class=matrix id=matrix><caption>Median {}</caption>"
-      "<thead><tr><th scope=col>optimizer<th scope=col>solved",
-      counted_to_tau(c));
-  std::vector<Real> least;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    html += fmt::format("<th scope=col data-p={0}><a href=\"#problem-{0}\"><span>{1}</span></a>", p,
-                        shown_html(c.problems[p].spec));
-    least.push_back(least_work(c, p));
-  }
-  html += "<tbody>\n";
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const OptimizerAxis& optimizer = c.optimizers[s];
-    html += fmt::format(
-        "<tr data-s={0}><th scope=row><a href=\"#optimizer-{0}\">{1}</a>{2}"
-        "<td class=solved>{3}<small>/{4}</small>",
-        s, shown_html(optimizer.label), dagger(optimizer.privileges), optimizer.tightest().solved,
-        optimizer.planned);
-    for (std::size_t p = 0; p < c.problems.size(); ++p)
-      html += matrix_cell(c, c.cell(p, s), p, least[p]);
-    html += "\n";
-  }
-  return html + "</table>";
-}
-
 std::string details_html(const Comparison& c) {
+  constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
+  if (c.problems.size() * c.optimizers.size() > kMost)
+    return fmt::format(
+        "<p class=lead>Of more than {} cells there is no table here: all of them stand "
+        "in report.csv.</p>",
+        kMost);
   std::string rows;
   std::vector<std::string> budgets;
   for (std::size_t p = 0; p < c.problems.size(); ++p)

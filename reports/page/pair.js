@@ -1,0 +1,161 @@
+// Two methods of the reader's choice. `pairOf` is the one function of these scripts that makes
+// figures: those of `pairing_of` in the report, which a test of the browser holds it to for every pair.
+'use strict';
+
+const MOST_DOUBLINGS = 6;  // unsolved counts as 64 times as much
+
+function medianOf(ascending) {
+  const half = Math.floor(ascending.length / 2);
+  return ascending.length % 2 === 1 ? ascending[half] : (ascending[half - 1] + ascending[half]) / 2;
+}
+
+// log2 of what a takes over what b takes; unsolved against solved is the most.
+function doublingsOf(a, b) {
+  if (a === Infinity && b === Infinity) return 0;
+  if (a === Infinity || b === Infinity) return a === Infinity ? MOST_DOUBLINGS : -MOST_DOUBLINGS;
+  return Math.min(MOST_DOUBLINGS, Math.max(-MOST_DOUBLINGS, Math.log2(atLeast(a)) - Math.log2(atLeast(b))));
+}
+
+// The order statistics that the test of signs does not reject at 0.05; of fewer than six the range.
+function medianInterval(ascending) {
+  const n = ascending.length;
+  let k = 0, term = 0.5 ** n, misses = term;
+  while (misses <= 0.025 && 2 * k < n) {
+    ++k;
+    term *= (n - k + 1) / k;
+    misses += term;
+  }
+  const first = Math.max(k, 1) - 1;
+  return [ascending[first], ascending[n - 1 - first]];
+}
+
+// Problems of one name are one: the median over those settings that both were given.
+function pairOf(a, b) {
+  const names = new Map();
+  DATA.problems.forEach((problem, p) => {
+    const mine = cellOf(problem, a), other = cellOf(problem, b);
+    if (!problem.isOrdered || mine === undefined || other === undefined) return;
+    const [x, y] = [takenBy(mine), takenBy(other)], one = names.get(problem.name) ?? {name: problem.name, values: [], settings: [], isSolved: false};
+    one.values.push(doublingsOf(x, y));
+    one.settings.push({p, a: x, b: y});
+    one.isSolved = one.isSolved || x < Infinity || y < Infinity;
+    names.set(problem.name, one);
+  });
+  const all = [...names.values()], solved = all.filter((one) => one.isSolved)
+      .map((one) => ({...one, doublings: medianOf([...one.values].sort((x, y) => x - y))}));
+  const sorted = solved.map((one) => one.doublings).sort((x, y) => x - y), count = (isCounted) => sorted.filter(isCounted).length;
+  const [low, high] = sorted.length === 0 ? [0, 0] : medianInterval(sorted);
+  return {
+    names: solved, neither: all.length - solved.length,
+    wins: count((d) => d < 0), losses: count((d) => d > 0), ties: count((d) => d === 0),
+    typical: sorted.length === 0 ? 1 : 2 ** -medianOf(sorted), low: 2 ** -high, high: 2 ** -low,
+  };
+}
+
+// --- the tab
+
+const pair = {a: 0, b: 0, isChosen: false};
+
+function readPair() {
+  const asked = new URLSearchParams(location.search), of = (name) => DATA.optimizers.indexOf(name);
+  const known = (name) => DATA.methods.indexOf(name);
+  const first = [of(asked.get('a')), known('sip'), 0].find((s) => s >= 0);
+  const second = [of(asked.get('b')), known('adam'), 1, 0].find((s) => s >= 0 && s < DATA.optimizers.length && s !== first);
+  Object.assign(pair, {a: first, b: second ?? first, isChosen: asked.has('a') || asked.has('b')});
+}
+
+function pairSelect(key, redraw) {
+  const select = element('select', {});
+  select.setAttribute('aria-label', key === 'a' ? 'First method' : 'Second method');
+  DATA.optimizers.forEach((name, s) => select.append(element('option', {value: s, selected: s === pair[key]}, name)));
+  select.addEventListener('change', () => {
+    Object.assign(pair, {[key]: Number(select.value), isChosen: true});
+    writeAddress();
+    redraw();
+  });
+  return select;
+}
+
+const named = (s) => element('b', {}, swatch(s), DATA.optimizers[s], DATA.privileges[s] === '' ? '' : ' †');
+
+// What both take on the problems that both solve: medians, so that "dear" has a size.
+function priceRows() {
+  const both = DATA.problems.filter((problem) => problem.isOrdered).map((problem) => [cellOf(problem, pair.a), cellOf(problem, pair.b)])
+      .filter(([x, y]) => x !== undefined && y !== undefined && takenBy(x) < Infinity && takenBy(y) < Infinity);
+  const middle = (side, measure) => (both.length === 0 ? '–' : figure(Number(medianOf(both.map((cells) => takenBy(cells[side], view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
+  const rows = MEASURES.map((name, measure) => [`${DATA.measures[measure].counted}, ${DATA.measures[measure].unit}`, middle(0, measure), middle(1, measure)]);
+  return [...rows, ['asks for', DATA.asks[pair.a], DATA.asks[pair.b]],
+    ['sees what others do not', DATA.privileges[pair.a] || 'nothing', DATA.privileges[pair.b] || 'nothing'],
+    ['kind', DATA.kinds[pair.a], DATA.kinds[pair.b]]].map(([what, a, b]) => ({what, a, b, n: both.length}));
+}
+
+function priceTable() {
+  const rows = priceRows();
+  const head = element('tr', {}, element('th', {scope: 'col'}, ''), ...[pair.a, pair.b].map((s) => element('th', {scope: 'col'}, named(s))));
+  const body = rows.map(({what, a, b}) => element('tr', {}, element('th', {scope: 'row'}, what), element('td', {className: 'text'}, a), element('td', {className: 'text'}, b)));
+  return element('table', {className: 'prices'}, element('caption', {}, `Medians over the ${rows[0].n} settings that both solve to τ = ${tauName(view.target)}`),
+      element('thead', {}, head), element('tbody', {}, ...body));
+}
+
+function factorWords(ratio, first, second) {
+  const [who, factor] = ratio >= 1 ? [first, ratio] : [second, 1 / ratio];
+  return ratio === 1 ? 'no difference' : `${multiple(factor)} in favour of ${DATA.optimizers[who]}`;
+}
+
+// A sentence that says no more than the interval does.
+function pairSentence(told) {
+  const {a, b} = pair, n = told.names.length, counted = measureNow().counted;
+  if (n === 0) return `Neither solves a problem that both were given to τ = ${tauName(view.target)}.`;
+  const range = n < 6 ? `range of ${n}` : '95 % interval', isOpen = told.low <= 1 && told.high >= 1;
+  return `${DATA.optimizers[a]} needs less ${counted} on ${told.wins} of ${n} problems and more on ${told.losses}` +
+      `${told.ties > 0 ? `, the same on ${told.ties}` : ''}${told.neither > 0 ? `; neither solves ${told.neither} more` : ''}. ` +
+      `Median factor: ${factorWords(told.typical, a, b)} (${range} ${multiple(told.low)} to ${multiple(told.high)}, ` +
+      `above 1 for ${DATA.optimizers[a]})${isOpen || n < 6 ? ': not settled.' : '.'}`;
+}
+
+// A bar a setting, to the left where the first needs less; it leads to the problem with these lines.
+function pairBar(name, p, value, words) {
+  const bar = element('i', {className: value < 0 ? 'first' : 'second'});
+  bar.style.setProperty('--w', Math.abs(value) / MOST_DOUBLINGS);
+  bar.dataset.s = value < 0 ? pair.a : pair.b;
+  const link = element('a', {href: `#problem-${p}`}, element('span', {}, name), element('span', {className: 'way'}, bar), element('small', {}, words));
+  link.dataset.p = p;
+  link.addEventListener('click', () => showLines(p, [pair.a, pair.b]));
+  return element('li', {}, link);
+}
+
+function pairBars(told) {
+  const settings = told.names.flatMap((one) => one.settings.map(({p, a, b}) => ({p, value: doublingsOf(a, b), words: `${amount(a)} : ${amount(b)}`})));
+  settings.sort((x, y) => x.value - y.value);
+  return element('ol', {className: 'bars-of'}, ...settings.map(({p, value, words}) => pairBar(DATA.problems[p].spec, p, value, words)));
+}
+
+// Learned problems by the error in x at equal work.
+function learnedBars() {
+  const bars = [];
+  DATA.problems.forEach((problem, p) => {
+    const [mine, other] = [pair.a, pair.b].map((s) => problem.learned?.rows.find((row) => row.s === s));
+    if (mine === undefined || other === undefined) return;
+    const [x, y] = [mine.error ?? Infinity, other.error ?? Infinity];
+    const value = x === Infinity || y === Infinity ? doublingsOf(x, y) : Math.min(MOST_DOUBLINGS, Math.max(-MOST_DOUBLINGS, Math.log2(x / y)));
+    bars.push(pairBar(problem.spec, p, value, `${figure(x)} : ${figure(y)}`));
+  });
+  return bars;
+}
+
+function drawPair(place) {
+  const told = pairOf(pair.a, pair.b), learned = learnedBars(), redraw = () => drawPair(place);
+  place.replaceChildren(
+      element('p', {className: 'chosen-two'}, pairSelect('a', redraw), ' against ', pairSelect('b', redraw)),
+      element('p', {className: 'verdict'}, pairSentence(told)),
+      element('div', {className: 'decided'}, element('div', {},
+          element('p', {className: 'legend'}, `To the left ${DATA.optimizers[pair.a]} needs less, to the right ${DATA.optimizers[pair.b]}; a full bar is 64 times or unsolved. Press one for its curves.`),
+          pairBars(told),
+          ...(learned.length === 0 ? [] : [element('h3', {}, 'Learned: error in x at equal work'), element('ol', {className: 'bars-of'}, ...learned)])),
+      priceTable()));
+}
+
+function livePair(place) {
+  readPair();
+  live(place, () => drawPair(place));
+}

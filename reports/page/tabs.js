@@ -1,0 +1,84 @@
+// Tabs: one is laid out at a time. Each has an address, and so has each problem, card and claim in
+// them; what is large is made when its tab is first opened. Paper shows all of them.
+'use strict';
+
+const TABS = [...document.querySelectorAll('main > .tab')];
+const FIRST = TABS[0].id;
+
+// What is packed waits as text in a noscript element; without scripts it stands as it is.
+function unpack(place) {
+  const packed = place.querySelector(':scope > noscript');
+  if (packed === null) return false;
+  packed.insertAdjacentHTML('afterend', packed.textContent);
+  packed.remove();
+  place.querySelectorAll('table.sortable').forEach(makeSortable);
+  ON_UNPACK.forEach((made) => made(place));
+  return true;
+}
+const ON_UNPACK = [];  // what scripts add to what was unpacked
+
+function unpackAll(tab) {
+  tab.querySelectorAll('.packed').forEach(unpack);
+}
+
+// What an address names, though it be packed: the element, or the place that holds it.
+function placeOf(id) {
+  if (id === '') return document.getElementById(FIRST);
+  const there = document.getElementById(id);
+  if (there !== null) return there;
+  for (const packed of document.querySelectorAll('.packed'))
+    if (packed.querySelector(':scope > noscript')?.textContent.includes(`id="${id}"`) ||
+        packed.querySelector(':scope > noscript')?.textContent.includes(`id=${id}`)) {
+      unpack(packed);
+      return document.getElementById(id);
+    }
+  return null;
+}
+
+// Of problems and cards one is shown, the others wait.
+function showOne(chosen) {
+  for (const other of chosen.parentElement.querySelectorAll(':scope > .one')) other.classList.toggle('chosen', other === chosen);
+  unpack(chosen);
+}
+
+function showTab(tab) {
+  for (const other of TABS) other.classList.toggle('open', other === tab);
+  for (const link of document.querySelectorAll('.bars nav a'))
+    if (link.hash === `#${tab.id}`) link.setAttribute('aria-current', 'page'); else link.removeAttribute('aria-current');
+  unpackAll(tab);
+  for (const place of new Set([...tab.querySelectorAll('.one')].map((one) => one.parentElement)))
+    if (place.querySelector(':scope > .chosen') === null && tab.id === 'problems') showOne(place.querySelector(':scope > .one'));
+}
+
+// Opens what the address names, with its head below the bars.
+function openAddress() {
+  const id = decodeURIComponent(location.hash.slice(1)), place = placeOf(id) ?? document.getElementById(FIRST);
+  const tab = place.closest('.tab') ?? document.getElementById(FIRST), one = place.closest('.one');
+  showTab(tab);
+  if (one !== null) showOne(one);
+  for (let around = place; around !== null; around = around.parentElement)
+    if (around.tagName === 'DETAILS') {
+      around.open = true;
+      unpack(around);
+    }
+  refreshAll();
+  document.documentElement.style.scrollPaddingTop = `${document.querySelector('.bars').offsetHeight + 6}px`;
+  if (place === tab) scrollTo({top: 0, behavior: 'instant'});
+  else place.scrollIntoView({behavior: 'instant'});
+}
+
+function makeTabs() {
+  for (const claim of document.querySelectorAll('details.claim'))
+    claim.addEventListener('toggle', () => { if (claim.open) unpack(claim); });
+  addEventListener('hashchange', openAddress);
+  document.addEventListener('click', (event) => {  // the same address again says the same
+    const link = event.target.closest('a[href^="#"]');
+    if (link !== null && link.hash === location.hash) openAddress();
+  });
+  addEventListener('beforeprint', () => {
+    document.querySelectorAll('.packed, .one, details.claim').forEach(unpack);
+    document.querySelectorAll('details').forEach((details) => { details.dataset.wasOpen = details.open; details.open = true; });
+    [...STALE].forEach(refresh);
+  });
+  addEventListener('afterprint', () => document.querySelectorAll('details').forEach((details) => { details.open = details.dataset.wasOpen === 'true'; }));
+}
