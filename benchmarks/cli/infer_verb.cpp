@@ -53,7 +53,7 @@ int infer_verb(const InferArguments& given, Session& session) {
   const auto [text, failure] = isolated_text(work, given.seconds, memory);
   if (!text || text->empty()) {
     say(stderr, fmt::format("isoline: {} was not written: {}\n", given.output,
-                            text ? "the process said nothing" : failure));
+                            text ? "the process gave no answer" : failure));
     return kWorse;
   }
   require(text->front() != kMistaken, [&] { return text->substr(1); });

@@ -26,7 +26,7 @@ Request request_of(const TrainArguments& given, const Catalog& catalog) {
   OptionValues options = options_of(problem_spec);
   if (!options.contains("mode")) options.set("mode", "learn");
   const Component problem = complete_problem(catalog, problem_spec.name, options);
-  require(problem.is_learned, "train: mode=direct leaves nothing to train");
+  require(problem.is_learned, "train: mode=direct has no network to train; leave it out");
   const Rates rates = Rates::builtin();
   return named({.problem = problem,
                 .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
@@ -117,8 +117,8 @@ int train_verb(const TrainArguments& given, Session& session) {
                        trace.message);
   });
   if (!is_trained(trace)) {
-    say(stderr,
-        fmt::format("isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message));
+    say(stderr, fmt::format("isoline: no network was written: {}: {}\n", name_of(trace.status),
+                            trace.message));
     return kWorse;
   }
   say(stdout,
