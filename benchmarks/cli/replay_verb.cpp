@@ -58,7 +58,7 @@ std::string words_of(const Comparison& found) {
   if (found.is_up_to_there)
     return fmt::format("equal up to iteration {}, where a clock or a kill ended one of them",
                        found.iterations);
-  return fmt::format("equal, {} iterations", found.iterations);
+  return fmt::format("equal, {} iteration{}", found.iterations, found.iterations == 1 ? "" : "s");
 }
 
 // The exit code of one record.

@@ -17,8 +17,11 @@
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/trained.h"
 #include "core/text.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+using reports::counted;
 namespace {
 
 Request request_of(const TrainArguments& given, const Catalog& catalog) {
@@ -121,10 +124,10 @@ int train_verb(const TrainArguments& given, Session& session) {
                             trace.message));
     return kWorse;
   }
-  say(stdout,
-      fmt::format("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n",
-                  given.out, request.problem.spec, request.optimizer.spec, trace.last.iteration,
-                  trace.last.loss, trace.last.x_error));
+  say(stdout, fmt::format("{}: {} by {}, {}, validation loss {:.4g}, error in x {:.4g}\n",
+                          given.out, request.problem.spec, request.optimizer.spec,
+                          counted(std::size_t(trace.last.iteration), "iteration"), trace.last.loss,
+                          trace.last.x_error));
   return kGood;
 }
 

@@ -21,9 +21,9 @@ std::string cause_in(const std::vector<DifferenceGroup>& groups, Change change) 
   const DifferenceGroup& first = *its[0];
   const std::string more =
       its.size() == 1 ? "" : fmt::format("; and {}", counted(its.size() - 1, "other optimizer"));
-  return fmt::format("{} in {} cells, in {}: {}{}", first.optimizer,
-                     share_text(first.cells, first.of), first.worst.title, step_text(first.worst),
-                     more);
+  return fmt::format("{} in {} cell{}, in {}: {}{}", first.optimizer,
+                     share_text(first.cells, first.of), first.of == 1 ? "" : "s", first.worst.title,
+                     step_text(first.worst), more);
 }
 
 std::string lack_cause(const GateResult& result) {
