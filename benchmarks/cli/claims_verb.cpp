@@ -66,6 +66,9 @@ Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claim
   const Outcome outcome =
       run_plan(session.catalog(), "claims", cells_of(claims, given.with_long), given.out, options);
   print_failures(outcome, given.out);
+  if (!given.as_json && outcome.run > 0)
+    say(stderr, fmt::format("{} run, {} reused in {}\n", counted(std::size_t(outcome.run), "cell"),
+                            outcome.reused, duration_text(outcome.seconds)));
   return outcome;
 }
 
