@@ -70,6 +70,11 @@ void write_new(const fs::path& path, std::string_view text, bool is_flushed) {
   throw UsageError(fmt::format("cannot read {}: {}", path.string(), reason));
 }
 
+[[noreturn]] void refuse_as_the_system(const fs::path& path) {
+  if (errno == ENOENT) throw UsageError(path.string() + ": no such file");
+  refuse(path, strerror(errno));
+}
+
 // What it is, where that is no file to read.
 const char* oddity_of(mode_t mode) {
   if (S_ISREG(mode)) return nullptr;
@@ -153,11 +158,10 @@ bool has_moved(const fs::path& from, const fs::path& to) {
 std::string read_text(const fs::path& path, std::size_t most_bytes, Links links) {
   const bool follows = links == Links::followed;
   struct stat found {};
-  if ((follows ? ::stat : ::lstat)(path.c_str(), &found) != 0) refuse(path, strerror(errno));
+  if ((follows ? ::stat : ::lstat)(path.c_str(), &found) != 0) refuse_as_the_system(path);
   require_readable(found, path, most_bytes);
   const OpenFile file(path, O_RDONLY | O_NONBLOCK | (follows ? 0 : O_NOFOLLOW));
-  if (file.descriptor() < 0 || ::fstat(file.descriptor(), &found) != 0)
-    refuse(path, strerror(errno));
+  if (file.descriptor() < 0 || ::fstat(file.descriptor(), &found) != 0) refuse_as_the_system(path);
   require_readable(found, path, most_bytes);
   return all_of(file.descriptor(), static_cast<std::size_t>(found.st_size), path, most_bytes);
 }

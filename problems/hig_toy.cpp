@@ -90,7 +90,8 @@ Series series_of(const Network& network) {
 }
 
 ProblemParts make_hig_toy(const Options& o, const Draw& draw) {
-  require(o.learning.is_on(), "hig-toy: it is a learning problem; mode=direct makes no sense");
+  require(o.learning.is_on(),
+          "hig-toy: mode=direct does not apply, since the problem can only be learned");
   const auto sample = [lambda = o.lambda](RandomStream& stream, Index b, Batch& batch) {
     batch.input(0, b) = stream.uniform(-1, 1);
     batch.target.col(b) = curve(batch.input(0, b));

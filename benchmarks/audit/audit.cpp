@@ -193,7 +193,7 @@ std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
     else
       all.push_back({.name = name,
                      .spec = name,
-                     .reason = fmt::format("its audit came to no end: {}", failure)});
+                     .reason = fmt::format("its audit did not finish: {}", failure)});
   }
   return all;
 }

@@ -12,6 +12,8 @@
 
 namespace isoline::benchmarks {
 
+using reports::kAllRows;
+using reports::kFewRows;
 using reports::properties_section;
 using reports::terminal_section;
 
@@ -24,7 +26,9 @@ int audit_verb(const AuditArguments& given, Session& session) {
     std::filesystem::create_directories(given.out);
     write_audit(all, std::filesystem::path(given.out) / "audit.json");
   }
-  say(stdout, given.as_json ? audit_text(all) : terminal_section(properties_section(all)));
+  say(stdout, given.as_json ? audit_text(all)
+                            : terminal_section(properties_section(all),
+                                               given.lists_all ? kAllRows : kFewRows));
   const bool has_flags = std::ranges::any_of(
       all, [](const AuditedOptimizer& audited) { return !audited.flags.empty(); });
   return has_flags ? kWorse : kGood;

@@ -12,10 +12,12 @@
 #include "core/text.h"
 #include "reports/compare/baseline.h"
 #include "reports/read/study.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
 
 using reports::baseline_json;
+using reports::counted;
 using reports::read_study;
 using reports::Study;
 
@@ -54,7 +56,7 @@ int baseline_verb(const BaselineArguments& given, Session& session) {
   const std::filesystem::path folder = std::filesystem::path(given.out).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
   write_text(given.out, text);
-  say(stdout, fmt::format("{}: {} cells\n", given.out, study.runs.size()));
+  say(stdout, fmt::format("{}: {}\n", given.out, counted(study.runs.size(), "cell")));
   return kGood;
 }
 

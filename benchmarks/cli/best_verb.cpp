@@ -23,7 +23,7 @@ std::vector<Record> records_under(const std::vector<std::string>& folders) {
   std::vector<Record> records;
   for (const fs::path folder : folders) {
     require(fs::exists(folder / "runs"),
-            [&] { return fmt::format("{} is no result folder", folder.string()); });
+            [&] { return fmt::format("{}: no such result folder", folder.string()); });
     for (const auto& entry : fs::directory_iterator(folder / "runs"))
       if (entry.path().extension() == ".json") records.push_back(read_record(entry.path()));
   }
@@ -53,7 +53,7 @@ int best_verb(const BestArguments& given, Session& session) {
     if (!known->second) improved += best.add(record);
   }
   write_text(given.out, text_of(best.to_json()));
-  say(stdout, fmt::format("{}: {} losses are new or less than before\n", given.out, improved));
+  say(stdout, fmt::format("{}: best losses new or improved: {}\n", given.out, improved));
   return kGood;
 }
 

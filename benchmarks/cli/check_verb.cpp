@@ -11,11 +11,13 @@
 #include "core/spec.h"
 #include "core/text.h"
 #include "problems/conformance.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
 
 using problems::examine;
 using problems::Finding;
+using reports::counted;
 namespace {
 
 constexpr double kCheckSeconds = 120;
@@ -83,7 +85,7 @@ int check_verb(const CheckArguments& given, Session& session) {
   if (given.as_json)
     say(stdout, fmt::format("{}\n", json_text(all, 2)));
   else
-    say(stdout, fmt::format("{} checks, {} failed\n", total, failed));
+    say(stdout, fmt::format("{}, {} failed\n", counted(total, "check"), failed));
   return failed > 0 ? kWorse : kGood;
 }
 

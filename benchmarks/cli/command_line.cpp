@@ -1,28 +1,28 @@
-// Every verb's arguments and help, and the one place where CLI11 parses them.
+// The one place where CLI11 parses: the program, its verbs and what is wrong with a command.
 #include "benchmarks/cli/command_line.h"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <deque>
 
 #include "benchmarks/cli/notes.h"
-#include "benchmarks/cli/numbers.h"
 #include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
-#include "benchmarks/cli/verbs.h"
+#include "benchmarks/cli/verb_arguments.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/suggest.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
 
-constexpr WholeLaw kJobs{1, 1024}, kThreads{1, 256};
-
 std::string refuse_empty(std::string& text) { return text.empty() ? "it must not be empty" : ""; }
 
-// An option or a flag of a verb. A function a type keeps CLI11's templates out of the verbs, where
-// they would be laid out anew at each call.
+// A function a type keeps CLI11's templates out of the verbs, where they would be laid out anew at
+// each call.
 template <class Value>
 [[gnu::noinline]] CLI::Option* option(CLI::App& verb, const char* name, Value& value,
                                       const char* about) {
@@ -39,42 +39,120 @@ CLI::Option* number(CLI::App& verb, const char* name, const char* type, Value& v
   return verb.add_option_function(name, set, about)->type_name(type);
 }
 
-// A whole number; its default, where it has one, stands in the help.
 template <class Value>
-void whole(CLI::App& verb, const char* name, Value& value, const char* about, WholeLaw law = {}) {
+void whole_number(CLI::App& verb, const char* name, Value& value, const char* about, WholeLaw law) {
   CLI::Option* made = number(verb, name, "INT", value, about,
                              [law](auto& of, auto& text) { return read_whole(of, text, law); });
   if (value >= law.low) made->default_str(std::to_string(value));
 }
 
-CLI::Option* real(CLI::App& verb, const char* name, double& value, const Range& range,
-                  const char* about) {
-  return number(verb, name, "FLOAT", value, about,
-                [range](auto& of, auto& text) { return read_real(of, text, range); });
-}
+class ParsedArgument final : public Argument {
+ public:
+  explicit ParsedArgument(CLI::Option& option) : option_(option) {}
 
-void seed(CLI::App& verb, std::uint64_t& value, const char* about) {
-  number(verb, "--seed", "UINT", value, about, read_seed)->default_str(std::to_string(value));
-}
+  const Argument& required() const override {
+    option_.required();
+    return *this;
+  }
+  const Argument& shown() const override {
+    option_.capture_default_str();
+    return *this;
+  }
+  const Argument& shown(const std::string& standard) const override {
+    option_.default_str(standard);
+    return *this;
+  }
+  const Argument& one_of(const std::vector<std::string>& names) const override {
+    const auto refuse = [names](const std::string& given) {
+      const bool is_known = std::ranges::find(names, given) != names.end();
+      return is_known ? "" : unknown_name("value", given, names);
+    };
+    option_.check(refuse);
+    return *this;
+  }
+  const Argument& between_commas() const override {
+    option_.delimiter(',')->allow_extra_args(false);
+    return *this;
+  }
+  const Argument& needs(const Argument& other) const override {
+    option_.needs(option_of(other));
+    return *this;
+  }
+  const Argument& excludes(const Argument& other) const override {
+    option_.excludes(option_of(other));
+    return *this;
+  }
 
-void time(CLI::App& verb, double& seconds, const char* about) {
-  number(verb, "--time", "TIME", seconds, about, read_time);
-}
-
-void memory(CLI::App& verb, std::int64_t& bytes, const char* about) {
-  number(verb, "--memory", "SIZE", bytes, about, read_bytes);
-}
-
-[[gnu::noinline]] CLI::Option* flag(CLI::App& verb, const char* name, bool& value,
-                                    const char* about) {
-  return verb.add_flag(name, value, about);
-}
-
-template <class Arguments>
-struct Declared {
-  CLI::App& verb;
-  Arguments& given;
+ private:
+  static CLI::Option* option_of(const Argument& argument) {
+    return &static_cast<const ParsedArgument&>(argument).option_;
+  }
+  CLI::Option& option_;
 };
+
+class ParsedVerb final : public VerbArguments {
+ public:
+  explicit ParsedVerb(CLI::App& verb) : verb_(verb) {}
+
+  const Argument& text(const char* name, std::string& value, const char* about) override {
+    return kept(option(verb_, name, value, about));
+  }
+  const Argument& texts(const char* name, std::vector<std::string>& values,
+                        const char* about) override {
+    return kept(option(verb_, name, values, about));
+  }
+  const Argument& flag(const char* name, bool& value, const char* about) override {
+    return kept(verb_.add_flag(name, value, about));
+  }
+  void whole(const char* name, int& value, const char* about, WholeLaw law) override {
+    whole_number(verb_, name, value, about, law);
+  }
+  void whole(const char* name, std::int64_t& value, const char* about, WholeLaw law) override {
+    whole_number(verb_, name, value, about, law);
+  }
+  const Argument& real(const char* name, double& value, const Range& range,
+                       const char* about) override {
+    return kept(number(verb_, name, "FLOAT", value, about,
+                       [range](auto& of, auto& text) { return read_real(of, text, range); }));
+  }
+  void seed(const char* name, std::uint64_t& value, const char* about) override {
+    number(verb_, name, "UINT", value, about, read_seed)->default_str(std::to_string(value));
+  }
+  void time(const char* name, double& seconds, const char* about) override {
+    number(verb_, name, "TIME", seconds, about, read_time);
+  }
+  void memory(const char* name, std::int64_t& bytes, const char* about) override {
+    number(verb_, name, "SIZE", bytes, about, read_bytes);
+  }
+
+ private:
+  const Argument& kept(CLI::Option* option) { return arguments_.emplace_back(*option); }
+
+  CLI::App& verb_;
+  std::deque<ParsedArgument> arguments_;  // they stay where they are
+};
+
+std::vector<std::string> names_of(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// Of what CLI11 could place nowhere the first.
+std::string sentence_on(const CLI::App& verb, const std::string& unexpected) {
+  if (!unexpected.starts_with('-'))
+    return fmt::format("{} takes no further argument, got '{}'", verb.get_name(), unexpected);
+  const std::string name = unexpected.substr(0, unexpected.find('='));
+  const std::string nearest = nearest_name(name, names_of(verb));
+  return fmt::format("unknown option {}{}", name,
+                     nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+}
+
+template <class Kind>
+bool is_a(const CLI::ParseError& error) {
+  return dynamic_cast<const Kind*>(&error) != nullptr;
+}
 
 class CommandLine {
  public:
@@ -84,54 +162,88 @@ class CommandLine {
 
  private:
   template <class Arguments>
-  Declared<Arguments> add(const char* name, const char* about,
-                          int (*verb)(const Arguments&, Session&)) {
+  Arguments& add(const char* name, const char* about, int (*verb)(const Arguments&, Session&)) {
     const auto given = std::make_shared<Arguments>();
     CLI::App& declared = *app_.add_subcommand(name, about);
+    ParsedVerb parsed(declared);
+    declare(parsed, *given);
+    declared.footer(notes_of(name));
     declared.callback([this, given, verb] {
       if (runs_) exit_code_ = verb(*given, session_);
     });
-    return {declared, *given};
+    return *given;
   }
+  void add_verbs_on_results();
+  void add_verbs_on_components();
+  void add_verbs_on_the_program();
+  void require_verb(const std::string& name) const;
   std::vector<std::string> verbs() const;
-
-  void add_run();
-  void add_report();
-  void add_compare();
-  void add_baseline();
-  void add_replay();
-  void add_merge();
-  void add_best();
-  void add_claims();
-  void add_list();
-  void add_describe();
-  void add_check();
-  void add_audit();
-  void add_validate();
-  void add_tune();
-  void add_train();
-  void add_infer();
-  void add_completion();
+  std::string help_text() const;
+  std::string sentence_of(const CLI::ParseError& error) const;
 
   const std::string program_;
   Session& session_;
   const bool runs_;
   CLI::App app_;
+  std::string helped_;  // the verb that help is wanted of; empty: of the program
   int exit_code_ = kGood;
 };
 
 CommandLine::CommandLine(const std::string& program, Session& session, bool runs)
     : program_(program), session_(session), runs_(runs), app_(kAbout, program) {
-  using This = CommandLine;
   app_.footer(kExamples);
   app_.set_version_flag("--version", "isoline " + version());
   app_.require_subcommand(1);
-  for (const auto add_verb :
-       {&This::add_run, &This::add_report, &This::add_compare, &This::add_baseline,
-        &This::add_replay, &This::add_merge, &This::add_best, &This::add_claims, &This::add_list,
-        &This::add_describe, &This::add_check, &This::add_audit, &This::add_validate,
-        &This::add_tune, &This::add_train, &This::add_infer, &This::add_completion})
-    (this->*add_verb)();
+  app_.get_formatter()->label("SUBCOMMAND", "VERB");
+  add_verbs_on_results();
+  add_verbs_on_components();
+  add_verbs_on_the_program();
+  for (CLI::App* verb : app_.get_subcommands({})) verb->group("Verbs");
+}
+
+void CommandLine::add_verbs_on_results() {
+  add("run", "Run a suite or a matrix of your own; what is done already is not repeated", run_verb);
+  const std::string about = "Write " + format_names();
+  add("report", about.c_str(), report_verb);
+  add("compare", "Compare two results and list regressions", compare_verb);
+  add("baseline", "Keep what later results are compared with, as one small file", baseline_verb);
+  add("replay", "Run the cell of a record again, and check the two for equality bit for bit",
+      replay_verb);
+  add("merge", "Unite result folders into a new one", merge_verb);
+  add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
+  add("claims", "Judge what papers claim by runs; what is missing is run first", claims_verb);
+}
+
+void CommandLine::add_verbs_on_components() {
+  add("list", "List the problems, networks, optimizers and suites", list_verb);
+  add("describe", "Show the formula, options, needs and source of a component", describe_verb);
+  add("check", "Check a problem's derivatives, adjoint and inverse against each other", check_verb);
+  add("audit", "Measure optimizers' scaling, invariance, order, consistency and oracles",
+      audit_verb);
+  add("validate", "Validate records, suites and all other JSON files of Isoline by their schemas",
+      validate_verb);
+  add("tune", "Choose one option of each method for each problem, with an equal budget for all",
+      tune_verb);
+  add("train", "Train a network on a learning problem and write it to a file", train_verb);
+  add("infer", "Apply a network that `isoline train` wrote to observations", infer_verb);
+}
+
+void CommandLine::add_verbs_on_the_program() {
+  const auto completion =
+      &add("completion", "Print the completion script of a shell", completion_verb);
+  CLI::App& help = *app_.add_subcommand("help", "Print the help of the program or of a verb");
+  option(help, "VERB", helped_, "The verb (default: the program)");
+  help.footer(notes_of("help"));
+  help.callback([this] {
+    if (!helped_.empty()) require_verb(helped_);
+    if (runs_) say(stdout, help_text());
+  });
+  CLI::App& version_of = *app_.add_subcommand("version", "Print the version");
+  version_of.footer(notes_of("version"));
+  version_of.callback([this] {
+    if (runs_) say(stdout, fmt::format("isoline {}\n", version()));
+  });
+  completion->verbs = verbs();
 }
 
 std::vector<std::string> CommandLine::verbs() const {
@@ -140,249 +252,44 @@ std::vector<std::string> CommandLine::verbs() const {
   return names;
 }
 
+// By the formatter: App::help() would tell of the verb `help` itself.
+std::string CommandLine::help_text() const {
+  const CLI::App& of = helped_.empty() ? app_ : *app_.get_subcommand(helped_);
+  const std::string name = helped_.empty() ? program_ : program_ + " " + helped_;
+  return app_.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
+}
+
+void CommandLine::require_verb(const std::string& name) const {
+  const std::vector<std::string> known = verbs();
+  require(std::ranges::find(known, name) != known.end(),
+          [&] { return unknown_name("verb", name, known); });
+}
+
+std::string CommandLine::sentence_of(const CLI::ParseError& error) const {
+  const std::vector<const CLI::App*> parsed =
+      app_.get_subcommands([](const CLI::App* verb) { return verb->parsed(); });
+  const CLI::App& verb = parsed.empty() ? app_ : *parsed.back();
+  const std::vector<std::string> unexpected = verb.remaining();
+  std::string text = error.what();
+  if (parsed.empty() && unexpected.empty())
+    text = fmt::format("name a verb, such as run; `{} help` lists them", program_);
+  else if (!unexpected.empty() && (parsed.empty() || is_a<CLI::ExtrasError>(error)))
+    text = sentence_on(verb, unexpected.front());
+  else if (is_a<CLI::ArgumentMismatch>(error))
+    text = text.substr(0, text.find(':')) + " needs a value";
+  const std::string name = parsed.empty() ? "" : " " + verb.get_name();
+  return fmt::format("{} (see {}{} --help)", text, program_, name);
+}
+
 int CommandLine::read(int count, char** arguments) {
-  if (count > 1 && arguments[1][0] != '-') {
-    const std::vector<std::string> known = verbs();
-    require(std::ranges::find(known, arguments[1]) != known.end(),
-            [&] { return unknown_name("verb", arguments[1], known); });
-  }
+  if (count > 1 && arguments[1][0] != '-') require_verb(arguments[1]);
   try {
     app_.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return runs_ ? app_.exit(error) : kGood;  // --help, --version
-    throw UsageError(fmt::format("{} (see {} --help)", error.what(), program_));
+    throw UsageError(sentence_of(error));
   }
   return exit_code_;
-}
-
-void CommandLine::add_run() {
-  const auto [verb, given] = add(
-      "run", "Run a suite or a matrix of your own; what is done already is not repeated", run_verb);
-  option(
-      verb, "SUITE", given.suite,
-      "Name of a suite, or path of one (default: quick); --problem and --optimizer keep its cells of these");
-  option(verb, "--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'");
-  option(verb, "--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'");
-  option(verb, "--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
-  whole(verb, "--iterations", given.iterations, "Most iterations of a cell");
-  whole(verb, "--work", given.work, "Most work of a cell, in forward solves");
-  time(verb, given.seconds, "Most time of a cell: 10s, 2m; twice that of a processor kills it");
-  real(verb, "--target", given.target, between(0, 1),
-       "Stop at f_L + TARGET s, s the scale of the loss; where x is sought, at "
-       "TARGET of its error (default: 1e-10)");
-  whole(verb, "--threads", given.threads, "Threads of the libraries within a cell", kThreads);
-  whole(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
-  flag(verb, "--exclusive", given.exclusive, "One at a time, for tables of wall time");
-  whole(verb, "--repeat", given.repeat, "Timings wanted of each cell", {1, 1000});
-  memory(verb, given.memory_bytes, "Most memory of a cell (default: 4GB)");
-  option(verb, "--rates", given.rates, "Table of tuned rates: builtin, none or a file")
-      ->capture_default_str();
-  option(verb, "--out", given.out,
-         "Result folder (default: results/SUITE; of a matrix of your own or a part of a "
-         "suite, a name made of its cells, the same for the same plan)");
-  flag(verb, "--force", given.force, "Repeat cells that are done");
-  flag(verb, "--reuse", given.reuse, "Keep cells that another build has done");
-  option(verb, "--retry", given.retry, "Repeat cells that ended so: failed,crashed,timeout,memory")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  flag(verb, "--allow-large", given.allow_large, "Plan more than a million cells");
-  CLI::Option* dry =
-      flag(verb, "--dry-run", given.is_dry, "Print the plan: cells, cached, inapplicable, time");
-  flag(verb, "--all", given.lists_all, "With --dry-run: every cell, not the first 20")->needs(dry);
-  flag(verb, "--no-report", given.no_report, "Leave the report out");
-  flag(verb, "--keep-output", given.keeps_output,
-       "Keep in each record what its cell wrote to the terminal, up to 64 KiB");
-  flag(verb, "--quiet", given.quiet, "Print failures only");
-}
-
-void CommandLine::add_report() {
-  const std::string about = "Write " + format_names();
-  const auto [verb, given] = add("report", about.c_str(), report_verb);
-  option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
-  option(verb, "--out", given.out, "Where to write (default: report/ in the first DIR)");
-  const std::vector<std::string> measures(reports::kMeasureNames.begin(),
-                                          reports::kMeasureNames.end());
-  option(verb, "--by", given.by, "What is counted, in orders, tables and plots")
-      ->check(CLI::IsMember(measures))
-      ->capture_default_str();
-  real(verb, "--tolerance", given.tolerance, between(1e-10, 1),
-       "What may be left of a loss, or of an error in x, to count as solved")
-      ->default_str("1e-6");
-  verb.footer(kReportNotes);
-}
-
-void CommandLine::add_compare() {
-  const auto [verb, given] =
-      add("compare", "Tell what got worse between two results", compare_verb);
-  option(verb, "BASE", given.before, "Result folder, baseline, or a report.json")->required();
-  option(verb, "NEW", given.after, "Result folder, or a report.json")->required();
-  real(verb, "--tolerance", given.tolerance, between(0, 1),
-       "Relative tolerance of figures (default: equal bit for bit)");
-  option(verb, "--time-cells", given.timed,
-         "Cells (digests, or their beginnings) whose time is judged, 20 at most")
-      ->delimiter(',');
-  real(verb, "--noise", given.noise, between(0, 10),
-       "Least band of noise of times, relative (default: 0.1)");
-  option(verb, "--allow", given.allowed,
-         "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
-  flag(verb, "--common", given.is_common_only, "Let NEW lack any cell of BASE");
-  option(verb, "--trend", given.trend,
-         "Folder of earlier baselines, whose headline figures are shown, by file name");
-  CLI::Option* json = flag(verb, "--json", given.as_json, "As JSON");
-  flag(verb, "--markdown", given.as_markdown, "As Markdown")->excludes(json);
-  verb.footer(kCompareNotes);
-}
-
-void CommandLine::add_baseline() {
-  const auto [verb, given] = add(
-      "baseline", "Keep what later results are compared with, as one small file", baseline_verb);
-  option(verb, "RESULTS", given.folders, "Result folders of `isoline run`")->required();
-  option(verb, "--out", given.out, "The file (default: standard output)");
-  whole(verb, "--perturbations", given.perturbations,
-        "Runs of each cell from a start that differs in the last bit", {0, 100});
-  whole(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
-  verb.footer(kBaselineNotes);
-}
-
-void CommandLine::add_replay() {
-  const auto [verb, given] =
-      add("replay", "Run the cell of a record again, and hold the two to each other bit for bit",
-          replay_verb);
-  option(verb, "RECORD", given.records, "Records of `isoline run`: files in runs/")->required();
-  memory(verb, given.memory_bytes, "Most memory of a cell (default: 4GB)");
-  verb.footer(kReplayNotes);
-}
-
-void CommandLine::add_merge() {
-  const auto [verb, given] = add("merge", "Unite result folders into a new one", merge_verb);
-  option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
-  option(verb, "--out", given.out, "The new result folder")->required();
-  verb.footer(kMergeNotes);
-}
-
-void CommandLine::add_best() {
-  const auto [verb, given] =
-      add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
-  option(verb, "DIR", given.folders, "Result folders of `isoline run`")->required();
-  option(verb, "--out", given.out, "Table of best losses; of two the lesser stays")
-      ->capture_default_str();
-  verb.footer(kBestNotes);
-}
-
-void CommandLine::add_claims() {
-  const auto [verb, given] =
-      add("claims", "Judge what papers claim, by runs; what is missing is run first", claims_verb);
-  option(verb, "ID", given.names, "Claims, or groups of them (default: all)");
-  option(verb, "--out", given.out, "Result folder that holds the runs")->capture_default_str();
-  whole(verb, "--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
-  flag(verb, "--list", given.is_list, "List the claims, and do nothing");
-  flag(verb, "--json", given.as_json, "As JSON");
-  flag(verb, "--no-run", given.no_run, "Judge by the runs that are there");
-  flag(verb, "--long", given.with_long, "Run also what takes hours");
-  verb.footer(kClaimsNotes);
-}
-
-void CommandLine::add_list() {
-  const auto [verb, given] =
-      add("list", "List the problems, networks, optimizers and suites", list_verb);
-  option(verb, "KIND", given.kind, "problems, networks, optimizers, suites or all")
-      ->check(CLI::IsMember({"problems", "networks", "optimizers", "suites", "all"}))
-      ->capture_default_str();
-  flag(verb, "--json", given.as_json, "As JSON");
-  flag(verb, "--names", given.names_only, "Names only, one a line");
-}
-
-void CommandLine::add_describe() {
-  const auto [verb, given] = add(
-      "describe", "Tell the formula, options, needs and source of a problem, network or optimizer",
-      describe_verb);
-  option(verb, "NAME", given.name, "A name of `isoline list`, or a spec")->required();
-  flag(verb, "--json", given.as_json, "As JSON");
-}
-
-void CommandLine::add_check() {
-  const auto [verb, given] =
-      add("check", "Hold a problem's derivatives, adjoint and inverse to each other, with figures",
-          check_verb);
-  option(verb, "SPEC", given.spec, "Problems, as in `isoline run` (default: all)");
-  seed(verb, given.seed, "Seed of the instance and of the directions");
-  flag(verb, "--json", given.as_json, "As JSON");
-}
-
-void CommandLine::add_audit() {
-  const auto [verb, given] =
-      add("audit", "Measure optimizers' scaling, invariance, order, consistency and oracles",
-          audit_verb);
-  option(verb, "OPTIMIZER", given.names, "Names of optimizers (default: all)");
-  option(verb, "--out", given.out, "Folder to write audit.json to, as reports read it");
-  flag(verb, "--json", given.as_json, "As JSON");
-}
-
-void CommandLine::add_validate() {
-  const auto [verb, given] =
-      add("validate", "Hold records, suites and every other JSON file of ours to its schema",
-          validate_verb);
-  option(verb, "PATH", given.paths, "Files, or folders to search for *.json")->required();
-}
-
-void CommandLine::add_tune() {
-  const auto [verb, given] =
-      add("tune", "Choose one option of each method for each problem, with an equal budget for all",
-          tune_verb);
-  option(verb, "SPEC,--problem", given.problem,
-         "Problems, as in `isoline run`; of a suite those to keep");
-  option(verb, "--suite", given.suite, "The pairs of this suite, with its budgets");
-  option(verb, "--optimizer", given.optimizer,
-         "Names of optimizers (default: all that have an option to tune)");
-  option(verb, "--grid", given.grid,
-         "Option and its values, low..high x count (default: the option that a method "
-         "declares, at seven values around its default and more at an edge)");
-  option(verb, "--unit", given.unit,
-         "Unit of the grid: one, the problem's Cauchy step, or the published rate")
-      ->check(CLI::IsMember({"one", "cauchy", "published"}))
-      ->capture_default_str();
-  option(verb, "--tuning-seeds", given.seeds, "Seeds, apart from those that judge")
-      ->capture_default_str();
-  whole(verb, "--work", given.work, "Most work of a run");
-  whole(verb, "--iterations", given.iterations, "Most iterations of a run");
-  whole(verb, "--jobs", given.jobs, "Runs at a time (default: one a core)", kJobs);
-  option(verb, "--out", given.folder, "Folder of the records")->capture_default_str();
-  option(verb, "--table", given.table, "Table of rates to write or to add to");
-}
-
-void CommandLine::add_train() {
-  const auto [verb, given] =
-      add("train", "Train a network on a learning problem and write it to a file", train_verb);
-  option(verb, "PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn goes without saying")
-      ->required();
-  option(verb, "--out", given.out, "Where to write it: .json, or any other name for raw numbers")
-      ->required();
-  option(verb, "--optimizer", given.optimizer, "Training method")->capture_default_str();
-  whole(verb, "--iterations", given.iterations, "Steps of training");
-  seed(verb, given.seed, "Seed of the start and of the samples");
-  whole(verb, "--threads", given.threads, "Threads of the libraries", kThreads);
-  time(verb, given.seconds, "Most time of training: 10s, 2m; twice that kills it");
-  memory(verb, given.memory_bytes, "Most memory (default: 4GB)");
-  flag(verb, "--quiet", given.quiet, "No progress");
-}
-
-void CommandLine::add_infer() {
-  const auto [verb, given] =
-      add("infer", "Apply a network that `isoline train` wrote to observations", infer_verb);
-  option(verb, "NETWORK", given.network, "File of the trained network")->required();
-  option(verb, "--input", given.input,
-         "Observations, one a row: .npy of shape (samples, numbers) or (samples, N, N), or .csv")
-      ->required();
-  option(verb, "--output", given.output, "Where to write the inferred x: .npy or .csv")->required();
-  time(verb, given.seconds, "When it is ended: 10s, 2m (default: 10m)");
-  memory(verb, given.memory_bytes, "Most memory (default: 4GB)");
-}
-
-void CommandLine::add_completion() {
-  const auto [verb, given] =
-      add("completion", "Print the completion script of a shell", completion_verb);
-  option(verb, "SHELL", given.shell, "bash")->check(CLI::IsMember({"bash"}))->capture_default_str();
-  given.verbs = verbs();
 }
 
 }  // namespace

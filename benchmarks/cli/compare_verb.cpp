@@ -1,4 +1,4 @@
-// isoline compare BASE NEW: what got worse, what got better.
+// isoline compare BASE NEW: what is worse than before, and what is better.
 #include <fmt/format.h>
 
 #include "benchmarks/cli/on_terminal.h"
@@ -30,11 +30,12 @@ int compare_verb(const CompareArguments& given, Session&) {
   if (!given.trend.empty()) options.earlier = given.trend;
   options.listener = on_terminal("reading records");
   const GateResult result = compare_results(given.before, given.after, options);
-  const auto text = given.as_json ? gate_json : given.as_markdown ? gate_markdown : gate_terminal;
-  say(stdout, text(result));
+  say(stdout, given.as_json       ? gate_json(result)
+              : given.as_markdown ? gate_markdown(result)
+                                  : gate_terminal(result, given.lists_all));
   const bool is_fault = result.exit_code == kWorse || result.exit_code == kNotComparable;
   if (is_fault && (given.as_json || given.as_markdown))
-    say(stderr, fmt::format("{}\n", result.verdict));  // the terminal's text ends with it
+    say(stderr, fmt::format("{}\n", result.verdict));  // the terminal's text begins with it
   return result.exit_code;
 }
 

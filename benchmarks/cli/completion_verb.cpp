@@ -37,7 +37,8 @@ _isoline() {
          run) list=$("$program" list suites --names 2>/dev/null) ;;
          describe) list=$("$program" list all --names 2>/dev/null) ;;
          check) list=$("$program" list problems --names 2>/dev/null) ;;
-         claims) list=$("$program" claims --list 2>/dev/null | grep -oE '^ *[a-z0-9-]+') ;;
+         claims) list=$("$program" claims --list --all 2>/dev/null | grep -oE '^  [a-z0-9-]+') ;;
+         help) list="@VERBS@" ;;
          list) list="problems networks optimizers suites all" ;;
          completion) list=bash ;;
          *) COMPREPLY=($(compgen -f -- "$word")); return ;;
@@ -49,7 +50,8 @@ complete -o nosort -F _isoline isoline ./isoline
 )";
 
 void put(std::string& script, std::string_view place, const std::string& text) {
-  script.replace(script.find(place), place.size(), text);
+  for (std::size_t at; (at = script.find(place)) != std::string::npos;)
+    script.replace(at, place.size(), text);
 }
 
 }  // namespace

@@ -40,7 +40,10 @@ Described described(const Catalog& catalog, const Spec& spec) {
   std::vector<std::string> known = catalog.problems.names();
   for (const auto& names : {catalog.optimizers.names(), network_registry().names()})
     known.insert(known.end(), names.begin(), names.end());
-  throw UsageError(unknown_name("component", spec.name, known));
+  const std::string nearest = nearest_name(spec.name, known);
+  throw UsageError(fmt::format("no problem, optimizer or network '{}'; {}", spec.name,
+                               nearest.empty() ? "`isoline list` names them all"
+                                               : fmt::format("did you mean '{}'?", nearest)));
 }
 
 std::string law_of(const OptionField& field) {
@@ -55,7 +58,7 @@ std::string law_of(const OptionField& field) {
 }
 
 void print_options(const OptionTable& table, const OptionValues& values) {
-  say(stdout, table.empty() ? "\nIt has no options.\n" : "\nOptions\n");
+  say(stdout, table.empty() ? "\nOptions     none\n" : "\nOptions\n");
   for (const OptionField& field : table) {
     const std::string value = text_of(values.at(field.name)), standard = text_of(field.standard);
     say(stdout,

@@ -8,8 +8,11 @@
 #include "core/errors.h"
 #include "core/records/number_file.h"
 #include "core/text.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+using reports::counted;
 
 namespace {
 
@@ -29,9 +32,9 @@ std::string inferred(const InferArguments& given, const Catalog& catalog) {
   }
   const NumberArray output = infer(problem, network, input, given.input);
   write_numbers(given.output, output);
-  return fmt::format("{}: {} samples inferred by {} trained on {} for {} iterations", given.output,
-                     output.shape[0], network.optimizer.spec, network.problem.spec,
-                     network.iterations);
+  return fmt::format("{}: {} inferred by {} trained on {} for {}", given.output,
+                     counted(std::size_t(output.shape[0]), "sample"), network.optimizer.spec,
+                     network.problem.spec, counted(std::size_t(network.iterations), "iteration"));
 }
 
 // How the process that infers tells its parent whose fault it was.
@@ -53,7 +56,7 @@ int infer_verb(const InferArguments& given, Session& session) {
   const auto [text, failure] = isolated_text(work, given.seconds, memory);
   if (!text || text->empty()) {
     say(stderr, fmt::format("isoline: {} was not written: {}\n", given.output,
-                            text ? "the process said nothing" : failure));
+                            text ? "the process gave no answer" : failure));
     return kWorse;
   }
   require(text->front() != kMistaken, [&] { return text->substr(1); });

@@ -49,7 +49,7 @@ void print(const Json& all, bool names_only) {
     }
     if (!names_only) say(stdout, "\n");
   }
-  if (!names_only) say(stdout, "isoline describe NAME tells more of each.\n");
+  if (!names_only) say(stdout, "`isoline describe NAME` shows one of them in full.\n");
 }
 
 }  // namespace

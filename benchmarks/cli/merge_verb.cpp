@@ -5,8 +5,11 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/merge/merge.h"
 #include "core/text.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+using reports::counted;
 
 int merge_verb(const MergeArguments& given, Session&) {
   const std::vector<std::filesystem::path> folders(given.folders.begin(), given.folders.end());
@@ -21,9 +24,9 @@ int merge_verb(const MergeArguments& given, Session&) {
   for (const std::string& sentence : outcome.unreadable)
     say(stderr, fmt::format("left out: {}\n", sentence));
   for (const std::string& sentence : outcome.remarks) say(stdout, sentence + "\n");
-  say(stdout, fmt::format("{} records in {}: {} with timings of several folders, {} left out\n",
-                          outcome.records, given.out, outcome.united,
-                          outcome.conflicts.size() + outcome.unreadable.size()));
+  say(stdout, fmt::format("{} in {}: {} with timings of several folders, {} left out\n",
+                          counted(std::size_t(outcome.records), "record"), given.out,
+                          outcome.united, outcome.conflicts.size() + outcome.unreadable.size()));
   return outcome.conflicts.empty() && outcome.unreadable.empty() ? kGood : kWorse;
 }
 

@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "benchmarks/cli/debugging.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/runner.h"
 #include "core/text.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+using reports::counted;
 
 Listener on_terminal(const char* what) {
   if (Progress::style_of(STDERR_FILENO) != Progress::Style::live) return {};
@@ -21,28 +25,36 @@ Listener on_terminal(const char* what) {
   };
 }
 
-void print_outcome(const Outcome& outcome, bool quiet) {
+void print_failures(const Outcome& outcome, const std::filesystem::path& folder) {
   constexpr std::size_t kMost = 20;
   for (std::size_t i = 0; i < std::min(kMost, outcome.failures.size()); ++i)
     say(stderr, fmt::format("{}\n", outcome.failures[i]));
   if (outcome.failures.size() > kMost)
     say(stderr, fmt::format("… and {} more\n", outcome.failures.size() - kMost));
+  if (outcome.crash) say(stderr, advice_on(*outcome.crash, folder));
+}
+
+void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, bool quiet) {
+  print_failures(outcome, folder);
   for (const std::string& name : outcome.conflicts)
     say(stderr, fmt::format("{}: its repetition gave another result\n", name));
   for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
   if (!outcome.missing.empty())
-    say(stderr, fmt::format("the records of {} of {} cells have vanished while the run went on, as "
-                            "that of {}; the same command runs these cells again\n",
-                            outcome.missing.size(), outcome.planned, outcome.missing.front()));
+    say(stderr, fmt::format("{} of {} vanished during the run, the first that of {}; the same "
+                            "command runs what is missing\n",
+                            counted(outcome.missing.size(), "record"), outcome.planned,
+                            outcome.missing.front()));
   if (outcome.reused_from_other_builds > 0)
-    say(stderr, fmt::format("{} of the reused cells were run by another build\n",
-                            outcome.reused_from_other_builds));
+    say(stderr,
+        fmt::format("{} of {} reused were run by another build\n", outcome.reused_from_other_builds,
+                    counted(std::size_t(outcome.reused), "cell")));
   if (quiet) return;
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));
-  say(stdout, fmt::format("{} cells: {} run, {} reused ({})\n", outcome.planned, outcome.run,
-                          outcome.reused, counts));
+  say(stdout, fmt::format("{}: {} run, {} reused ({}) in {}\n",
+                          counted(std::size_t(outcome.planned), "cell"), outcome.run,
+                          outcome.reused, counts, duration_text(outcome.seconds)));
 }
 
 int exit_code_of(const Outcome& outcome) {
@@ -51,9 +63,8 @@ int exit_code_of(const Outcome& outcome) {
     return kInterrupted;
   }
   if (outcome.interrupted > 0) {
-    say(stderr,
-        fmt::format("{} of the cells were killed by others; the same command runs them again\n",
-                    outcome.interrupted));
+    say(stderr, fmt::format("{} killed from outside; the same command runs what is missing\n",
+                            counted(std::size_t(outcome.interrupted), "cell")));
     return kInterrupted;
   }
   const bool is_whole = outcome.missing.empty();

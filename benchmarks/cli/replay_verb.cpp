@@ -27,7 +27,8 @@ double most_seconds_of(const Record& record) {
 
 // Why the two were not made by the same program on the same platform; empty where they were.
 std::string difference_of_builds(const Record& record, const Request& request) {
-  if (record.cell != request.cell) return "this program asks for another cell: options were added";
+  if (record.cell != request.cell)
+    return "the request is another cell to this program: options were added";
   if (record.build == build_digest(request)) return "";
   std::string parts;
   for (const auto& [part, digest] : build_parts(request)) {
@@ -57,7 +58,7 @@ std::string words_of(const Comparison& found) {
   if (found.is_up_to_there)
     return fmt::format("equal up to iteration {}, where a clock or a kill ended one of them",
                        found.iterations);
-  return fmt::format("equal, {} iterations", found.iterations);
+  return fmt::format("equal, {} iteration{}", found.iterations, found.iterations == 1 ? "" : "s");
 }
 
 // The exit code of one record.
@@ -78,7 +79,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   const auto [again, is_interrupted] = run_again(request, given, session);
   if (is_interrupted) return kInterrupted;
   if (!again) {
-    say(stdout, fmt::format("{}: not comparable: somebody ended it\n", title));
+    say(stdout, fmt::format("{}: not comparable: it was killed from outside\n", title));
     return kNotComparable;
   }
   Record same_asked = *again;

@@ -10,8 +10,11 @@
 #include "core/errors.h"
 #include "core/text.h"
 #include "reports/read/yardstick.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+using reports::counted;
 
 namespace fs = std::filesystem;
 using reports::read_study;
@@ -38,7 +41,7 @@ int report_verb(const ReportArguments& given, Session& session) {
     const std::string damaged =
         study.unreadable.empty()
             ? ""
-            : fmt::format(", and {} files that cannot be read", study.unreadable.size());
+            : fmt::format(", and {} that cannot be read", counted(study.unreadable.size(), "file"));
     return fmt::format("no records in {}{}: `isoline run --out FOLDER` writes them",
                        fmt::join(given.folders, ", "), damaged);
   });

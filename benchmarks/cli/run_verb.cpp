@@ -13,15 +13,18 @@
 #include "benchmarks/plan/filter.h"
 #include "benchmarks/plan/plan_size.h"
 #include "benchmarks/plan/suite.h"
+#include "benchmarks/run/in_process.h"
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/soundness.h"
 #include "core/spec.h"
 #include "core/suggest.h"
 #include "core/text.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
 
+using reports::counted;
 using reports::read_study;
 using reports::Study;
 namespace {
@@ -111,13 +114,13 @@ void print_plan(const Undertaking& all, const RunOptions& options, const RunArgu
     seconds += cell.seconds;
   }
   say(stdout,
-      fmt::format("{} cells: {} cached, {} inapplicable, {} to run, about {} with {} at a time\n",
-                  cells.size(), cached, inapplicable, cells.size() - cached - inapplicable,
-                  duration_text(seconds / jobs), jobs));
+      fmt::format("{}: {} cached, {} inapplicable, {} to run, about {} with {} at a time\n",
+                  counted(cells.size(), "cell"), cached, inapplicable,
+                  cells.size() - cached - inapplicable, duration_text(seconds / jobs), jobs));
   if (likened > 0)
     say(stdout,
-        fmt::format("{} of the problems' settings were not looked at: taken to be like others\n",
-                    likened));
+        fmt::format("{} of problems not probed: predicted like others of the same problem\n",
+                    counted(likened, "setting")));
   say(stdout, fmt::format("result folder: {}\n", all.folder.string()));
   const std::size_t listed = given.lists_all ? cells.size() : std::min(kMost, cells.size());
   for (std::size_t i = 0; i < listed; ++i) {
@@ -147,6 +150,20 @@ void report_on(const fs::path& out, bool quiet, Session& session) {
   write_and_print(study, out / "report", session, quiet);
 }
 
+// Without isolation and without records: what a debugger looks at.
+int run_here(const Catalog& catalog, const std::vector<Request>& requests) {
+  int code = kGood;
+  run_in_process(catalog, requests, [&](const Request& request, const Trace& trace) {
+    const std::string message = trace.message;
+    say(stdout, fmt::format("{}: {} at iteration {}, loss {:.4g}{}\n", title_of(request),
+                            name_of(trace.status), trace.last.iteration, trace.last.loss,
+                            message.empty() ? "" : ": " + message));
+    if (is_failure(trace.status)) code = kWorse;
+  });
+  say(stdout, "--in-process: no record was written\n");
+  return code;
+}
+
 }  // namespace
 
 int run_verb(const RunArguments& given, Session& session) {
@@ -168,8 +185,9 @@ int run_verb(const RunArguments& given, Session& session) {
     print_plan(all, options, given, session);
     return kGood;
   }
+  if (given.in_process) return run_here(catalog, all.requests);
   const Outcome outcome = run_plan(catalog, all.name, all.requests, all.folder, options, all.rates);
-  print_outcome(outcome, given.quiet);
+  print_outcome(outcome, all.folder, given.quiet);
   if (!given.no_report) report_on(all.folder, given.quiet, session);
   return exit_code_of(outcome);
 }

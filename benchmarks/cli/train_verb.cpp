@@ -17,8 +17,11 @@
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/trained.h"
 #include "core/text.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+using reports::counted;
 namespace {
 
 Request request_of(const TrainArguments& given, const Catalog& catalog) {
@@ -26,7 +29,7 @@ Request request_of(const TrainArguments& given, const Catalog& catalog) {
   OptionValues options = options_of(problem_spec);
   if (!options.contains("mode")) options.set("mode", "learn");
   const Component problem = complete_problem(catalog, problem_spec.name, options);
-  require(problem.is_learned, "train: mode=direct leaves nothing to train");
+  require(problem.is_learned, "train: mode=direct has no network to train; leave it out");
   const Rates rates = Rates::builtin();
   return named({.problem = problem,
                 .optimizer = with_rates(catalog, spec, rates.find(problem, spec.name)),
@@ -117,14 +120,14 @@ int train_verb(const TrainArguments& given, Session& session) {
                        trace.message);
   });
   if (!is_trained(trace)) {
-    say(stderr,
-        fmt::format("isoline: nothing written: {}: {}\n", name_of(trace.status), trace.message));
+    say(stderr, fmt::format("isoline: no network was written: {}: {}\n", name_of(trace.status),
+                            trace.message));
     return kWorse;
   }
-  say(stdout,
-      fmt::format("{}: {} by {}, {} iterations, validation loss {:.4g}, error in x {:.4g}\n",
-                  given.out, request.problem.spec, request.optimizer.spec, trace.last.iteration,
-                  trace.last.loss, trace.last.x_error));
+  say(stdout, fmt::format("{}: {} by {}, {}, validation loss {:.4g}, error in x {:.4g}\n",
+                          given.out, request.problem.spec, request.optimizer.spec,
+                          counted(std::size_t(trace.last.iteration), "iteration"), trace.last.loss,
+                          trace.last.x_error));
   return kGood;
 }
 

@@ -9,6 +9,7 @@
 
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/session.h"
+#include "benchmarks/cli/tuning_table.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/filter.h"
 #include "benchmarks/plan/suite.h"
@@ -100,15 +101,14 @@ void write_table(const TuneArguments& given, const TuningPlan& plan, Json rows) 
 int tune_verb(const TuneArguments& given, Session& session) {
   const Catalog& catalog = session.catalog();
   const TuningPlan plan = plan_of(catalog, given);
-  const RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
-                           .progress = Progress::style_of(STDERR_FILENO),
-                           .command = session.command()};
+  RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
+                     .command = session.command()};
+  if (!given.as_json) options.progress = Progress::style_of(STDERR_FILENO);
   const TuningResult result = tune(catalog, plan, given.folder, options);
   if (result.outcome.is_interrupted) return exit_code_of(result.outcome);
-  for (const Json& row : *result.rows)
-    say(stdout, fmt::format("{:28} {:24} {}; best of 1, 2, …: {}\n",
-                            row["problem"].get<std::string>(), row["optimizer"].get<std::string>(),
-                            json_text(row["options"]), json_text(row["source"]["best_of"])));
+  print_failures(result.outcome, given.folder);
+  say(stdout,
+      given.as_json ? json_text(*result.rows, 2) + "\n" : tuning_text(result, given.lists_all));
   if (!given.table.empty()) write_table(given, plan, *result.rows);
   return kGood;
 }

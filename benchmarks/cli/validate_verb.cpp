@@ -19,8 +19,11 @@
 #include "core/records/schema.h"
 #include "core/text.h"
 #include "core/threads.h"
+#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
+
+using reports::counted;
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,7 +111,7 @@ std::vector<std::string> files_under(const std::vector<std::string>& paths, Wron
   std::vector<std::string> files;
   for (const fs::path path : paths) {
     require(is_there(path),
-            [&] { return fmt::format("no such file or folder: {}", path.string()); });
+            [&] { return fmt::format("{}: no such file or folder", path.string()); });
     std::error_code unknown;
     if (fs::is_directory(path, unknown))
       add_files(path, files, wrong);
@@ -137,7 +140,7 @@ int validate_verb(const ValidateArguments& given, Session&) {
   for (const auto& [file, violations] : wrong)
     for (const std::string& violation : violations)
       say(stdout, fmt::format("{}: {}\n", file, violation));
-  say(stdout, fmt::format("{} files, {} wrong\n", files.size(), wrong.size()));
+  say(stdout, fmt::format("{}, {} wrong\n", counted(files.size(), "file"), wrong.size()));
   return wrong.empty() ? kGood : kWorse;
 }
 

@@ -1,5 +1,5 @@
 // The verbs of the command line: what each is given, and a plain function that does it and returns
-// the exit code. command_line.cpp says how the arguments are written.
+// the exit code. verb_arguments.cpp says how the arguments are written.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,7 @@ struct RunArguments {
   int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
   bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
   bool no_report = false, quiet = false, allow_large = false, keeps_output = false;
+  bool in_process = false;
 };
 int run_verb(const RunArguments& given, Session& session);
 
@@ -35,7 +36,7 @@ struct CompareArguments {
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
   std::vector<std::string> timed;
   std::string allowed, trend;  // a list of cells that NEW may lack; a folder of earlier baselines
-  bool is_common_only = false, as_markdown = false, as_json = false;
+  bool is_common_only = false, as_markdown = false, as_json = false, lists_all = false;
 };
 int compare_verb(const CompareArguments& given, Session& session);
 
@@ -68,7 +69,7 @@ struct ClaimArguments {
   std::vector<std::string> names;
   std::string out = "results/claims";
   int jobs = 0;
-  bool is_list = false, as_json = false, no_run = false, with_long = false;
+  bool is_list = false, as_json = false, no_run = false, with_long = false, lists_all = false;
 };
 int claims_verb(const ClaimArguments& given, Session& session);
 
@@ -94,7 +95,7 @@ int check_verb(const CheckArguments& given, Session& session);
 struct AuditArguments {
   std::vector<std::string> names;
   std::string out;
-  bool as_json = false;
+  bool as_json = false, lists_all = false;
 };
 int audit_verb(const AuditArguments& given, Session& session);
 
@@ -108,6 +109,7 @@ struct TuneArguments {
   std::string table, folder = "results/tuning";
   std::int64_t iterations = 100'000, work = 2000;
   int jobs = 0;
+  bool as_json = false, lists_all = false;
 };
 int tune_verb(const TuneArguments& given, Session& session);
 

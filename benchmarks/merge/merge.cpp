@@ -215,7 +215,7 @@ MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& o
   std::error_code unknown;
   for (const fs::path& folder : folders)
     require(fs::is_directory(folder, unknown),
-            [&] { return fmt::format("no result folder {}", folder.string()); });
+            [&] { return fmt::format("{}: no such result folder", folder.string()); });
   require(!is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
           [&] { return fmt::format("{} exists already: merge into a new folder", out.string()); });
   const fs::path place = fs::weakly_canonical(out), unfinished = temporary_of(place);

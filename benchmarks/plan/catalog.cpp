@@ -1,6 +1,10 @@
 // The built-in catalog, and components completed from their names and options.
 #include "benchmarks/plan/catalog.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "benchmarks/plan/best.h"
 #include "benchmarks/plan/build_parts.h"
 #include "core/digest.h"
@@ -47,6 +51,19 @@ std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
   return digest(all);
 }
 
+bool can_learn(const ProblemEntry& entry) {
+  return std::ranges::find(entry.options, "network", &OptionField::name) != entry.options.end();
+}
+
+// Whoever asks to learn would else be told of an unknown option.
+void require_learnable(const Catalog& catalog, const ProblemEntry& entry) {
+  if (can_learn(entry)) return;
+  std::string learnable;
+  for (const auto& [name, other] : catalog.problems)
+    if (can_learn(other)) learnable += (learnable.empty() ? "" : ", ") + name;
+  throw UsageError(fmt::format("{} cannot be learned; these can: {}", entry.name, learnable));
+}
+
 }  // namespace
 
 Catalog builtin_catalog() {
@@ -58,7 +75,9 @@ Catalog builtin_catalog() {
 
 Component complete_problem(const Catalog& catalog, const std::string& name,
                            const OptionValues& options) {
-  Component problem = complete(catalog.problems.at(name), options);
+  const ProblemEntry& entry = catalog.problems.at(name);
+  if (asks_to_learn(options)) require_learnable(catalog, entry);
+  Component problem = complete(entry, options);
   if (problem.is_learned) {
     const std::string network = parse_spec(problem.options.text("network")).name;
     problem.learning_sources = source_digest(networks::network_registry().at(network).file);

@@ -10,6 +10,8 @@ void Outcome::count(const Record& record) {
   if (is_failure(record.status))
     failures.push_back(fmt::format("{}: {}: {}", title_of(record.request), name_of(record.status),
                                    record.message));
+  if (record.status == Status::crashed && !crash)
+    crash = Crash{record.request, fmt::format("runs/{}-{}.json", record.cell, record.build)};
   if (record.status == Status::interrupted) ++interrupted;
 }
 

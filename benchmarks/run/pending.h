@@ -24,6 +24,7 @@ class Pending {
   void release(const Request& request);
   bool is_empty() const { return queue_.empty(); }
   std::size_t size() const { return queue_.size(); }
+  const std::deque<const Request*>& queued() const { return queue_; }
 
  private:
   std::size_t runs_wanted(const Request& request);

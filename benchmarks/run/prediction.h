@@ -8,6 +8,8 @@
 
 namespace isoline::benchmarks {
 
+inline constexpr double kProcessSeconds = 1e-2;  // a fork, a record, its fsync: on a busy machine
+
 struct ProblemCost {
   double forward_seconds = 0, unknowns = 0;
 };

@@ -15,7 +15,6 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr double kProbeSeconds = 30;
-constexpr double kProcessSeconds = 1e-2;  // a fork, a record and its fsync, on a busy machine
 
 // What one problem says of itself and of each optimizer, found in a process of its own.
 struct Probe {

@@ -34,6 +34,8 @@ void clear_line() { std::fputs("\r\x1b[K", stderr); }
 }  // namespace
 
 std::string duration_text(double seconds) {
+  constexpr double kFew = 9.95;  // below, a tenth counts
+  if (seconds < kFew) return fmt::format("{:.1f} s", seconds);
   const auto whole = static_cast<std::int64_t>(std::llround(seconds));
   if (whole >= 3600) return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
   if (whole >= 60) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
@@ -46,16 +48,30 @@ Progress::Style Progress::style_of(int descriptor) {
   return isatty(descriptor) && !is_dumb ? Style::live : Style::plain;
 }
 
-Progress::Progress(Style style, std::string what, std::int64_t total, std::int64_t already)
+Progress::Progress(Style style, std::string what, std::int64_t total, std::int64_t already,
+                   int jobs)
     : style_(style),
       what_(std::move(what)),
       total_(total),
       already_(already),
       begun_(monotonic_nanoseconds()),
-      shown_(begun_) {}
+      shown_(begun_),
+      time_left_(jobs) {}
 
 Progress::~Progress() {
   if (is_dirty_) clear_line();
+}
+
+void Progress::finished(double predicted_seconds) {
+  ++done_;
+  time_left_.finish(predicted_seconds, seconds_since(begun_));
+}
+
+std::string Progress::left_text(double elapsed, double rate) const {
+  const std::optional<double> predicted = time_left_.at(elapsed);
+  if (predicted && *predicted <= 0) return "longer than predicted";
+  const double seconds = predicted.value_or(static_cast<double>(total_ - already_ - done_) / rate);
+  return duration_text(seconds) + " left";
 }
 
 std::string Progress::line() const {
@@ -65,8 +81,7 @@ std::string Progress::line() const {
   if (done_ > 0 && elapsed > 0) {
     const double rate = static_cast<double>(done_) / elapsed;
     text += fmt::format("  {:.3g}/s", rate);
-    if (done < total_)
-      text += fmt::format("  {} left", duration_text(static_cast<double>(total_ - done) / rate));
+    if (done < total_) text += "  " + left_text(elapsed, rate);
   }
   return current_.empty() ? text : text + "  " + current_;
 }

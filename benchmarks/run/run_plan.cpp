@@ -9,6 +9,7 @@
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/store.h"
 #include "benchmarks/run/used_rates.h"
+#include "core/clock.h"
 #include "core/digest.h"
 #include "core/records/plan.h"
 
@@ -42,6 +43,7 @@ std::string names_of(const std::vector<Request>& requests, Component Request::*c
 Outcome run_plan(const Catalog& catalog, const std::string& name,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
                  const RunOptions& options, const Rates& rates) {
+  const std::int64_t begun = monotonic_nanoseconds();
   require_sound(catalog, requests);
   Store store(folder);
   store.plan(name, planned_cells(requests));
@@ -53,6 +55,7 @@ Outcome run_plan(const Catalog& catalog, const std::string& name,
     store.plan(name, planned_cells(requests));
   }
   outcome.remarks = store.remarks();
+  outcome.seconds = 1e-9 * static_cast<double>(monotonic_nanoseconds() - begun);
   return outcome;
 }
 

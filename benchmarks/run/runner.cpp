@@ -43,7 +43,9 @@ class Runner {
     Pending pending(requests, store_, options_, outcome_);
     pending_ = &pending;
     Progress progress(options_.progress, "cells",
-                      outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused);
+                      outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused,
+                      jobs_);
+    for (const Request* request : pending.queued()) progress.expect(predicted(*request));
     while (guard.asked() != Asked::stop) {
       if (guard.asked() == Asked::nothing) start_some(progress);
       keep_judged(progress);
@@ -90,6 +92,9 @@ class Runner {
     }
   }
 
+  // With what each cell takes besides its oracles.
+  double predicted(const Request& request) { return predictions_.of(request) + kProcessSeconds; }
+
   void tell_once(Asked asked) {
     if (asked != Asked::finish || std::exchange(has_told_, true) ||
         options_.progress == Progress::Style::silent)
@@ -97,7 +102,8 @@ class Runner {
     const auto running =
         std::ranges::count_if(tasks_, [](const Task& task) { return task.request; });
     say(stderr,
-        fmt::format("\nfinishing {} running cells; Ctrl-C again stops them now\n", running));
+        fmt::format("\nfinishing {} running; Ctrl-C again stops now\n",
+                    running == 1 ? "the cell that is" : fmt::format("{} cells that are", running)));
   }
 
   Checkpoint checkpoint_of(const Request& request) const {
@@ -175,7 +181,7 @@ class Runner {
     keep(tasks_[slot], workers_[slot]);
     pending_->release(request);
     tasks_[slot] = {};
-    progress.finished();
+    progress.finished(predicted(request));
   }
 
   void keep(Task& task, const Worker& worker) {

@@ -174,6 +174,7 @@ TrainedNetwork network_from_text(const std::string& text) {
 }
 
 TrainedNetwork read_network(const std::filesystem::path& path) {
+  require(is_there(path), [&] { return fmt::format("{}: no such file", path.string()); });
   try {
     return network_from_text(read_text(path));
   } catch (const UsageError& error) {

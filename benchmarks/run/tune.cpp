@@ -7,7 +7,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/run/tuning_score.h"
 #include "core/json.h"
 #include "core/option_json.h"
 
@@ -140,18 +139,35 @@ Json row_of(const Candidate& candidate, const Budget& usual) {
           {"source", source}};
 }
 
+TunedOption tuned_of(const Candidate& candidate) {
+  const Knob& knob = candidate.knob;
+  return {.problem = candidate.pair.problem.spec,
+          .optimizer = candidate.pair.optimizer,
+          .option = knob.rule.empty() ? knob.option : knob.option + " of " + knob.rule,
+          .values = candidate.values(),
+          .scores = candidate.scores(),
+          .best = candidate.best(),
+          .is_at_edge = candidate.is_at_edge()};
+}
+
+void add_round(TuningResult& result, Outcome round) {
+  round.run += result.outcome.run;
+  round.seconds += result.outcome.seconds;
+  result.outcome = std::move(round);
+}
+
 }  // namespace
 
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options) {
   std::vector<Candidate> candidates;
   for (const TunedPair& pair : plan.pairs) candidates.push_back(candidate_of(catalog, pair, plan));
-  TuningResult result{.rows = std::make_shared<Json>(Json::array()), .outcome = {}};
+  TuningResult result{.rows = std::make_shared<Json>(Json::array()), .tuned = {}, .outcome = {}};
   while (true) {
     std::vector<Request> requests;
     for (Candidate& candidate : candidates) add_runs(catalog, plan, candidate, requests);
     if (requests.empty()) break;
-    result.outcome = run_plan(catalog, "tuning", requests, folder, options);
+    add_round(result, run_plan(catalog, "tuning", requests, folder, options));
     if (result.outcome.is_interrupted) return result;
     for (Candidate& candidate : candidates) {
       judge(folder, candidate);
@@ -159,8 +175,12 @@ TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
     }
   }
   Json rows = Json::array();
-  for (const Candidate& candidate : candidates)
-    if (!candidate.is_inapplicable) rows.push_back(row_of(candidate, plan.pairs[0].budget));
+  for (const Candidate& candidate : candidates) {
+    result.inapplicable += candidate.is_inapplicable;
+    if (candidate.is_inapplicable) continue;
+    rows.push_back(row_of(candidate, plan.pairs[0].budget));
+    result.tuned.push_back(tuned_of(candidate));
+  }
   result.rows = std::make_shared<const Json>(std::move(rows));
   return result;
 }

@@ -10,6 +10,7 @@
 
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/tuning_grid.h"
+#include "benchmarks/run/tuning_score.h"
 
 namespace isoline::benchmarks {
 
@@ -31,9 +32,20 @@ struct TuningPlan {
   std::optional<GivenGrid> grid;
 };
 
+// One pair's grid and what it came to.
+struct TunedOption {
+  std::string problem, optimizer, option;  // "rate", or "rate of adam" inside another method
+  std::vector<Real> values;                // ascending
+  std::vector<TuningScore> scores;
+  std::size_t best = 0;
+  bool is_at_edge = false;  // of the grid, and better than its neighbour
+};
+
 struct TuningResult {
   std::shared_ptr<const Json> rows;  // of a table isoline.rates/1
-  Outcome outcome;
+  std::vector<TunedOption> tuned;    // the same, one a row
+  std::size_t inapplicable = 0;      // pairs without a row
+  Outcome outcome;                   // runs and seconds are those of all rounds
 };
 
 // A row tells the values, their scores, the expected least loss (or error in x) of the best of b of

@@ -61,27 +61,38 @@ void count_changes(const Given& a, const Given& b, std::map<std::string, std::si
   }
 }
 
-// A part of a build, and how its change is told.
+// A part of a build, and how its change is told: of many cells, of one.
 struct Part {
-  const char *name, *text;
+  const char *name, *text, *cause;
 };
 constexpr std::array<Part, 5> kParts = {
-    {{"platform", "another platform (compiler, flags, libraries or kernel)"},
-     {"harness", "another harness (core, meter or run loop)"},
-     {"problem", "another source of the problems"},
-     {"network", "another source of the networks of"},
-     {"optimizer", "another source of the optimizers"}}};
+    {{"platform", "another platform (compiler, flags, libraries or kernel)", "another platform"},
+     {"harness", "another harness (core, meter or run loop)", "another harness"},
+     {"problem", "another source of the problems", "another source of the problem"},
+     {"network", "another source of the networks of", "another source of the network"},
+     {"optimizer", "another source of the optimizers", "another source of the optimizer"}}};
+
+bool is_other(const Subject& a, const Subject& b, const Part& part) {
+  const auto old = a.parts->find(part.name), now = b.parts->find(part.name);
+  return old != a.parts->end() && now != b.parts->end() && old->second != now->second;
+}
 
 struct PartChange {
   std::set<std::string> names;  // of problems or optimizers, where it is theirs
   std::size_t cells = 0;
 };
 
+std::map<std::string, std::size_t> changes_between(const Subject& a, const Subject& b) {
+  std::map<std::string, std::size_t> changes;
+  if (a.terms.empty() || b.terms.empty()) return changes;  // a title tells no options
+  count_changes(a.problem, b.problem, changes);
+  count_changes(a.optimizer, b.optimizer, changes);
+  return changes;
+}
+
 void count_parts(const Subject& a, const Subject& b, std::map<std::string, PartChange>& changes) {
   for (const Part& part : kParts) {
-    const auto old = a.parts->find(part.name), now = b.parts->find(part.name);
-    const bool is_known = old != a.parts->end() && now != b.parts->end();
-    if (!is_known || old->second == now->second) continue;
+    if (!is_other(a, b, part)) continue;
     PartChange& change = changes[part.name];
     ++change.cells;
     const std::string name = part.name;
@@ -92,6 +103,18 @@ void count_parts(const Subject& a, const Subject& b, std::map<std::string, PartC
 
 }  // namespace
 
+std::string cause_of(const Subject& before, const Subject& after) {
+  std::vector<std::string> causes;
+  for (const auto& [text, cells] : changes_between(before, after)) causes.push_back(text);
+  if (before.builds != after.builds) {
+    const std::size_t given = causes.size();
+    for (const Part& part : kParts)
+      if (is_other(before, after, part)) causes.emplace_back(part.cause);
+    if (causes.size() == given) causes.emplace_back("another build");
+  }
+  return causes.empty() ? "the same build and options" : joined(causes);
+}
+
 std::string names_text(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 12;
   if (names.size() <= kMost) return joined(names);
@@ -101,11 +124,8 @@ std::string names_text(const std::vector<std::string>& names) {
 
 std::vector<std::string> changed_settings(const Pairs& pairs) {
   std::map<std::string, std::size_t> changes;
-  for (const auto& [a, b] : pairs.both) {
-    if (a->terms.empty() || b->terms.empty()) continue;  // a title tells no options
-    count_changes(a->problem, b->problem, changes);
-    count_changes(a->optimizer, b->optimizer, changes);
-  }
+  for (const auto& [a, b] : pairs.both)
+    for (const auto& [text, cells] : changes_between(*a, *b)) changes[text] += cells;
   std::vector<std::string> lines;
   for (const auto& [text, cells] : changes)
     lines.push_back(fmt::format("{} ({})", text, counted(cells, "cell")));

@@ -29,12 +29,14 @@ Difference difference_in(const Subject& subject, Change change) {
   return {.change = change,
           .key = subject.key,
           .title = subject.title,
+          .problem = subject.problem.name,
           .optimizer = subject.optimizer.name,
           .what = "",
           .before = "",
           .after = "",
           .relative = 0,
-          .note = "chaotic: judged by status and coarse targets"};
+          .note = "chaotic: judged by status and coarse targets",
+          .cause = ""};
 }
 
 std::optional<Difference> status_difference(const Subject& before, const Subject& after) {

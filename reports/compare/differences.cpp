@@ -12,8 +12,9 @@
 namespace isoline::reports {
 namespace {
 
-constexpr Real kRounding = 1e-16;  // of double precision, as a share of the problem's scale
-constexpr Real kSmallest = 1e-6;   // share of the scale below which values are as good as solved
+constexpr Real kRounding = 1e-16;   // of double precision, as a share of the problem's scale
+constexpr Real kSummation = 1e-12;  // relative: sums of some thousand numbers in another order
+constexpr Real kSmallest = 1e-6;    // share of the scale below which values are as good as solved
 
 // Not-a-number is no better than infinite.
 Real finite_or_never(Real value) { return std::isnan(value) ? kNever : value; }
@@ -42,15 +43,22 @@ Real relative_change(Real before, Real after) {
 
 Difference difference_of(const Subject& subject, const Quantity& quantity, Real before,
                          Real after) {
+  const bool looks_equal = reached_figure(before) == reached_figure(after);
+  const auto text = [&](Real value) {
+    return looks_equal ? exact_figure(value) : reached_figure(value);
+  };
   return {.change = after > before ? Change::worse : Change::better,
           .key = subject.key,
           .title = subject.title,
+          .problem = subject.problem.name,
           .optimizer = subject.optimizer.name,
           .what = quantity.name,
-          .before = reached_figure(before),
-          .after = reached_figure(after),
+          .before = text(before),
+          .after = text(after),
           .relative = relative_change(before, after),
-          .note = ""};
+          .note = "",
+          .cause = "",
+          .is_rounding = least_tolerance(before, after, quantity.scale) <= kSummation};
 }
 
 // One line a group and direction: the largest, with how many more there are.
@@ -113,12 +121,14 @@ Difference state_difference(const Subject& a, const Subject& b) {
   return {.change = change,
           .key = a.key,
           .title = a.title,
+          .problem = a.problem.name,
           .optimizer = a.optimizer.name,
           .what = "status",
           .before = a.state,
           .after = b.state,
           .relative = change == Change::changed ? 0 : Real(b.badness - a.badness) * kNever,
-          .note = ""};
+          .note = "",
+          .cause = ""};
 }
 
 }  // namespace isoline::reports

@@ -13,10 +13,12 @@ enum class Change { worse, better, changed };
 
 struct Difference {
   Change change = Change::changed;
-  std::string key, title, optimizer, what;
+  std::string key, title, problem, optimizer, what;
   std::string before, after;  // as shown
   Real relative = 0;          // (after − before) / |before|; infinite where that says nothing
   std::string note;
+  std::string cause;         // why the two may differ
+  bool is_rounding = false;  // so small that another order of summation explains it
 };
 
 Difference state_difference(const Subject& before, const Subject& after);

@@ -74,7 +74,7 @@ FolderSubjects read_subjects(const std::string& folder, const std::optional<Best
                              const Listener& listener) {
   std::error_code unknown;
   require(std::filesystem::is_directory(folder, unknown),
-          [&] { return "no result folder " + folder; });
+          [&] { return folder + ": no such result folder"; });
   std::vector<Unreadable> unlisted;
   const std::vector<std::string> files = record_files({folder}, unlisted);
   std::vector<Reading> readings(files.size());

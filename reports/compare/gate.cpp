@@ -25,7 +25,7 @@ std::string why_incomparable(const Subject& a, const Subject& b, const GateOptio
   if (a.is_cut || b.is_cut)
     return fmt::format("a clock or a kill ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
                        b.is_cut ? b.state : a.state);
-  if (a.asked != b.asked) return "other seeds, budgets or options were asked for";
+  if (a.asked != b.asked) return "its seeds, budget or options are others";
   if (options.tolerance || (a.builds == b.builds && a.builds.size() == 1)) return "";
   if (a.builds.empty() && b.builds.empty()) return "";  // nothing has run on either side
   return "another build or instruction set; give --tolerance to compare their figures";
@@ -36,11 +36,13 @@ Difference silent_difference(const Subject& a, const Subject& b) {
   Difference difference{.change = Change::changed,
                         .key = a.key,
                         .title = a.title,
+                        .problem = a.problem.name,
                         .optimizer = a.optimizer.name,
                         .what = "trace",
                         .before = a.trace,
                         .after = b.trace,
-                        .note = "the path differs, all compared figures agree"};
+                        .note = "the path differs, all compared figures agree",
+                        .cause = ""};
   if (a.trace != b.trace) return difference;
   std::map<std::string_view, std::array<std::uint64_t, 2>> members;  // of none 0
   for (const auto& [name, digest] : a.members) members[*name][0] = digest;
@@ -60,16 +62,16 @@ class Gate {
   explicit Gate(const GateOptions& options) : options_(options) {}
 
   GateResult run(const std::vector<Subject>& before, const std::vector<Subject>& after) {
-    const Pairs pairs = paired(before, after);
+    Pairs pairs = paired(before, after);
     result_.builds = changed_builds(pairs);
     result_.settings = changed_settings(pairs);
     for (const auto& [a, b] : pairs.both) join(*a, *b);
-    miss(pairs.only_before, before);
-    for (const Subject* subject : pairs.only_after) result_.only_after.push_back(subject->title);
+    miss(pairs, before);
     result_.added = grouped(pairs.only_after, after);
     choose_timed();
     result_.times = judge_times(timed_, options_.least_noise);
     sort_differences();
+    result_.causes = caused(result_.differences, result_.incomparable);
     result_.groups = grouped(result_.differences, result_.by_method);
     add_remarks();
     conclude(result_, options_);
@@ -85,9 +87,18 @@ class Gate {
     if (reason.empty()) return judge(a, b);
     const bool tells_status = a.is_cut || b.is_cut ? a.badness != b.badness : a.lost != b.lost;
     if (tells_status && a.doubt.empty() && b.doubt.empty())
-      result_.differences.push_back(state_difference(a, b));
+      keep({state_difference(a, b)}, a, b);
     else
-      result_.incomparable.push_back({a.title, reason});
+      result_.incomparable.push_back({a.title, reason, a.key, a.problem.name, a.optimizer.name});
+  }
+
+  void keep(std::vector<Difference> found, const Subject& a, const Subject& b) {
+    if (found.empty()) return;
+    const std::string cause = cause_of(a, b);
+    for (Difference& difference : found) {
+      difference.cause = cause;
+      result_.differences.push_back(std::move(difference));
+    }
   }
 
   std::vector<Difference> differences_of(const Subject& a, const Subject& b) const {
@@ -105,13 +116,13 @@ class Gate {
     if (is_coarse) found = coarse_differences(a, b);
     result_.equal += found.empty() && !is_coarse;
     result_.chaotic += is_coarse;
-    for (Difference& difference : found) result_.differences.push_back(std::move(difference));
+    keep(std::move(found), a, b);
   }
 
-  void miss(const std::vector<const Subject*>& lacking, const std::vector<Subject>& before) {
+  void miss(Pairs& pairs, const std::vector<Subject>& before) {
     std::vector<bool> is_used(options_.allowed.size());
     std::vector<const Subject*> unexpected;
-    for (const Subject* subject : lacking) {
+    for (const Subject* subject : pairs.only_before) {
       const auto entry = entry_for(options_.allowed, *subject);
       if (entry == options_.allowed.end()) {
         unexpected.push_back(subject);
@@ -121,6 +132,8 @@ class Gate {
       result_.allowed.push_back({subject->title, entry->reason});
       is_used[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
     }
+    for (const Subject* subject : pairs.only_after) result_.only_after.push_back(subject->title);
+    result_.otherwise = asked_otherwise(unexpected, pairs.only_after);
     result_.lacking = grouped(unexpected, before);
     for (std::size_t i = 0; i < is_used.size(); ++i)
       if (!is_used[i])
@@ -166,27 +179,29 @@ class Gate {
     });
   }
 
-  void remark(std::size_t number, const std::string& text) {
-    if (number > 0) result_.remarks.push_back(fmt::format("{} {}", number, text));
+  void remark(std::size_t number, const char* noun, const std::string& text) {
+    if (number > 0) result_.remarks.push_back(fmt::format("{} {}", counted(number, noun), text));
   }
 
   void add_remarks() {
     std::vector<std::string> targets;
     for (const Tolerance& tolerance : kTolerances) targets.emplace_back(tolerance.name);
     remark(
-        result_.chaotic,
-        fmt::format("chaotic cells are judged by their status and by which of the targets {} they "
-                    "reach: their figures moved by more than a tenth of the tolerance when their "
-                    "start was perturbed in the last bit",
+        result_.chaotic, "chaotic cell",
+        fmt::format("judged by status and by which of the targets {} it reaches: the figures "
+                    "moved by more than a tenth of the tolerance when the start was perturbed in "
+                    "the last bit",
                     joined(targets)));
-    remark(too_few_, fmt::format("cells have too few repetitions for a verdict on time: {} a side "
-                                 "are needed (run --repeat {} --exclusive)",
-                                 kLeastRepetitions, kLeastRepetitions));
-    remark(senseless_, "timings are no positive finite numbers and are left out");
-    remark(other_processors_, "cells were timed on another processor: times are not comparable");
-    remark(skipped_, fmt::format("more cells have repetitions enough; time is judged on the {} "
-                                 "slowest (--time-cells lists others)",
-                                 kMostTimed));
+    remark(too_few_, "cell",
+           fmt::format("with too few repetitions for a verdict on time: {} a side are needed (run "
+                       "--repeat {} --exclusive)",
+                       kLeastRepetitions, kLeastRepetitions));
+    remark(senseless_, "timing", "left out: not positive and finite");
+    remark(other_processors_, "cell", "timed on another processor: times are not comparable");
+    remark(skipped_, "cell",
+           fmt::format("more with enough repetitions; time is judged on the {} slowest "
+                       "(--time-cells lists others)",
+                       kMostTimed));
   }
 
   const GateOptions& options_;

@@ -8,7 +8,8 @@
 //   timing        times, by statistics
 //   allowed       what NEW may lack
 //   gate          the verdict
-//   groups        differences by optimizer
+//   causes        what differs, by what explains it
+//   groups        differences by cause and optimizer
 //   trend         headline figures of earlier baselines beside
 //   sides         reads both: result folders, a baseline, reports
 //   baseline      what of results stands in a repository
@@ -24,6 +25,7 @@
 #include "core/exit.h"
 #include "core/threads.h"
 #include "reports/compare/allowed.h"
+#include "reports/compare/causes.h"
 #include "reports/compare/groups.h"
 #include "reports/compare/timing.h"
 #include "reports/compare/trend.h"
@@ -40,10 +42,6 @@ struct GateOptions {
   Listener listener;                             // of the records read
 };
 
-struct Incomparable {
-  std::string title, reason;
-};
-
 struct AllowedCell {
   std::string title, reason;
 };
@@ -54,10 +52,12 @@ struct GateResult {
   std::map<std::string, std::size_t> by_method;  // of them, by optimizer
   std::vector<std::string> builds, settings;     // what differs before any figure does, in words
   std::vector<Difference> differences;           // worst first
-  std::vector<DifferenceGroup> groups;           // of them, by optimizer
+  std::vector<CauseGroup> causes;                // of them and of what cannot be compared
+  std::vector<DifferenceGroup> groups;           // of them, by cause and optimizer
   std::vector<TimeVerdict> times;                // worst first
   std::vector<std::string> only_before, only_after;  // titles; the allowed ones are not among them
-  std::vector<LackGroup> lacking, added;             // the same, by optimizer
+  std::vector<OtherTerms> otherwise;                 // of them, asked with another budget
+  std::vector<LackGroup> lacking, added;             // the rest, by optimizer
   std::vector<AllowedCell> allowed;                  // only in BASE
   std::vector<Incomparable> incomparable;
   std::vector<std::string> remarks;
@@ -73,7 +73,8 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
 GateResult compare_subjects(const std::vector<Subject>& before, const std::vector<Subject>& after,
                             const GateOptions& options);
 
-std::string gate_terminal(const GateResult& result);
+// The summary, then so many lines of tables as a reader reads, or all.
+std::string gate_terminal(const GateResult& result, bool lists_all = false);
 std::string gate_markdown(const GateResult& result);
 std::string gate_json(const GateResult& result);  // schema isoline.comparison/1
 

@@ -16,7 +16,10 @@ Json json_of(const Difference& d) {
           {"before", d.before},
           {"after", d.after},
           {"relative", json_number(d.relative)},
-          {"note", d.note}};
+          {"note", d.note},
+          {"problem", d.problem},
+          {"cause", d.cause},
+          {"rounding", d.is_rounding}};
 }
 
 Json json_of(const TimeVerdict& t) {
@@ -33,9 +36,27 @@ Json json_of(const TimeVerdict& t) {
 }
 
 Json json_of(const DifferenceGroup& g) {
-  return {
-      {"change", name_of(g.change)}, {"optimizer", g.optimizer}, {"cells", g.cells}, {"of", g.of},
-      {"figures", g.what},           {"worst", g.worst.title}};
+  Json problems = Json::object();
+  for (const auto& [name, cells] : g.problems) problems[name] = cells.size();
+  return {{"change", name_of(g.change)}, {"cause", g.cause},      {"optimizer", g.optimizer},
+          {"problems", problems},        {"cells", g.cells},      {"of", g.of},
+          {"figures", g.what},           {"worst", g.worst.title}};
+}
+
+Json json_of(const CauseGroup& group) {
+  return {{"cause", group.cause},
+          {"cells", group.cells.size()},
+          {"optimizers", group.optimizers},
+          {"problems", group.problems},
+          {"worse", group.worse.size()},
+          {"better", group.better.size()},
+          {"changed", group.changed.size()},
+          {"rounding", group.rounded()},
+          {"not_comparable", group.incomparable}};
+}
+
+Json json_of(const OtherTerms& terms) {
+  return {{"what", terms.what}, {"cells", terms.cells}, {"optimizers", terms.optimizers}};
 }
 
 Json json_of(const AllowedCell& cell) { return {{"title", cell.title}, {"reason", cell.reason}}; }
@@ -67,6 +88,8 @@ std::string gate_json(const GateResult& result) {
                   {"builds", result.builds},
                   {"options", result.settings},
                   {"differences", list_of(result.differences)},
+                  {"causes", list_of(result.causes)},
+                  {"other_budgets", list_of(result.otherwise)},
                   {"groups", list_of(result.groups)},
                   {"times", list_of(result.times)},
                   {"not_comparable", list_of(result.incomparable)},

@@ -47,13 +47,27 @@ std::string ratio_text(const RatioEstimate& ratio) {
 
 std::string counts_of(const GateResult& result) {
   const auto count = [&](Change change) {
-    return std::ranges::count(result.differences, change, &Difference::change);
+    return static_cast<std::size_t>(
+        std::ranges::count(result.differences, change, &Difference::change));
   };
-  return fmt::format(
-      "{} cells in both: {} equal, {} chaotic, {} not comparable; differences: {} worse, {} better, "
-      "{} changed",
-      result.joined, result.equal, result.chaotic, result.incomparable.size(), count(Change::worse),
-      count(Change::better), count(Change::changed));
+  const auto rounded = static_cast<std::size_t>(
+      std::ranges::count(result.differences, true, &Difference::is_rounding));
+  const auto text = [](std::initializer_list<std::pair<std::size_t, const char*>> counts) {
+    std::vector<std::string> words;
+    for (const auto& [number, word] : counts)
+      if (number > 0) words.push_back(fmt::format("{} {}", number, word));
+    return joined(words);
+  };
+  const std::string cells = text({{result.equal, "equal"},
+                                  {result.chaotic, "chaotic"},
+                                  {result.incomparable.size(), "not comparable"}});
+  const std::string differences = text({{count(Change::worse), "worse"},
+                                        {count(Change::better), "better"},
+                                        {count(Change::changed), "changed"},
+                                        {rounded, "of them by rounding alone"}});
+  return fmt::format("{} in both{}{}{}{}", counted(result.joined, "cell"),
+                     cells.empty() ? "" : ": ", cells,
+                     differences.empty() ? "" : "; differences: ", differences);
 }
 
 }  // namespace isoline::reports

@@ -1,4 +1,4 @@
-// Gathers differences and missing cells by optimizer.
+// Gathers differences and missing cells by cause, optimizer and problem.
 #include "reports/compare/groups.h"
 
 #include <fmt/format.h>
@@ -8,33 +8,53 @@
 
 namespace isoline::reports {
 
-std::vector<DifferenceGroup> grouped(const std::vector<Difference>& differences,
-                                     const std::map<std::string, std::size_t>& sizes) {
+namespace {
+
+bool is_of(const DifferenceGroup& group, const Difference& difference, bool by_problem) {
+  return group.change == difference.change && group.cause == difference.cause &&
+         group.optimizer == difference.optimizer &&
+         (!by_problem || group.problems.contains(difference.problem));
+}
+
+void add(DifferenceGroup& group, const Difference& difference) {
+  if (group.problems[difference.problem].insert(difference.key).second) ++group.cells;
+  if (std::ranges::find(group.what, difference.what) == group.what.end())
+    group.what.push_back(difference.what);
+}
+
+std::vector<DifferenceGroup> gathered(const std::vector<Difference>& differences, bool by_problem) {
   std::vector<DifferenceGroup> groups;
-  std::vector<std::set<std::string>> cells;
   for (const Difference& difference : differences) {
-    const auto is_its = [&](const DifferenceGroup& group) {
-      return group.optimizer == difference.optimizer && group.change == difference.change;
-    };
-    const auto at = std::ranges::find_if(groups, is_its);
-    const auto index = static_cast<std::size_t>(at - groups.begin());
-    if (at == groups.end()) {
-      const auto size = sizes.find(difference.optimizer);
-      groups.push_back({.change = difference.change,
-                        .optimizer = difference.optimizer,
-                        .cells = 0,
-                        .of = size == sizes.end() ? 0 : size->second,
-                        .what = {},
-                        .worst = difference});
-      cells.emplace_back();
+    if (difference.is_rounding) continue;
+    const auto at = std::ranges::find_if(
+        groups, [&](const DifferenceGroup& group) { return is_of(group, difference, by_problem); });
+    if (at != groups.end()) {
+      add(*at, difference);
+      continue;
     }
-    DifferenceGroup& group = groups[index];
-    cells[index].insert(difference.key);
-    group.cells = cells[index].size();
-    if (std::ranges::find(group.what, difference.what) == group.what.end())
-      group.what.push_back(difference.what);
+    groups.push_back({.change = difference.change,
+                      .cause = difference.cause,
+                      .optimizer = difference.optimizer,
+                      .problems = {},
+                      .what = {},
+                      .worst = difference});
+    add(groups.back(), difference);
   }
   return groups;
+}
+
+}  // namespace
+
+std::vector<DifferenceGroup> grouped(const std::vector<Difference>& differences,
+                                     const std::map<std::string, std::size_t>& sizes) {
+  std::vector<DifferenceGroup> groups = gathered(differences, false);
+  for (DifferenceGroup& group : groups)
+    if (const auto size = sizes.find(group.optimizer); size != sizes.end()) group.of = size->second;
+  return groups;
+}
+
+std::vector<DifferenceGroup> grouped_by_problem(const std::vector<Difference>& differences) {
+  return gathered(differences, true);
 }
 
 std::vector<LackGroup> grouped(const std::vector<const Subject*>& lacking,
@@ -43,6 +63,7 @@ std::vector<LackGroup> grouped(const std::vector<const Subject*>& lacking,
   for (const Subject* subject : lacking) {
     LackGroup& group = groups[subject->optimizer.name];
     if (group.cells++ == 0) group.first = subject->title;
+    group.problems.insert(subject->problem.name);
   }
   std::vector<LackGroup> list;
   for (const Subject& subject : side)

@@ -10,6 +10,7 @@
 #include "reports/compare/folder_subjects.h"
 #include "reports/compare/gate.h"
 #include "reports/formats/formats.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
@@ -27,8 +28,9 @@ struct Side {
 };
 
 Side side_of(const fs::path& path) {
-  require(is_there(path),
-          [&] { return fmt::format("no result folder, baseline or report: {}", path.string()); });
+  require(is_there(path), [&] {
+    return fmt::format("{}: no such result folder, baseline or report", path.string());
+  });
   std::error_code unknown;
   return {path, fs::is_directory(path, unknown) ? Json() : read_json(path)};
 }
@@ -36,13 +38,11 @@ Side side_of(const fs::path& path) {
 void remark_on(const FolderSubjects& found, const fs::path& path,
                std::vector<std::string>& remarks) {
   if (found.unreadable > 0)
-    remarks.push_back(
-        fmt::format("{} files of {} could not be read", found.unreadable, path.string()));
+    remarks.push_back(fmt::format("{} of {} could not be read", counted(found.unreadable, "file"),
+                                  path.string()));
   if (found.superseded > 0)
-    remarks.push_back(
-        fmt::format("{} older records of {} are left aside for newer builds of their "
-                    "cells",
-                    found.superseded, path.string()));
+    remarks.push_back(fmt::format("{} of {} left aside for newer builds of the same cells",
+                                  counted(found.superseded, "older record"), path.string()));
 }
 
 // Of the baselines in a folder, ordered by name; what is none is left out.

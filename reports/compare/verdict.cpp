@@ -21,17 +21,32 @@ std::string cause_in(const std::vector<DifferenceGroup>& groups, Change change) 
   const DifferenceGroup& first = *its[0];
   const std::string more =
       its.size() == 1 ? "" : fmt::format("; and {}", counted(its.size() - 1, "other optimizer"));
-  return fmt::format("{} in {} cells, in {}: {}{}", first.optimizer,
-                     share_text(first.cells, first.of), first.worst.title, step_text(first.worst),
-                     more);
+  return fmt::format("{} in {} cell{}, in {}: {}{}", first.optimizer,
+                     share_text(first.cells, first.of), first.of == 1 ? "" : "s", first.worst.title,
+                     step_text(first.worst), more);
 }
 
-std::string lack_cause(const std::vector<LackGroup>& lacking, std::size_t cells) {
-  if (lacking.empty()) return "";
+std::string lack_cause(const GateResult& result) {
+  if (result.only_before.empty()) return "";
   std::vector<std::string> names;
-  for (const LackGroup& group : lacking)
+  for (const OtherTerms& terms : result.otherwise)
+    names.push_back(fmt::format("{} with another budget in NEW, {}", terms.cells, terms.what));
+  for (const LackGroup& group : result.lacking)
     names.push_back(fmt::format("{} of {}", share_text(group.cells, group.of), group.optimizer));
-  return fmt::format("NEW lacks {} of BASE ({})", counted(cells, "cell"), names_text(names));
+  return fmt::format("NEW lacks {} of BASE ({})", counted(result.only_before.size(), "cell"),
+                     names_text(names));
+}
+
+// Where nothing else is worse, or better.
+std::string rounding_cause(const GateResult& result, Change change) {
+  const Difference* largest = nullptr;
+  for (const Difference& difference : result.differences) {
+    if (difference.change != change) continue;
+    if (!difference.is_rounding) return "";
+    if (largest == nullptr) largest = &difference;
+  }
+  if (largest == nullptr) return "";
+  return fmt::format("by rounding alone, most in {}: {}", largest->title, step_text(*largest));
 }
 
 std::string time_cause(const std::vector<TimeVerdict>& times, int change, const char* word) {
@@ -69,13 +84,13 @@ void conclude(GateResult& result, const GateOptions& options) {
     result.exit_code = code;
     result.verdict = std::move(verdict);
   };
-  const std::string lacks =
-      options.is_common_only ? "" : lack_cause(result.lacking, result.only_before.size());
+  const std::string lacks = options.is_common_only ? "" : lack_cause(result);
   const std::string slower = time_cause(result.times, 1, "slower");
   const std::string faster = time_cause(result.times, -1, "faster");
   if (has(Change::worse) || !slower.empty() || !lacks.empty())
     settle(kWorse, with_causes("worse", {settings_cause(result.settings), lacks,
-                                         cause_in(result.groups, Change::worse), slower}));
+                                         cause_in(result.groups, Change::worse),
+                                         rounding_cause(result, Change::worse), slower}));
   else if (result.joined == 0)
     settle(kNotComparable, "not comparable: no cell is in both");
   else if (!result.incomparable.empty())
@@ -83,8 +98,9 @@ void conclude(GateResult& result, const GateOptions& options) {
                                        {incomparable_cause(result.incomparable)}));
   else if (has(Change::better) || !faster.empty())
     settle(kBetterOnly,
-           with_causes("better, nothing worse", {settings_cause(result.settings),
-                                                 cause_in(result.groups, Change::better), faster}));
+           with_causes("better, nothing worse",
+                       {settings_cause(result.settings), cause_in(result.groups, Change::better),
+                        rounding_cause(result, Change::better), faster}));
   else if (has(Change::changed) || !result.settings.empty())
     settle(kGood,
            with_causes("changed, neither better nor worse", {settings_cause(result.settings)}));

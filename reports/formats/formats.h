@@ -16,8 +16,10 @@ std::string statistics_csv(const Document& document);   // table,row,column,valu
 std::string json_report(const Document& document);      // schema isoline.report/1
 
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
-std::string terminal_section(const Section& section);  // within a hundred columns
-std::string terminal_claim(const Section& claim);      // one whole: readings, plots, tables
+// Within a hundred columns: what it says, then its tables, so many rows of all of them.
+inline constexpr std::size_t kAllRows = static_cast<std::size_t>(-1), kFewRows = 20;
+std::string terminal_section(const Section& section, std::size_t most_rows = kAllRows);
+std::string terminal_claim(const Section& claim);  // one whole: readings, plots, tables
 std::string markdown_claim(const Section& claim);
 std::string markdown_section(const Section& section);
 

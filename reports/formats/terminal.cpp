@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
@@ -76,7 +77,7 @@ std::string best_of_each(const Comparison& c) {
     const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
     const std::string best = is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
                                                      matrix_text(c, c.cell(p, order[0]), kTightest))
-                                       : "nobody";
+                                       : "none";
     lines.push_back("  " + left(name_of_spec(c.problems[p].spec), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }
@@ -120,8 +121,8 @@ std::string every_cell(const Comparison& c) {
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
   std::string marks = fmt::format(
-      "Median {} in {} to each tolerance; runs: that get to {}; ms to {}; final loss. {} * least of "
-      "its problem, ✗ not reached by half of the runs, n/a: makes no sense",
+      "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * least of "
+      "its problem, ✗ not reached by half of the runs, n/a: not applicable",
       counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
   if (c.is_any_timed_together) marks += ", ≈ timed beside other runs";
   return text + "\n" + wrapped(marks + ".");
@@ -145,14 +146,26 @@ std::string failure_lines(const Comparison& c) {
   return text.empty() ? "" : "\n" + text;
 }
 
+// Rows that may still be printed, over all tables of a section; and how many were not.
+struct RowLimit {
+  std::size_t left = kAllRows, hidden = 0;
+
+  std::size_t take(std::size_t wanted) {
+    const std::size_t taken = std::min(left, wanted);
+    left -= taken;
+    hidden += wanted - taken;
+    return taken;
+  }
+};
+
 // Columns [first, last) of a table below each other, as wide as they must be.
-std::string block(const Table& table, const Part& part) {
+std::string block(const Table& table, const Part& part, std::size_t rows) {
   std::vector<std::vector<std::string>> lines(1);
   const auto add = [&](const std::string& text) { lines.back().push_back(terminal_text(text)); };
   for (std::size_t i = 0; i < table.names; ++i) add(table.columns[i]);
   for (std::size_t i = part.first; i < part.last; ++i) add(table.columns[i]);
   const std::size_t whole = lines[0].size();
-  for (const auto& row : table.rows) {
+  for (const auto& row : std::span(table.rows).first(rows)) {
     lines.emplace_back();
     for (std::size_t i = 0; i < table.names; ++i) add(row[i].text);
     if (row.size() < table.columns.size()) add(row.back().text);
@@ -186,16 +199,38 @@ std::string paragraph(const Table& table, std::size_t row) {
   return text;
 }
 
-std::string table_text(const Table& table) {
+// What its columns mean: of those that were shown.
+std::string meanings_text(const Table& table, std::size_t shown) {
+  std::string text;
+  for (std::size_t i = 1; i < std::min(shown, table.meanings.size()); ++i)
+    text += fmt::format("  {}: {}\n", table.columns[i], table.meanings[i]);
+  return text;
+}
+
+std::string table_text(const Table& table, RowLimit& limit) {
+  std::string body;
+  std::size_t shown = 0;  // columns
+  if (table.is_wordy()) {
+    const std::size_t rows = limit.take(table.rows.size());
+    for (std::size_t row = 0; row < rows; ++row) body += paragraph(table, row);
+  } else {
+    for (const Part& part : parts_of(table, table.columns.size())) {
+      const std::size_t rows = limit.take(table.rows.size());
+      if (rows == 0 && !table.rows.empty()) continue;
+      body += block(table, part, rows);
+      shown = part.last;
+    }
+  }
+  if (body.empty()) return "";
   std::string text = table.title.empty() ? "" : terminal_text(table.title) + "\n";
   if (!table.reading.empty()) text += wrapped(terminal_text(table.reading));
-  if (table.is_wordy())
-    for (std::size_t row = 0; row < table.rows.size(); ++row) text += paragraph(table, row);
-  else
-    for (const Part& part : parts_of(table, table.columns.size())) text += block(table, part);
-  for (std::size_t i = 1; i < table.meanings.size(); ++i)
-    text += fmt::format("  {}: {}\n", table.columns[i], table.meanings[i]);
+  text += body + meanings_text(table, shown);
   return text + (table.caption.empty() ? "" : wrapped(table.caption));
+}
+
+std::string table_text(const Table& table) {
+  RowLimit all;
+  return table_text(table, all);
 }
 
 // The first of its tables: of who is not ranked the sentences below tell.
@@ -203,14 +238,20 @@ std::string standings(const Section& section) { return "\n" + table_text(section
 
 }  // namespace
 
-std::string terminal_section(const Section& section) {
+std::string terminal_section(const Section& section, std::size_t most_rows) {
+  if (section.is_empty()) return section.otherwise + "\n";
   std::string text;
-  for (const Table& table : section.tables) text += table_text(table) + "\n";
   for (const Reading& reading : section.readings)
     text +=
         wrapped((reading.title.empty() ? "" : reading.title + ": ") + terminal_text(reading.text));
   if (!section.lead.empty()) text += wrapped(section.lead);
-  return section.is_empty() ? section.otherwise + "\n" : text;
+  RowLimit limit{.left = most_rows};
+  for (const Table& table : section.tables) {
+    if (const std::string its = table_text(table, limit); !its.empty()) text += "\n" + its;
+    while (text.ends_with("\n\n")) text.pop_back();
+  }
+  if (limit.hidden == 0) return text;
+  return text + fmt::format("… and {} more; --all lists them\n", limit.hidden);
 }
 
 std::string terminal_claim(const Section& claim) {
@@ -247,7 +288,7 @@ std::string terminal_table(const Document& document) {
     text += standings(document.section("standings")) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
-  if (has_privileges) text += "† sees what others do not.\n";
+  if (has_privileges) text += "† uses privileged information.\n";
   return text + failure_lines(c);
 }
 

@@ -112,7 +112,7 @@ Study read_study(const std::vector<std::string>& folders, const Listener& listen
   std::error_code unknown;
   for (const fs::path folder : folders)
     require(fs::is_directory(folder, unknown),
-            [&] { return "no result folder " + folder.string(); });
+            [&] { return folder.string() + ": no such result folder"; });
   Study study;
   study.folders = folders;
   std::set<std::string> cells, sheets;

@@ -25,7 +25,7 @@ void read_grid(const JsonView& source, TunedRate& rate) {
     for (const JsonView& score : source.at("score").values())
       rate.work.push_back(real_of(score.values().at(0)));
   require(rate.work.empty() || rate.work.size() == rate.values.size(),
-          "a grid of rates has not a score for each value");
+          "a grid of rates lacks the score of a value");
 }
 
 TunedRate rate_from(const JsonView& row) {

@@ -90,13 +90,12 @@ struct PriceSummary {
     if (!pullbacks.empty()) {
       const Spread spread = spread_of(pullbacks);
       text = fmt::format(
-          "A pullback, declared as 1, takes {:.3g} forward solves in the median of the {} where it "
-          "can be told, from {:.3g} to {:.3g}; farthest from its declared price: {}. ",
+          "A pullback, declared as 1, takes {:.3g} forward solves in the median of the {} where it is resolved, from {:.3g} to {:.3g}; farthest from its declared price: {}. ",
           spread.median, spread.n, spread.low, spread.high, farthest);
     }
     if (untold == 0) return text + "All measured prices are used.";
     return text + fmt::format(
-                      "Of {} measured prices {} are not used but the declared ones: there a call, "
+                      "Of {} measured prices {} are replaced by the declared ones: there a call, "
                       "or the forward solve that is their unit, takes less than a microsecond, "
                       "which is mostly the overhead of any call, or the rounds disagree.",
                       measured, untold);

@@ -75,7 +75,7 @@ std::string marked_verdict(const Judgement& judgement) {
 std::vector<Reading> claim_notes(const Judgement& judgement) {
   std::vector<Reading> notes;
   if (const auto& contrast = judgement.contrast)
-    notes.push_back({"Contrast", fmt::format("Held against the {}: published {}, measured {}.",
+    notes.push_back({"Contrast", fmt::format("Checked against the {}: published {}, measured {}.",
                                              contrast->quantity, contrast->published,
                                              contrast->measured ? figure(contrast->measured->value)
                                                                 : kNothing)});
@@ -132,6 +132,26 @@ Section claims_section(const std::vector<Judgement>& judgements) {
     table.rows.push_back(row_of(judgement));
     table.row_topics.push_back({.claim = judgement.id});
   }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+Section claims_summary(const std::vector<Judgement>& judgements) {
+  Section section{.id = "claims",
+                  .title = "Claims of the papers",
+                  .readings = {{"", claims_reading(judgements)}},
+                  .otherwise = "No claim was judged."};
+  std::vector<const Judgement*> order;
+  for (const Judgement& judgement : judgements) order.push_back(&judgement);
+  constexpr std::array<int, kVerdictNames.size()> kPlaces = {3, 2, 1, 0, 4, 5};
+  std::ranges::stable_sort(order, {}, [&](const Judgement* judgement) {
+    return kPlaces[static_cast<std::size_t>(judgement->verdict)];
+  });
+  Table table{.columns = {"claim", "verdict", "published", "measured", "seeds"}, .align = "lllll"};
+  for (const Judgement* judgement : order)
+    table.rows.push_back({judgement->id, marked_verdict(*judgement), judgement->published,
+                          value_text(*judgement),
+                          judgement->measured ? std::to_string(judgement->measured->n) : kNothing});
   section.tables.push_back(std::move(table));
   return section;
 }

@@ -14,8 +14,8 @@ Section failures_section(const Comparison& c) {
                   .title = "Failures",
                   .otherwise = "None: every run ended by a verdict of its own."};
   if (c.failures.empty() && unreadable.empty()) return section;
-  section.title =
-      fmt::format("Failures: {} runs, {} unreadable files", c.failures.size(), unreadable.size());
+  section.title = fmt::format("Failures: {}, {}", counted(c.failures.size(), "run"),
+                              counted(unreadable.size(), "unreadable file"));
   Table table{.id = "failures-table",
               .columns = {"problem", "optimizer", "seed", "status", "message", "rerun"},
               .align = "llrlpc",

@@ -34,7 +34,7 @@ bool solves_none(const Comparison& c, const Placed& placed) {
 }
 
 std::string given_text(const OptimizerAxis& axis) {
-  return axis.label == axis.whole ? "where nothing more is given to it"
+  return axis.label == axis.whole ? "where it has no privileged information"
                                   : "where it is " + axis.label.substr(axis.whole.size() + 2);
 }
 
@@ -76,7 +76,7 @@ std::string pairing_text(const Comparison& c, const Pairing& pairing, std::size_
 
 std::string settled_text(const Comparison& c, const Lead& lead) {
   if (lead.tied > 1)
-    return fmt::format("{} are tied: the scores are equal, and nobody leads.", first_text(c, lead));
+    return fmt::format("{} are tied: the scores are equal, and none leads.", first_text(c, lead));
   if (lead.rivals.empty()) return "There is no other method to compare it with.";
   const Rival& rival = nearest(lead);
   const std::string name = optimizer_text(c, rival.optimizer);
@@ -97,7 +97,7 @@ std::string settled_text(const Comparison& c, const Lead& lead) {
   const std::string favoured =
       mean > 0 ? optimizer_text(c, lead.ranked[0].optimizer) : optimizer_text(c, rival.optimizer);
   return fmt::format(
-      "Its lead is not settled: {} cannot be told from it, since the mean over problems is {:.2g} "
+      "Its lead is not settled: {} is not distinguishable from it, since the mean over problems is {:.2g} "
       "doublings in favour of {} (p = {:.2g} by a paired sign-flip test); {} {}.",
       name, std::abs(mean), favoured, rival.p, name, pairing);
 }
@@ -136,7 +136,7 @@ std::string placed_text(const Comparison& c, const Placed& placed) {
 
 std::string apart_text(const Comparison& c, const Placed& placed) {
   const OptimizerAxis& axis = c.optimizers[placed.optimizer];
-  if (axis.is_meaning) return "is given more on some problems than on others";
+  if (axis.is_meaning) return "has privileged information on some problems only";
   return fmt::format("asked {} of {}", placed.asked, counted(placed.shared, setting_noun(c)));
 }
 
@@ -152,8 +152,9 @@ std::string apart_sentence(const Comparison& c) {
   }
   std::string text;
   if (!meanings.empty())
-    text += fmt::format("Listed apart, since it is given more on some problems than on others: {}.",
-                        joined(meanings, "; "));
+    text +=
+        fmt::format("Listed apart, since it has privileged information on some problems only: {}.",
+                    joined(meanings, "; "));
   if (!others.empty())
     text += fmt::format("{}Not ranked: {}.", text.empty() ? "" : " ", joined(others));
   return text;

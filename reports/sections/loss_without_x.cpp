@@ -14,8 +14,7 @@
 namespace isoline::reports {
 namespace {
 
-constexpr const char* kNeitherTold =
-    "No result tells both kinds of success: the loss that can be reached, and the x sought.";
+constexpr const char* kNeitherTold = "No result knows both the least loss and the solution.";
 
 // What the median run of a pair came to.
 struct Outcome {
@@ -122,8 +121,7 @@ std::string near_name(const Comparison& c) {
 std::string caption_of(const Comparison& c) {
   const std::string_view tau = c.yardstick.tightest().name;
   return fmt::format(
-      "Medians over seeds, where both the least loss and the solution are known. Loss: no more "
-      "than {} of its scale is left. x: the error is at most {} of the solution's norm, or the "
+      "Medians over seeds, where both the least loss and the solution are known. Loss: the relative loss gap is at most {}. x: the error is at most {} of the solution's norm, or the "
       "floor that the data set. Near: at most {}, the square root, which is what a loss at {} "
       "leaves of x where J is well conditioned: a run whose problem wants a loss stops at its "
       "target in loss, which may be short of x, but not of that. In brackets the condition number "
@@ -143,8 +141,7 @@ Table loss_without_x_table(const Comparison& c) {
                            "settings whose loss is reached", "settings whose x is found",
                            "settings whose loss is reached and whose x is not found",
                            "those of them on which x is not even near",
-                           "those of them with the worst condition numbers",
-                           "runs that went wrong, of all"},
+                           "those of them with the worst condition numbers", "failed runs, of all"},
               .align = "lrrrrrlr"};
   Tally all;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {

@@ -26,7 +26,7 @@ Section problems_section(const Comparison& c) {
               .title = "Every problem and optimizer",
               .caption = fmt::format(
                   "Median {}. Bold: the least of its problem. ✗: not reached by half of the "
-                  "runs. (k/n): k of n runs reached it. n/a: the pair makes no sense. Empty: "
+                  "runs. (k/n): k of n runs reached it. n/a: not applicable. Empty: "
                   "never planned.",
                   counted_to_tau(c)),
               .columns = {"optimizer"},

@@ -59,7 +59,7 @@ std::string success_text(const Comparison& c) {
   const std::string tau = tau_name(c);
   const auto aims_at_x = static_cast<std::size_t>(std::ranges::count_if(
       c.problems, [](const ProblemAxis& problem) { return problem.aim == Aim::x; }));
-  const std::string loss = fmt::format("no more than {} of the loss’s scale is left", tau);
+  const std::string loss = fmt::format("the relative loss gap is at most {}", tau);
   const std::string x = fmt::format("the error in x is at most {} of the solution’s norm", tau);
   if (aims_at_x == 0) return fmt::format("Solved to {}: {}.", tau, loss);
   if (aims_at_x == c.problems.size()) return fmt::format("Solved to {}: {}.", tau, x);

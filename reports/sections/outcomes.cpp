@@ -59,7 +59,8 @@ struct Losing {
   std::string reading(const Comparison& c) const {
     const std::string tau = tau_name(c);
     if (methods == 0)
-      return fmt::format("Every method shown returns to {} what it has seen to {}.", tau, tau);
+      return fmt::format("Every method shown returns a point within {} wherever it has seen one.",
+                         tau);
     return fmt::format(
         "On some {} {} {} seen a point within {} and not returned it; on most, {}: {}.",
         setting_noun(c), counted(methods, "method"), methods == 1 ? "has" : "have", tau, most,

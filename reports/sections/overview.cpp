@@ -53,8 +53,8 @@ std::string leaders(const Comparison& c, const Profile& profile, Real factor, Re
 }
 
 std::string unsolved_text(std::size_t unsolved, std::size_t applicable) {
-  if (unsolved == 0) return fmt::format(" All {} methods get there.", applicable);
-  return fmt::format(" {} of {} methods {} not get there.", unsolved, applicable,
+  if (unsolved == 0) return fmt::format(" All {} methods reach it.", applicable);
+  return fmt::format(" {} of {} methods {} not reach it.", unsolved, applicable,
                      unsolved == 1 ? "does" : "do");
 }
 
@@ -107,7 +107,7 @@ std::vector<std::string> lead_sentences(const Comparison& c, const Lead& lead) {
   std::string text = fmt::format("Of {}, {} stands first: it {}", field_text(c, lead),
                                  shown_spec(axis.label), deeds_text(c, first));
   if (!axis.privileges.empty())
-    text += fmt::format("; but it sees what others do not: {}", joined(axis.privileges));
+    text += fmt::format("; but it uses privileged information: {}", joined(axis.privileges));
   return {text + ". " + settled_text(c, lead), power_text(c, lead)};
 }
 
@@ -153,11 +153,11 @@ std::vector<std::string> remarks(const Comparison& c) {
         "its own. Optimizers by problem, of {}: {}.",
         counted(c.order.settings.size(), setting_noun(c)), methods_of(c), rows));
   if (study.superseded > 0)
-    all.push_back(
-        fmt::format("{} older results of the same cells were left aside.", study.superseded));
+    all.push_back(fmt::format("Left aside: {} of the same cells.",
+                              counted(study.superseded, "older result")));
   if (!study.unreadable.empty())
-    all.push_back(fmt::format("{} files could not be read; they are listed under failures.",
-                              study.unreadable.size()));
+    all.push_back(fmt::format("Unreadable: {}, listed under failures.",
+                              counted(study.unreadable.size(), "file")));
   if (c.is_any_timed_together)
     all.push_back("Times marked ≈ were taken while other runs shared the machine: not comparable.");
   for (const ProblemAxis& problem : c.problems)
@@ -182,7 +182,7 @@ std::vector<std::string> verdict(const Comparison& c) {
   const bool is_other =
       c.open_lead && c.open_lead->ranked[0].optimizer != c.lead->ranked[0].optimizer;
   if (is_other)
-    all.push_back("Among those that see no more than they are given: " +
+    all.push_back("Among the methods without privileged information: " +
                   joined(lead_sentences(c, *c.open_lead), " "));
   all.push_back(prices_text(c));
   all.push_back(apart_sentence(c));

@@ -35,7 +35,7 @@ std::string prices_text(const Comparison& c) {
   const auto priced = static_cast<std::size_t>(std::ranges::count_if(
       c.order.settings, [&](std::size_t p) { return c.problems[p].prices.are_measured(); }));
   if (priced == 0)
-    return "Whether the order holds at measured prices these results cannot say: none was measured "
+    return "These results cannot say whether the order holds at measured prices: none was measured "
            "here, or calls are too short to be.";
   const std::vector<std::string> declared = first_by(c, Measure::work),
                                  measured = first_by(c, Measure::cost);

@@ -54,8 +54,7 @@ Table pairwise_table(const Comparison& c) {
       .reading = "",
       .caption =
           "Profiles of two methods alone, on the settings given to both: the area of the row's "
-          "profile up to 64 times the least, and the column's. No third method can turn "
-          "such a pair round.",
+          "profile up to 64 times the least, and the column's. No third method can swap such a pair.",
       .columns = {"optimizer"},
       .rows = {}};
   std::size_t turned = 0, pairs = 0;
@@ -77,9 +76,9 @@ Table pairwise_table(const Comparison& c) {
   table.columns.push_back("failed");
   rows_are_optimizers(table);
   columns_are_optimizers(table, k);
-  table.reading = fmt::format(
-      "Of {} pairs among the first {}, {} stand the other way round when compared alone.", pairs, k,
-      turned);
+  table.reading =
+      fmt::format("Of {} pairs among the first {}, {} are in the other order when compared alone.",
+                  pairs, k, turned);
   return table;
 }
 
@@ -89,13 +88,12 @@ Table flip_table(const Comparison& c) {
   const std::vector<Real> all = scores_without(c, costs, k);
   Table table{
       .id = "flips",
-      .title = "Leaving one optimizer out",
+      .title = "Removing one optimizer",
       .reading = "",
       .caption =
           "With more than two methods a profile's order depends on who else is there (Gould, "
-          "Scott 2016). Each method that, taken away, turns the order of any two others round: "
-          "how many pairs, and who is then first.",
-      .columns = {"left out", "pairs turned round", "first without it", "failed"},
+          "Scott 2016). Each method whose removal swaps two others: how many pairs it swaps, and which method is then first.",
+      .columns = {"left out", "pairs swapped", "first without it", "failed"},
       .rows = {}};
   std::size_t turning = 0;
   for (std::size_t out = 0; out < k; ++out) {
@@ -112,8 +110,8 @@ Table flip_table(const Comparison& c) {
   }
   const std::size_t first = first_of(all, k);
   table.reading =
-      fmt::format("{} of {} methods turn some pair round when left out; {} is first of all.",
-                  turning, k, k == 0 ? "none" : optimizer_text(c, first));
+      fmt::format("For {} of {}, removing it swaps another pair; with all of them {} is first.",
+                  turning, counted(k, "method"), k == 0 ? "none" : optimizer_text(c, first));
   return table;
 }
 
@@ -162,7 +160,7 @@ Table accuracy_table(const Comparison& c) {
       .title = "Accuracy profile",
       .reading = "",
       .caption =
-          "Digits of the loss gained within the budget, −log10 of what is left of its scale at the "
+          "Digits of the loss gained within the budget, −log10 of the relative loss gap at the "
           "best point seen, median over seeds: share of the settings with at least so many, and "
           "the median. No more than the target at which a run is stopped: what lies beyond is "
           "overshoot of its last step. A failed run gains none.",

@@ -160,7 +160,7 @@ std::string declaration_sentence(const Audits& all) {
         " Of {}, which teach a network, what is scaled is the loss and y, the path is that of its "
         "weights, and changes of x, order and angle do not apply: x is not what they step in.",
         listed(teachers));
-  if (text.empty()) text = "Every optimizer measured asks for what it declares, and keeps it";
+  if (text.empty()) text = "Every optimizer measured behaves as it declares";
   return text + "." + unmeasured;
 }
 

@@ -19,7 +19,7 @@ namespace isoline::reports {
 namespace {
 
 std::string rank_reading(const Comparison& c, const std::vector<Real>& means, std::size_t names) {
-  if (names == 0) return "No problem was given to every method: no rank has a meaning.";
+  if (names == 0) return "No problem was given to every method: ranks are not defined.";
   const auto best = static_cast<std::size_t>(std::ranges::min_element(means) - means.begin());
   return fmt::format(
       "{} has the least mean rank, {:.3g} of {}, over {}; Nemenyi’s test of all pairs resolves no "
@@ -61,8 +61,7 @@ Table rank_table(const Comparison& c) {
       .caption = fmt::format(
           "Rank by median {} to {}, 1 the best, ties shared, unsolved ones last; settings of one "
           "problem have one rank. Mean over the problems given to all ranked methods, with its {} "
-          "over problems. By cost: the same by {}. Failed: runs that went wrong, "
-          "of all.",
+          "over problems. By cost: the same by {}. Failed: failed runs, of all.",
           counted_name(c), tau_name(c), interval_name(ranks.size()), cost_unit(c)),
       .columns = {"optimizer", "mean rank", "interval", "by cost", "n problems", "failed"},
       .rows = {}};
@@ -160,11 +159,10 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
   const std::size_t k = c.order.methods.size(), names = names_of(c, c.order);
   if (k < 2 || names == 0) return all;
   const Real friedman = friedman_of(c);
-  all.push_back(
-      fmt::format("Friedman’s test of {} over the {} given to all of them: p = {:.2g}, so {}.",
-                  counted(k, "method"), counted(names, "problem"), friedman,
-                  friedman <= kSignificant ? "they do not all do alike"
-                                           : "that they all do alike cannot be ruled out"));
+  all.push_back(fmt::format(
+      "Friedman’s test of {} over the {} given to all of them: p = {:.2g}, so {}.",
+      counted(k, "method"), counted(names, "problem"), friedman,
+      friedman <= kSignificant ? "the mean ranks differ" : "equal mean ranks cannot be ruled out"));
   if (c.lead && !c.lead->rivals.empty()) {
     const Real pairs = Real(c.lead->rivals.size()),
                least = std::min(1.0, std::exp2(1 - Real(names)));
@@ -181,9 +179,9 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
                   "{:.3g} at 0.05.",
                   counted(k, "method"), counted(names, "problem"), least_gap(k, names)));
   if (c.seeds.size() < kFewestForInterval)
-    all.push_back(fmt::format(
-        "With {} no interval over seeds reaches 95 %: the ranges shown are all there is.",
-        counted(c.seeds.size(), "seed")));
+    all.push_back(
+        fmt::format("With {} no interval over seeds reaches 95 %: ranges are shown instead.",
+                    counted(c.seeds.size(), "seed")));
   all.push_back("Nothing here speaks for problems unlike these: they were chosen, not drawn.");
   return all;
 }

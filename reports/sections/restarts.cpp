@@ -159,8 +159,7 @@ Table interval_table(const Comparison& c) {
       .title = fmt::format("Cost to {}, with intervals", tau_name(c)),
       .reading = "",
       .caption = fmt::format(
-          "Median over seeds in {}; in square brackets {}; and runs that got there of all. What "
-          "never got there counts as infinite, ✗. Point at a cost for its raw counts; they are "
+          "Median over seeds in {}; in square brackets {}; and the runs that reached it, of all. A run that never reached it counts as infinite, ✗. Point at a cost for its raw counts; they are "
           "summed up under Oracle calls, and of every run in report.csv.",
           cost_unit(c), interval_words(c)),
       .columns = {"optimizer"},
@@ -196,9 +195,9 @@ Table restart_table(const Comparison& c) {
       .title = "Expected running time",
       .reading = "",
       .caption = fmt::format(
-          "Cost to {} when a method restarts until it gets there, in {}: all that was spent over "
+          "Cost to {} when a method restarts until it reaches it, in {}: all that was spent over "
           "the successes, and the middle 80 % of 1,000 simulated restarts drawn from the runs; ✗ "
-          "where no run got there. Runs that got there of all. The runs are of other seeds, so a "
+          "where no run reached it. In brackets: runs that reached it, of all. The runs are of other seeds, so a "
           "restart here draws another instance, with another start and where the problem has one "
           "another target, too: it is the time to solve one of these, not to solve this one.",
           tau_name(c), cost_unit(c)),
@@ -224,8 +223,8 @@ Table restart_table(const Comparison& c) {
         fmt::format("{} [{}–{}] {}", reached_figure(expected), figure(low), figure(high), count),
         numbers};
   });
-  table.reading =
-      fmt::format("In {} cells restarts get there where the median run does not.", rescued);
+  table.reading = fmt::format("Only restarts reach it in {}: the median run does not.",
+                              counted(rescued, "cell"));
   return table;
 }
 

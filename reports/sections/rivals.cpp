@@ -42,7 +42,7 @@ Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
                                  "{}.",
                                  counted_name(c), tau_name(c), failed_cell(c, 0).text,
                                  failed_cell(c, rival).text),
-          .x_label = "factor of the less of the two",
+          .x_label = fmt::format("multiple of the better method's {}", counted_name(c)),
           .y_label = fmt::format("share of {}s", setting_noun(c)),
           .is_log_x = true,
           .series = {share_series(c, 0, mine, grid), share_series(c, rival, other, grid)}};
@@ -73,20 +73,20 @@ Plots log_ratio_plot(const Comparison& c) {
   if (bars.empty()) return {};
   std::ranges::sort(bars);
   const std::string first = optimizer_text(c, 0), second = optimizer_text(c, 1);
-  Plot plot{.kind = Plot::Kind::bars,
-            .id = "plot-log-ratio",
-            .title = fmt::format("{} against {}, problem by problem", first, second),
-            .reading = fmt::format("{} {}.", second,
-                                   pairing_text(c, pairing_of(costs, groups_of(c), 0, 1), 0)),
-            .caption = fmt::format(
-                "log2 of the ratio of median {} to {}, sorted, of several settings the median: "
-                "below 0 {} needs less, above 0 {}; at ±{:.0f} at least {:.0f} times, or the other "
-                "never gets there (Morales 2002). n = {} problems given to both, of which neither "
-                "solves {}; failed: {} and {}.",
-                counted_name(c), tau_name(c), first, second, std::log2(kProfileEnd), kProfileEnd,
-                given, given - bars.size(), failed_cell(c, 0).text, failed_cell(c, 1).text),
-            .x_label = "problems",
-            .y_label = fmt::format("log2 of the ratio of {}", counted_name(c))};
+  Plot plot{
+      .kind = Plot::Kind::bars,
+      .id = "plot-log-ratio",
+      .title = fmt::format("{} against {}, problem by problem", first, second),
+      .reading =
+          fmt::format("{} {}.", second, pairing_text(c, pairing_of(costs, groups_of(c), 0, 1), 0)),
+      .caption = fmt::format(
+          "log2 of the ratio of median {} to {}, sorted, of several settings the median: "
+          "below 0 {} needs less, above 0 {}; at ±{:.0f} at least {:.0f} times, or the other never reaches it (Morales 2002). n = {} problems given to both, of which neither "
+          "solves {}; failed: {} and {}.",
+          counted_name(c), tau_name(c), first, second, std::log2(kProfileEnd), kProfileEnd, given,
+          given - bars.size(), failed_cell(c, 0).text, failed_cell(c, 1).text),
+      .x_label = "problems",
+      .y_label = fmt::format("log2 of the ratio of {}", counted_name(c))};
   PlotSeries series{0, first + " / " + second, {}, {}, {}, {}};
   for (const auto& [ratio, name] : bars) {
     series.x.push_back(Real(plot.rows.size()));

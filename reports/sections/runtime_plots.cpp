@@ -159,11 +159,11 @@ Plots target_plot(const Comparison& c) {
     }
   }
   if (dots == 0) return {};
-  plot.caption = fmt::format(
-      "Median over seeds in {} with {}; no mark: the median run does not get there; {}.",
-      cost_unit(c), interval_words(c), denominators(c, shown));
+  plot.caption =
+      fmt::format("Median over seeds in {} with {}; no mark: the median run does not reach it; {}.",
+                  cost_unit(c), interval_words(c), denominators(c, shown));
   plot.reading = fmt::format(
-      "{} of {} pairs get there in the median; {}.", dots, shown * problems,
+      "{} of {} pairs reach it in the median; {}.", dots, shown * problems,
       where.empty() ? "no range has any width: seeds agree"
                     : fmt::format("the widest is that of {}, {}", where,
                                   widest == kNever ? "without an upper end"

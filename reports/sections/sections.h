@@ -15,6 +15,8 @@ Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
 Section learned_section(const Comparison& comparison);
 Section claims_section(const std::vector<Judgement>& judgements);
+// A line a claim, the refuted first.
+Section claims_summary(const std::vector<Judgement>& judgements);
 Section claim_section(const Judgement& judgement);  // one of them whole, with its evidence
 Section properties_section(const std::vector<AuditedOptimizer>& audits);
 Section tuning_section(

@@ -34,10 +34,10 @@ Table standings_table(const Comparison& c) {
       .id = "standings-table",
       .caption = fmt::format(
           "Methods given the same {}, ranked by their performance profiles; equal scores share a "
-          "place. Solved: {}s whose median run gets there. Best on: with the least {} of these "
+          "place. Solved: {}s whose median run reaches the tolerance. Best on: with the least {} of these "
           "methods. × least: the middle of its {} over the least, in logarithms; ✗ if it solves "
-          "fewer than half. Runs: that get there. Failed: errors, crashes, time or memory limits, "
-          "on all that it was given. †: sees what others do not.",
+          "fewer than half. Runs: those that reach it. Failed: errors, crashes, time or memory limits, "
+          "on all that it was given. †: uses privileged information.",
           counted(c.order.settings.size(), common_noun(c)), common_noun(c), counted_name(c),
           counted_name(c)),
       .columns = {"", "optimizer", "solved", "best on", "× least", "runs", "failed"},
@@ -84,7 +84,7 @@ std::string podium_text(const Comparison& c, const Order& order) {
   for (std::size_t i = 0; i < ranked.size() && i < kPodium && ranked[i].score > 0; ++i)
     names.push_back(fmt::format("{} ({}/{})", optimizer_text(c, ranked[i].optimizer),
                                 ranked[i].solved, ranked[i].problems));
-  return names.empty() ? "nobody solves any" : joined(names);
+  return names.empty() ? "none solves any" : joined(names);
 }
 
 Table orders_table(const Comparison& c) {

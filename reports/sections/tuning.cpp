@@ -94,7 +94,7 @@ Table rates_table(const Comparison& c, const std::vector<Rates>& all) {
           "Tuned: the best of a grid, tried on this very {} on seeds that are never judged. "
           "Published: a paper’s. All others run as asked, or at their defaults. Edge: the "
           "best value is the first or last of its grid, so that a better one may lie "
-          "beyond. Never: no value got there while it was tuned. One value, best of 3, of "
+          "beyond. Never: no value reached the tolerance in tuning. One value, best of 3, of "
           "all: the expected score of the best of so many values of the grid, 1 the least "
           "work of all its values, 0 from 64 times it on; mean over {}s.",
           setting_noun(c), setting_noun(c)),
@@ -159,8 +159,7 @@ std::string edges_text(const std::vector<Rates>& all) {
   }
   if (rows == 0) return "";
   return fmt::format(
-      "The best value is at an edge of its grid for {} of {}, and for {} of them no value got there "
-      "while it was tuned.",
+      "The best value is at an edge of its grid for {} of {}, and for {} of them no value reached the tolerance in tuning.",
       edges, counted(rows, "tuned rate"), never);
 }
 

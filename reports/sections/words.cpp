@@ -136,13 +136,13 @@ std::string status_meaning(Status status) {
     case Status::stalled:
       return "stopped making progress";
     case Status::diverged:
-      return "blew up: not finite, or 1e12 times the start";
+      return "diverged: not finite, or 1e12 times the start";
     case Status::inapplicable:
-      return "make no sense for the problem";
+      return "not applicable to the problem";
     case Status::failed:
       return "ended in an error";
     case Status::crashed:
-      return "killed their process";
+      return "ended by a signal";
     case Status::timeout:
       return "were stopped at the time limit";
     case Status::memory:
@@ -194,10 +194,13 @@ std::string budget_options(const Request& request) {
   return options + " --rates none";
 }
 
+std::string rerun_arguments(const Request& request) {
+  return fmt::format("--problem {} --optimizer {} --seeds ={} {}", shell_word(request.problem.spec),
+                     shell_word(request.optimizer.spec), request.seed, budget_options(request));
+}
+
 std::string rerun_command(const Request& request) {
-  return fmt::format("./isoline run --problem {} --optimizer {} --seeds ={} {}",
-                     shell_word(request.problem.spec), shell_word(request.optimizer.spec),
-                     request.seed, budget_options(request));
+  return "./isoline run " + rerun_arguments(request);
 }
 
 }  // namespace isoline::reports

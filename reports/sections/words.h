@@ -46,6 +46,7 @@ std::string matrix_text(const Comparison& comparison, const Cell& cell, std::siz
 
 // The command that asks for the same cell again: all its options explicit, no table of rates.
 std::string rerun_command(const Request& request);
-std::string budget_options(const Request& request);  // "--iterations 1000 --rates none"
+std::string rerun_arguments(const Request& request);  // what follows `run`
+std::string budget_options(const Request& request);   // "--iterations 1000 --rates none"
 
 }  // namespace isoline::reports

@@ -73,7 +73,7 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
            {"train sine --optimizer 'adam[rate=-1]' --out x", "rate must be in"},
            {"train sine --optimizer 'sip[network-optimizer=adam[rate=-1]]' --out x",
             "rate must be"},
-           {"train 'sine[mode=direct]' --out x", "nothing to train"},
+           {"train 'sine[mode=direct]' --out x", "no network to train"},
            {"train sine --optimizer ceres-lbfgs --out x", "data=N"},
            {"infer net.json --input wide.csv --output x", "takes 2"},
            {"infer net.json --input holes.csv --output x.npy", "'nan' is no finite number"},
@@ -184,7 +184,7 @@ TEST(Train, IsEndedAtItsLimitsLikeACell) {
       "./isoline train 'poisson[N=64,batch=64,network=unet[levels=3]]' --iterations 5 "
       "--memory 16MB --out m.json");
   EXPECT_EQ(large.exit_code, 2) << large.err;
-  EXPECT_TRUE(contains(large.err, "nothing written: memory: ")) << large.err;
+  EXPECT_TRUE(contains(large.err, "no network was written: memory: ")) << large.err;
 #endif
   EXPECT_FALSE(fs::exists(shell.folder() / "m.json"));
 }

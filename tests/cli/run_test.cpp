@@ -142,7 +142,7 @@ TEST_F(Run, TheRecordedCommandRepeatsTheRunInAShell) {
   const auto command = record.at("provenance").at("run").at("command").get<std::string>();
   const Finished again = shell("./" + command + " --dry-run");
   EXPECT_EQ(again.exit_code, 0) << command << "\n" << again.err;
-  EXPECT_TRUE(contains(again.out, "1 cells: 1 cached")) << command << "\n" << again.out;
+  EXPECT_TRUE(contains(again.out, "1 cell: 1 cached")) << command << "\n" << again.out;
 }
 
 TEST_F(Run, AReportOfAFolderWithoutRecordsIsAnErrorAndWritesNothing) {
@@ -285,7 +285,7 @@ TEST_F(LongRun, ThatIsInterruptedTwiceExitsWith130AndGoesOn) {
   const Finished rest = shell(
       "./isoline run --problem square --optimizer newton --iterations 1000000000 --target 0 "
       "--rates none --out out --no-report");
-  EXPECT_TRUE(contains(rest.out, "1 cells: 0 run, 1 reused")) << rest.out;
+  EXPECT_TRUE(contains(rest.out, "1 cell: 0 run, 1 reused")) << rest.out;
   EXPECT_TRUE(
       contains(shell("./isoline report out && cat out/report/report.md").out, "of 4 cells"));
 }

@@ -13,11 +13,13 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Finished program = shell("./isoline --help");
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
-  for (const std::string verb :
-       {"run", "report", "compare", "baseline", "merge", "best", "claims", "list", "describe",
-        "check", "audit", "validate", "replay", "tune", "train", "infer", "completion"}) {
+  for (const std::string verb : {"run", "report", "compare", "baseline", "merge", "best", "claims",
+                                 "list", "describe", "check", "audit", "validate", "replay", "tune",
+                                 "train", "infer", "completion", "help", "version"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
+    EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
+    EXPECT_EQ(shell("./isoline help " + verb).out, help.out) << verb;
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_EQ(help.err, "") << verb;
     EXPECT_GE(count_lines(help.out), 4U) << verb;
@@ -29,7 +31,7 @@ TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   EXPECT_TRUE(
       contains(completion,
                "\"run report compare baseline replay merge best claims list describe check audit "
-               "validate tune train infer completion  --help --version\""))
+               "validate tune train infer completion help version  --help --version\""))
       << completion;
 }
 
@@ -40,8 +42,15 @@ TEST(Help, OfTuneAsksForTheProblemsOnce) {
   EXPECT_TRUE(contains(help, "--problem")) << help;
 }
 
+TEST(Help, AsAVerbIsThatOfTheProgram) {
+  const Shell shell;
+  EXPECT_EQ(shell("./isoline help").out, shell("./isoline --help").out);
+  EXPECT_EQ(shell("./isoline help").exit_code, 0);
+}
+
 TEST(Help, VersionIsOneLine) {
   const Finished version = Shell()("./isoline --version");
+  EXPECT_EQ(Shell()("./isoline version").out, version.out);
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_TRUE(version.out.starts_with("isoline ")) << version.out;
   EXPECT_EQ(count_lines(version.out), 1U);
@@ -54,6 +63,24 @@ struct Mistake {
 
 const std::vector<Mistake> kMistakes = {
     {"rnu", "did you mean 'run'"},
+    {"", "name a verb, such as run; `isoline help` lists them"},
+    {"help rnu", "did you mean 'run'"},
+    {"--verson", "unknown option --verson; did you mean --version?"},
+    {"run --problm square", "unknown option --problm; did you mean --problem?"},
+    {"run --problm=square", "unknown option --problm; did you mean --problem?"},
+    {"run quick twice", "run takes no further argument, got 'twice'"},
+    {"run --problem", "--problem needs a value"},
+    {"describe adan", "no problem, optimizer or network 'adan'; did you mean 'adam'?"},
+    {"describe zzzz", "`isoline list` names them all"},
+    {"audit zzzz", "unknown optimizer 'zzzz', which is like none of the "},
+    {"report . --by tim", "did you mean 'time'"},
+    {"infer absent.json --input x.csv --output y.csv", "isoline: absent.json: no such file"},
+    {"train rosenbrock --out net.json",
+     "rosenbrock cannot be learned; these can: exponential, heat, hig-toy, poisson, sine"},
+    {"run --problem 'rosenbrock[mode=learn]'", "rosenbrock cannot be learned; these can: "},
+    {"claims sip-bettr-in-x", "did you mean 'sip-better-in-x-worse-in-loss'"},
+    {"claims zzzz", "unknown claim 'zzzz'; `isoline claims --list --all` lists them"},
+    {"run quick --in-process --dry-run", "--dry-run"},
     {"run quik", "did you mean 'quick'"},
     {"run --problem rosenbrok", "did you mean 'rosenbrock'"},
     {"run --optimizer ceres-ml", "did you mean 'ceres-lm'"},
@@ -114,9 +141,9 @@ const std::vector<Mistake> kMistakes = {
     {"run --rates nowhere.json", "nowhere.json"},
     {"describe nwton", "did you mean 'newton'"},
     {"check rosenbrok", "did you mean 'rosenbrock'"},
-    {"validate nowhere", "nowhere"},
-    {"report nowhere", "nowhere"},
-    {"compare nowhere .", "nowhere"},
+    {"validate nowhere", "nowhere: no such file or folder"},
+    {"report nowhere", "nowhere: no such result folder"},
+    {"compare nowhere .", "nowhere: no such result folder, baseline or report"},
     {"compare . . --tolerance -1", "--tolerance"},
     {"compare . . --json --markdown", "--json"},
     {"compare . . --allow nowhere.json", "nowhere.json"},
@@ -136,6 +163,7 @@ TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {
     EXPECT_TRUE(contains(result.err, sentence)) << command << ": " << result.err;
     EXPECT_TRUE(result.err.starts_with("isoline: ")) << command << ": " << result.err;
     EXPECT_EQ(count_lines(result.err), 1U) << command << ": " << result.err;
+    EXPECT_LE(result.err.size(), 400U) << command << ": a list, no sentence";
   }
   EXPECT_FALSE(std::filesystem::exists(shell.folder() / "results")) << "a mistake left a folder";
 }
@@ -220,6 +248,8 @@ TEST(Completion, IsValidBashAndCompletesNames) {
   EXPECT_EQ(complete("describe saddle"), "saddle-free-newton\n");
   EXPECT_EQ(complete("val"), "validate\n");
   EXPECT_EQ(complete("repl"), "replay\n");
+  EXPECT_EQ(complete("help valid"), "validate\n");
+  EXPECT_EQ(complete("claims sip-better-in"), "sip-better-in-x-worse-in-loss\n");
   EXPECT_EQ(complete("list netw"), "networks\n");
   EXPECT_EQ(complete("describe fn"), "fno\n");
   EXPECT_EQ(complete("run --retry f"), "failed\n");

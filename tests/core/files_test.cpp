@@ -50,7 +50,7 @@ TEST(Files, DevicesFoldersAndLinksInACircleAreRefused) {
   expect_said(complaint_about(folder.path() / "a"), "Too many levels of symbolic links");
   fs::create_symlink("/dev/zero", folder.path() / "endless.json");
   expect_said(complaint_about(folder.path() / "endless.json"), "it is a device");
-  expect_said(complaint_about(folder.path() / "absent"), "No such file");
+  expect_said(complaint_about(folder.path() / "absent"), "no such file");
 }
 
 // A hole of 2⁴⁰ bytes takes no room on the disk.

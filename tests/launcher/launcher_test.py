@@ -106,7 +106,8 @@ class WithTree(unittest.TestCase):
 class Questions(WithTree):
     """What the program answers by itself neither installs nor builds."""
 
-    QUESTIONS = [('--help',), ('-h',), ('--version',), ('list',), ('list', 'problems'),
+    QUESTIONS = [('--help',), ('-h',), ('--version',), ('help', 'run'), ('version',), ('list',),
+                 ('list', 'problems'),
                  ('completion', 'bash'), ('run', '--help'), ()]
 
     def test_an_existing_program_answers_them_alone(self):

@@ -302,7 +302,7 @@ TEST(Claims, AreNoBetterThanWhatTheyAreHeldAgainst) {
   EXPECT_EQ(kept.contrast->measured->value, 20);
   EXPECT_EQ(refuted.measured->value, 10);
   EXPECT_EQ(refuted.verdict, Verdict::not_reproduced);
-  EXPECT_NE(terminal_section(claims_section({refuted})).find("Held against the value"),
+  EXPECT_NE(terminal_section(claims_section({refuted})).find("Checked against the value"),
             std::string::npos);
   EXPECT_EQ(claims_json({refuted})[0].at("contrast").at("measured").at("value"), 20);
 }

@@ -85,7 +85,8 @@ TEST(Orders, AMethodWithTwoMeaningsIsTwo) {
   EXPECT_FALSE(c.optimizers[given.optimizer].privileges.empty());
   EXPECT_TRUE(c.optimizers[plain.optimizer].privileges.empty());
   EXPECT_EQ(placed_text(c, given), "1st of 4 on the 2 problems where it is given P⁻¹");
-  EXPECT_EQ(placed_text(c, plain), "4th of 4 on the 2 problems where nothing more is given to it");
+  EXPECT_EQ(placed_text(c, plain),
+            "4th of 4 on the 2 problems where it has no privileged information");
   const std::string text = all_of(verdict(c));
   EXPECT_TRUE(has(text, placed_text(c, given)) && has(text, placed_text(c, plain))) << text;
 }
@@ -197,7 +198,7 @@ TEST(Orders, WhatIsNotSettledSaysAgainstWhom) {
   const Study study = family();
   const Comparison c = compare_optimizers(study);
   const std::string text = all_of(verdict(c));
-  EXPECT_TRUE(has(text, "Its lead is not settled: kin cannot be told from it")) << text;
+  EXPECT_TRUE(has(text, "Its lead is not settled: kin is not distinguishable from it")) << text;
   EXPECT_TRUE(has(text, "80 %")) << text;
 }
 

@@ -82,7 +82,7 @@ TEST(Tables, LeavingOneOutFindsTheFlipThatItCauses) {
                                  {"q", "b", 1},
                                  {"q", "c", 0}});
   const Table table = flip_table(compare_optimizers(turned));
-  EXPECT_EQ(at(table, "c", "pairs turned round"), "1") << table.reading;
+  EXPECT_EQ(at(table, "c", "pairs swapped"), "1") << table.reading;
   EXPECT_EQ(at(table, "c", "first without it"), "a");
 }
 

@@ -1,6 +1,7 @@
-// A program built elsewhere: Isoline's verbs over a catalog with two problems of its own, one sound
-// and one that breaks when it is evaluated.
+// A program built elsewhere: Isoline's verbs over a catalog with problems of its own: a sound one,
+// one that throws and one that aborts when it is evaluated.
 #include <cmath>
+#include <cstdlib>
 
 #include "benchmarks/cli/program.h"
 #include "isoline_build_info.h"
@@ -28,6 +29,11 @@ class Thrower final : public Twist {
   void value(VectorRef, VectorOut) const override { throw std::runtime_error("it's on purpose"); }
 };
 
+class Aborter final : public Twist {
+ public:
+  void value(VectorRef, VectorOut) const override { std::abort(); }
+};
+
 template <class Physics>
 ProblemParts parts(const NoOptions&, const Draw& draw) {
   return {.physics = std::make_unique<Physics>(),
@@ -44,6 +50,9 @@ Catalog with_mine() {
   catalog.problems.add(
       problem_entry({.name = "thrower", .title = "Thrower", .formula = "none", .source = "here"},
                     parts<Thrower>));
+  catalog.problems.add(
+      problem_entry({.name = "aborter", .title = "Aborter", .formula = "none", .source = "here"},
+                    parts<Aborter>));
   return catalog;
 }
 

@@ -1,0 +1,65 @@
+// The examples in the help of each verb are commands that the program reads.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "benchmarks/cli/command_line.h"
+#include "benchmarks/cli/notes.h"
+#include "core/errors.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+// Words as a shell has them, as far as the examples go: single quotes, and no others. What follows
+// two blanks or more tells what the command is for.
+std::vector<std::string> words_of(const std::string& line) {
+  std::vector<std::string> words(1);
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '\'') {
+      is_quoted = !is_quoted;
+    } else if (line[i] == ' ' && !is_quoted) {
+      if (line.compare(i, 2, "  ") == 0) break;
+      words.emplace_back();
+    } else {
+      words.back() += line[i];
+    }
+  }
+  const auto redirection = std::ranges::find(words, ">");
+  words.erase(redirection, words.end());
+  return words;
+}
+
+std::vector<std::string> examples_in(const std::string& notes) {
+  std::vector<std::string> examples;
+  std::istringstream text(notes);
+  for (std::string line; std::getline(text, line);)
+    if (line.starts_with("  isoline ")) examples.push_back(line.substr(2));
+  return examples;
+}
+
+void expect_read(const std::string& example) {
+  std::vector<std::string> words = words_of(example);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  try {
+    parse_only("isoline", static_cast<int>(arguments.size()), arguments.data());
+  } catch (const UsageError& error) {
+    ADD_FAILURE() << example << ": " << error.what();
+  }
+}
+
+TEST(Examples, InTheHelpOfEveryVerbAreRead) {
+  for (const char* verb : {"run", "report", "compare", "baseline", "replay", "merge", "best",
+                           "claims", "list", "describe", "check", "audit", "validate", "tune",
+                           "train", "infer", "completion", "help", "version"}) {
+    const std::vector<std::string> examples = examples_in(notes_of(verb));
+    EXPECT_FALSE(examples.empty()) << verb;
+    for (const std::string& example : examples) expect_read(example);
+  }
+  for (const std::string& example : examples_in(kExamples)) expect_read(example);
+}
+
+}  // namespace
+}  // namespace isoline::benchmarks
