@@ -61,7 +61,7 @@ std::string endings_html(const Comparison& c) {
 
 std::string dagger(const std::vector<std::string>& privileges) {
   if (privileges.empty()) return "";
-  return fmt::format("<sup><a href=\"#privileges\" title=\"sees {}\">†</a></sup>",
+  return fmt::format("<sup><a href=\"#privileges\" title=\"given: {}\">†</a></sup>",
                      html_text(joined(privileges)));
 }
 

@@ -96,7 +96,7 @@ std::string methods_html(const Comparison& c) {
     legend += fmt::format("{}<b>{}</b>: {}", legend.empty() ? "" : " · ", property.name,
                           property.meaning);
   }
-  html += "<th scope=col>asks for<th scope=col id=privileges>† sees<tbody>\n";
+  html += "<th scope=col>asks for<th scope=col id=privileges>† privileged information<tbody>\n";
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);
   return "<div class=\"scroll pane\" tabindex=0 role=region aria-label=Methods>" + html +
          "</table></div><p class=legend>Measured on small problems whose answers are known, at "

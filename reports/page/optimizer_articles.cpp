@@ -139,7 +139,7 @@ std::string reading(const Comparison& c, std::size_t s) {
   if (standing.typical < kNever)
     text += fmt::format(", typically for {:.3g}× the least", standing.typical);
   return text + fmt::format(
-                    "; {} of {} runs get there{}.", standing.reached, standing.runs,
+                    "; {} of {} runs reach it{}.", standing.reached, standing.runs,
                     axis.failed > 0 ? fmt::format("; of all its runs {} failed", axis.failed) : "");
 }
 

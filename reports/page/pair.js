@@ -85,7 +85,7 @@ function priceRows() {
   const middle = (side, measure) => (both.length === 0 ? '–' : figure(Number(medianOf(both.map((cells) => takenBy(cells[side], view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
   const rows = MEASURES.map((name, measure) => [`${DATA.measures[measure].counted}, ${DATA.measures[measure].unit}`, middle(0, measure), middle(1, measure)]);
   return [...rows, ['asks for', DATA.asks[pair.a], DATA.asks[pair.b]],
-    ['sees what others do not', DATA.privileges[pair.a] || 'nothing', DATA.privileges[pair.b] || 'nothing'],
+    ['privileged information', DATA.privileges[pair.a] || 'none', DATA.privileges[pair.b] || 'none'],
     ['kind', DATA.kinds[pair.a], DATA.kinds[pair.b]]].map(([what, a, b]) => ({what, a, b, n: both.length}));
 }
 

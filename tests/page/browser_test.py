@@ -344,7 +344,7 @@ class Page(unittest.TestCase):
         sentence = self.browser.wait("return document.querySelector('#pair .verdict')?.innerText")
         self.assertRegex(sentence, r"^sip.* needs less declared work on \d of \d problems")
         prices = self.browser.run("return document.querySelector('#pair .prices').innerText")
-        for word in ("forward solves", "wall time", "asks for", "sees what others do not"):
+        for word in ("forward solves", "wall time", "asks for", "privileged information"):
             self.assertIn(word, prices)
         self.assertLess(self.browser.run(SCREENS_DOWN, "#pair .prices"), 2)
         self.browser.click("#pair .bars-of a")  # a second: the curves of these two
