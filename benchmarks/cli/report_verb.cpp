@@ -1,7 +1,10 @@
 // isoline report DIR...: tables, plots and statistics from records.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spawn.h>
+#include <unistd.h>
 
+#include <array>
 #include <filesystem>
 
 #include "benchmarks/cli/on_terminal.h"
@@ -33,6 +36,15 @@ reports::Yardstick yardstick_of(const ReportArguments& given) {
   return yardstick;
 }
 
+// By the desktop's own program, which goes on after this one; where there is none, that is told.
+void open_page(const fs::path& page) {
+  std::string program = "xdg-open", path = page.string();
+  std::array<char*, 3> words = {program.data(), path.data(), nullptr};
+  pid_t opened = 0;
+  if (posix_spawnp(&opened, program.c_str(), nullptr, nullptr, words.data(), environ) != 0)
+    say(stderr, fmt::format("--open: there is no xdg-open; open {} yourself\n", path));
+}
+
 }  // namespace
 
 int report_verb(const ReportArguments& given, Session& session) {
@@ -46,9 +58,10 @@ int report_verb(const ReportArguments& given, Session& session) {
                        fmt::join(given.folders, ", "), damaged);
   });
   const reports::Yardstick yardstick = yardstick_of(given);
-  write_and_print(
-      study, given.out.empty() ? fs::path(given.folders.front()) / "report" : fs::path(given.out),
-      session, false, yardstick);
+  const fs::path out =
+      given.out.empty() ? fs::path(given.folders.front()) / "report" : fs::path(given.out);
+  write_and_print(study, out, session, false, yardstick);
+  if (given.opens) open_page(out / "index.html");
   return kGood;
 }
 

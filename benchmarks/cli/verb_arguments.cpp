@@ -69,6 +69,7 @@ void declare(VerbArguments& verb, ReportArguments& given) {
   verb.real("--tolerance", given.tolerance, between(1e-10, 1),
             "Relative loss gap, or relative error in x, below which a problem counts as solved")
       .shown("1e-6");
+  verb.flag("--open", given.opens, "Open the page in the browser of the desktop");
 }
 
 void declare(VerbArguments& verb, CompareArguments& given) {

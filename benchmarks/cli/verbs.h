@@ -28,6 +28,7 @@ struct ReportArguments {
   std::vector<std::string> folders;
   std::string out, by = "work";
   double tolerance = 1e-6;
+  bool opens = false;
 };
 int report_verb(const ReportArguments& given, Session& session);
 

@@ -12,7 +12,13 @@ function isDark() {
   return chosen ? chosen === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
 }
 
-const cssColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+// Asked of the style sheet once a theme.
+const COLOURS = new Map();
+function cssColour(name) {
+  const key = name + isDark();
+  if (!COLOURS.has(key)) COLOURS.set(key, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+  return COLOURS.get(key);
+}
 
 // Kind, dash and marker of each, fixed by its name: the style sheet has the same.
 const colourOf = (index) => cssColour(`--${DATA.styles[index][0]}`);

@@ -100,7 +100,10 @@ ON_UNPACK.push((place) => {
     button.addEventListener('click', () => copyText(button.dataset.command, button));
   }
   place.querySelectorAll('svg.dots').forEach((plot) => live(plot, () => closeRows(plot)));
-  if (place.matches('article.problem')) refresh(place);
+  if (LIVE.has(place)) {
+    STALE.add(place);  // what was drawn of it before was nothing
+    refresh(place);
+  }
 });
 
 document.documentElement.classList.add('js');

@@ -50,6 +50,7 @@ function legendRow(problem, s, ends, state, chart) {
     button.setAttribute('aria-pressed', state.visible.has(s));
     state.redraw();
   });
+  button.className = 'name';
   button.prepend(swatch(s));
   if (DATA.privileges[s] !== '') button.append(' †');
   for (const [event, lit] of [['pointerenter', s], ['pointerleave', undefined], ['focus', s], ['blur', undefined]])

@@ -209,5 +209,13 @@ TEST(Filters, ThatLeaveNothingOrNameWhatIsUnknownAreErrors) {
   EXPECT_THROW(left_by("sine[xii=1]", ""), UsageError);
 }
 
+// Charts colour by the one, tables stand together by the other.
+TEST(Registries, SayTheKindOfEachMethodAndTheGroupOfEachProblem) {
+  for (const auto& [name, entry] : catalog().optimizers)
+    EXPECT_NE(entry.kind, optimizers::Kind::other) << name;
+  for (const auto& [name, entry] : catalog().problems)
+    EXPECT_NE(entry.group, problems::Group::other) << name;
+}
+
 }  // namespace
 }  // namespace isoline::benchmarks

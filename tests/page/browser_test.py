@@ -364,6 +364,8 @@ class Page(unittest.TestCase):
         self.browser.run("dispatchEvent(new Event('beforeprint'))")
         self.assertEqual(self.browser.run("return document.querySelectorAll("
                                           "'.packed > noscript, .one > noscript').length"), 0)
+        drawn = self.browser.run("return document.querySelectorAll('.problem .curves canvas').length")
+        self.assertEqual(drawn, self.browser.run("return DATA.problems.length"))
 
 
 class Learned(unittest.TestCase):

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 namespace isoline::reports {
 namespace {
 
@@ -123,6 +124,26 @@ TEST(Adjustment, AgreesWithNumPy) {
   EXPECT_NEAR(family[13], 0.015, kRounding);
   EXPECT_NEAR(discovery[14], 0.34, kRounding);
   EXPECT_EQ(family[14], 1);
+}
+
+// n = 10: P(fewer than 2 of Binomial(10, ½)) = 11/1024, fewer than 3: 56/1024. n = 20: fewer
+// than 6.
+TEST(RankTests, TheIntervalOfAMedianLeavesOutWhatTheTestOfSignsRejects) {
+  const auto interval_of_first = [](int n) {
+    std::vector<Real> values;
+    for (int i = n; i > 0; --i) values.push_back(i);
+    return median_interval(values);
+  };
+  const std::map<int, std::pair<Real, Real>> known = {{1, {1, 1}}, {5, {1, 5}},  {6, {1, 6}},
+                                                      {9, {2, 8}}, {10, {2, 9}}, {20, {6, 15}}};
+  for (const auto& [n, ends] : known) {
+    const MedianInterval interval = interval_of_first(n);
+    EXPECT_EQ(interval.low, ends.first) << n;
+    EXPECT_EQ(interval.high, ends.second) << n;
+    EXPECT_EQ(interval.median, (n + 1) / 2.0) << n;
+  }
+  EXPECT_EQ(median_interval({}).low, 0);
+  EXPECT_LT(interval_of_first(3000).low, 1500);  // 2⁻³⁰⁰⁰ is no number: it ends all the same
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ const std::map<std::string, std::string> kLongFiles = {
     {"benchmarks/audit/audit_problems.cpp", "one family of problems: links, chained in every way"},
     {"benchmarks/cli/command_line.cpp", "a library: its call and its complaints, in our words"},
     {"problems/conformance.cpp", "one examination: a law a function, at the same point"},
+    {"optimizers/ceres.cpp", "one library: its callbacks, its solve and the list of its algorithms"},
     {"optimizers/nlopt.cpp", "one library: its call, its checks and the list of its algorithms"},
     {"reports/formats/terminal.cpp", "all that a terminal shows: tables, sections, a claim"},
     {"reports/page/svg.cpp", "one drawing of every kind of plot"},

@@ -1,0 +1,158 @@
+// What the page chooses from: standings to every target by every measure, labels that are brief,
+// learned problems at equal work, kinds as colours.
+#include <gtest/gtest.h>
+
+#include "reports/page/kinds.h"
+#include "reports/read/brief.h"
+#include "reports/read/equal_work.h"
+#include "reports/read/grounds.h"
+#include "reports/read/ladders.h"
+#include "reports/report.h"
+#include "reports/sections/method_pairs.h"
+#include "reports/sections/scores.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline::reports {
+namespace {
+
+const std::vector<Result> kThree = {
+    {"a", "gd", 4},   {"a", "adam", 2}, {"a", "sip", 1},  {"b", "gd", 1},    {"b", "adam", 3},
+    {"b", "sip", 0},  {"c", "gd", 5},   {"c", "adam", 5}, {"c", "sip", 2},   {"d", "gd", 2},
+    {"d", "adam", 0}, {"d", "sip", 1},  {"e", "gd", 64},  {"e", "adam", 30}, {"e", "sip", 1}};
+
+TEST(Ladders, AreTheStandingsOfTheReportAtItsTolerances) {
+  const Study study = study_of(kThree);
+  const Comparison c = compare_optimizers(study);
+  const Ladders ladders(c);
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    for (const Ranked& ranked : ladders.standings(Measure::work, kTolerances[t].rung)) {
+      const Standing& own = c.optimizers[ranked.optimizer].standings[t];
+      EXPECT_EQ(ranked.standing.score, own.score);
+      EXPECT_EQ(ranked.standing.solved, own.solved);
+      EXPECT_EQ(ranked.standing.wins, own.wins);
+      EXPECT_EQ(ranked.standing.typical, own.typical);
+      EXPECT_EQ(ranked.standing.reached, own.reached);
+    }
+}
+
+TEST(Ladders, ByAnotherMeasureAreTheStandingsOfAReportByIt) {
+  const Study study = study_of(kThree);
+  const Comparison by_work = compare_optimizers(study);
+  const Comparison by_time = compare_optimizers(study, yardstick_at(Measure::time, 1e-6));
+  const Ladders ladders(by_work);
+  for (const Ranked& ranked : ladders.standings(Measure::time, kTolerances[kTightest].rung)) {
+    const std::string& label = by_work.optimizers[ranked.optimizer].label;
+    const auto same = std::ranges::find(by_time.optimizers, label, &OptimizerAxis::label);
+    EXPECT_DOUBLE_EQ(ranked.standing.score, same->tightest().score) << label;
+  }
+}
+
+TEST(Scores, StandWithinTheirIntervals) {
+  const Study study = study_of(kThree);
+  const Comparison c = compare_optimizers(study);
+  const std::vector<Interval> intervals = score_intervals(c);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    EXPECT_LE(intervals[s].low, c.optimizers[s].tightest().score);
+    EXPECT_GE(intervals[s].high, c.optimizers[s].tightest().score);
+  }
+}
+
+TEST(MethodPairs, TurnWhenTheirMethodsDo) {
+  const Study study = study_of(kThree);
+  const Comparison c = compare_optimizers(study);
+  for (const MethodPair& pair : all_pairs(c)) {
+    const Costs costs = median_costs(c, kTightest);
+    const Pairing turned = pairing_of(costs, groups_of(c), pair.b, pair.a);
+    EXPECT_EQ(turned.wins, pair.pairing.losses);
+    EXPECT_EQ(turned.ties, pair.pairing.ties);
+    EXPECT_NEAR(turned.typical() * pair.pairing.typical(), 1, 1e-12);
+    EXPECT_NEAR(turned.interval()[0] * pair.pairing.interval()[1], 1, 1e-12);
+  }
+}
+
+TEST(BriefLabels, ShowWhatDiffersAndNoTwoBecomeTheSame) {
+  const std::vector<std::string> labels = {
+      "adam",
+      "gd[rate=0.1]",
+      "sip[inverse=newton,network-optimizer=adam[rate=1e-3],proxy=l1]",
+      "sip[inverse=analytic,network-optimizer=adam[rate=1e-3],proxy=l1]",
+      "rescaled[by=truth,network-optimizer=adam[rate=1e-3]], tuned",
+      "no[specification"};
+  EXPECT_EQ(
+      brief_labels(labels),
+      (std::vector<std::string>{"adam", "gd[rate=0.1]", "sip[inverse=newton]",
+                                "sip[inverse=analytic]", "rescaled, tuned", "no[specification"}));
+  const std::vector<std::string> alike = {"rescaled[by=truth,network-optimizer=adam[rate=1e-3]]",
+                                          "rescaled"};
+  EXPECT_NE(brief_labels(alike)[0], brief_labels(alike)[1]);
+}
+
+Record learned(const char* optimizer, std::vector<std::int64_t> work, std::vector<Real> x_error) {
+  Record record = record_of({.problem = "sine[mode=learn]", .optimizer = optimizer});
+  record.request.problem.is_learned = true;
+  record.curve = {};
+  record.hits.reset();
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    record.curve.iteration.push_back(static_cast<std::int64_t>(i));
+    record.curve.work.push_back(work[i]);
+    record.curve.wall_seconds.push_back(static_cast<Real>(i));
+    record.curve.loss.push_back(x_error[i] / 2);
+    record.curve.x_error.push_back(x_error[i]);
+  }
+  record.curve.processor_seconds = record.curve.gradient_norm = record.curve.step_norm =
+      record.curve.wall_seconds;
+  record.summary.work = work.back();
+  record.summary.x_error = x_error.back();
+  return record;
+}
+
+TEST(EqualWork, IsTheLeastThatAnyMethodSpent) {
+  Study study;
+  study.runs = {learned("adam", {0, 100, 200, 300}, {4, 3, 2, 0.1}),
+                learned("sip", {0, 80, 160, 240}, {4, 2, 1, 0.5})};
+  const Comparison c = compare_optimizers(study);
+  const EqualWork equal = equal_work(c, 0);
+  EXPECT_EQ(equal.work, 240);
+  std::map<std::string, Real> errors;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    errors[c.optimizers[s].label] = equal.methods[s]->x_error.median;
+  EXPECT_EQ(errors["adam"], 2);  // at 200: at the end it would be 0.1
+  EXPECT_EQ(errors["sip"], 0.5);
+  EXPECT_EQ(c.optimizers[equal.nearest_first()[0]].label, "sip");
+  EXPECT_EQ(c.optimizers[ranking(c, 0)[0]].label, "sip");
+}
+
+TEST(EqualWork, OfARunThatFailedBeforeIsInfinite) {
+  Study study;
+  study.runs = {learned("adam", {0, 100}, {4, 3}), learned("sip", {0, 50, 200}, {4, 2, 1})};
+  study.runs[0].status = Status::crashed;
+  study.runs[0].summary.work = 300;
+  const Comparison c = compare_optimizers(study);
+  const EqualWork equal = equal_work(c, 0);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    EXPECT_EQ(equal.methods[s]->x_error.is_solved(), c.optimizers[s].label == "sip");
+}
+
+// A tolerance of the loss says little of a network.
+TEST(Order, IsOfProblemsThatAreNotLearned) {
+  Study study = study_of(kThree);
+  study.runs.push_back(learned("adam", {0, 100}, {4, 3}));
+  study.runs.push_back(learned("sip", {0, 50}, {4, 2}));
+  const Comparison c = compare_optimizers(study);
+  for (const std::size_t p : c.order.settings) EXPECT_FALSE(c.problems[p].is_learned);
+  EXPECT_EQ(c.order.settings.size(), 5U);
+}
+
+TEST(Kinds, AreFixedByTheNameOfTheMethod) {
+  const Sheet sheet{.kind = "optimizer", .name = "adam", .mathematics = "adaptive"};
+  const OptimizerAxis adam{.label = "adam", .method = "adam", .sheet = &sheet};
+  const OptimizerAxis tuned{.label = "adam, tuned", .method = "adam", .sheet = &sheet};
+  EXPECT_EQ(style_of(adam).kind, style_of(tuned).kind);
+  EXPECT_EQ(style_of(adam).dash, style_of(tuned).dash);
+  EXPECT_EQ(kMathematics[style_of(adam).kind], "adaptive");
+  const OptimizerAxis unknown{.label = "mine", .method = "mine"};
+  EXPECT_EQ(kMathematics[style_of(unknown).kind], "other");
+}
+
+}  // namespace
+}  // namespace isoline::reports
