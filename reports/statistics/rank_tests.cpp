@@ -10,6 +10,8 @@
 namespace isoline::reports {
 namespace {
 
+constexpr Real kTwoSided = 1.959963984540054;  // the normal quantile of 0.975
+
 // Twice the midranks: a group of ties shares the mean of its ranks.
 std::vector<std::size_t> doubled_ranks(const std::vector<Real>& values) {
   std::vector<std::size_t> order(values.size()), ranks(values.size());
@@ -77,11 +79,11 @@ Real sum_of_squares(const std::vector<std::size_t>& values) {
 // How many of the ordered ratios lie outside the interval at each end, plus one; 0: all do.
 // P(U ≤ k − 1) ≤ (1 − confidence) / 2.
 std::size_t interval_order(std::size_t n, std::size_t m) {
-  constexpr Real kTail = (1 - kConfidence) / 2, kQuantile = 1.959963984540054;  // of 0.975
+  constexpr Real kTail = (1 - kConfidence) / 2;
   const Real product = Real(n) * Real(m), total = Real(n + m + 1);
   if (n + m > kExact)
     return static_cast<std::size_t>(
-        std::max(0.0, product / 2 - kQuantile * std::sqrt(product * total / 12)));
+        std::max(0.0, product / 2 - kTwoSided * std::sqrt(product * total / 12)));
   std::vector<std::size_t> ranks(n + m);
   std::iota(ranks.begin(), ranks.end(), 1);
   const std::vector<Real> chance = rank_sum_distribution(ranks, n);
@@ -194,8 +196,10 @@ MedianInterval median_interval(std::vector<Real> values) {
   const std::size_t n = values.size();
   // From the k-th of the values to the k-th from their end: it misses the median where fewer than k
   // lie on one side of it, P(Binomial(n, ½) < k) on each.
+  constexpr std::size_t kMany = 1000;  // 2⁻ⁿ is no number soon after: the normal law serves
   std::size_t k = 0;
-  Real term = std::pow(0.5, Real(n)), misses = term;
+  if (n > kMany) k = static_cast<std::size_t>(Real(n) / 2 - kTwoSided * std::sqrt(Real(n)) / 2);
+  Real term = n > kMany ? 1 : std::pow(0.5, Real(n)), misses = term;
   while (misses <= (1 - kConfidence) / 2 && 2 * k < n) {
     ++k;
     term *= Real(n - k + 1) / Real(k);
