@@ -11,6 +11,7 @@
 #include "core/count.h"
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/text.h"
 
 namespace isoline {
 namespace {
@@ -49,16 +50,16 @@ std::string trim(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\n") - first + 1));
 }
 
-// A text without a zero byte, which ends it for the system, and the message that would name it.
-std::string_view clean(std::string_view text) {
+// Without a zero byte, which ends a text for the system and in the message that would name it.
+std::string clean(std::string_view text) {
   require(text.find('\0') == text.npos, "a specification holds a zero byte, which ends any text");
-  return text;
+  return valid_utf8(text);
 }
 
 // A value as it is meant: a JSON string where it stands in double quotes, else as it is written.
 std::string unquoted(const std::string& value) {
   if (!value.starts_with('"')) return value;
-  return std::string(clean(parse_json(value, "the value " + value).get<std::string>()));
+  return clean(parse_json(value, "the value " + value).get<std::string>());
 }
 
 // A name and its options, each with all of its values.
@@ -127,7 +128,6 @@ void expand(const Sweep& sweep, std::vector<Spec>& specs) {
   specs.push_back({.name = sweep.name, .options = {}});
   for (const auto& [key, values] : sweep.options) {
     std::vector<Spec> crossed;
-    crossed.reserve((specs.size() - first) * values.size());
     for (std::size_t i = first; i < specs.size(); ++i)
       for (const std::string& value : values)
         crossed.emplace_back(specs[i]).options.emplace_back(key, value);

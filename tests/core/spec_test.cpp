@@ -60,6 +60,13 @@ TEST(Spec, AZeroByteIsRefusedInWords) {
   }
 }
 
+// Found by fuzzing: JSON, which quotes what a comma would split, replaced them later.
+TEST(Spec, BytesThatAreNotUtf8AreReplacedOnEntry) {
+  const std::string value = parse_spec("a[b=\xff\"1,2\"]").options.at(0).second;
+  EXPECT_EQ(value, "\uFFFD\"1,2\"");
+  EXPECT_EQ(parse_spec("a[b=" + quoted(value) + "]").options.at(0).second, value);
+}
+
 TEST(Spec, AnyTextComesBackFromTheSpecThatIsMadeOfIt) {
   const OptionTable table{{"command", std::string("none"), {}, {}, ""}};
   for (const char* text :
