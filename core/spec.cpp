@@ -11,6 +11,7 @@
 #include "core/count.h"
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/text.h"
 
 namespace isoline {
 namespace {
@@ -49,10 +50,16 @@ std::string trim(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\n") - first + 1));
 }
 
+// Without a zero byte, which ends a text for the system and in the message that would name it.
+std::string clean(std::string_view text) {
+  require(text.find('\0') == text.npos, "a specification holds a zero byte, which ends any text");
+  return valid_utf8(text);
+}
+
 // A value as it is meant: a JSON string where it stands in double quotes, else as it is written.
 std::string unquoted(const std::string& value) {
   if (!value.starts_with('"')) return value;
-  return parse_json(value, "the value " + value).get<std::string>();
+  return clean(parse_json(value, "the value " + value).get<std::string>());
 }
 
 // A name and its options, each with all of its values.
@@ -82,7 +89,7 @@ Sweep sweep_of(const std::string& text) {
 
 std::vector<Sweep> sweeps_of(std::string_view text) {
   std::vector<Sweep> sweeps;
-  for (const std::string& part : split(text, ',')) sweeps.push_back(sweep_of(trim(part)));
+  for (const std::string& part : split(clean(text), ',')) sweeps.push_back(sweep_of(trim(part)));
   return sweeps;
 }
 
@@ -121,7 +128,6 @@ void expand(const Sweep& sweep, std::vector<Spec>& specs) {
   specs.push_back({.name = sweep.name, .options = {}});
   for (const auto& [key, values] : sweep.options) {
     std::vector<Spec> crossed;
-    crossed.reserve((specs.size() - first) * values.size());
     for (std::size_t i = first; i < specs.size(); ++i)
       for (const std::string& value : values)
         crossed.emplace_back(specs[i]).options.emplace_back(key, value);
@@ -139,9 +145,7 @@ T parse_number(std::string_view text, std::string_view whole, const char* expect
   return value;
 }
 
-struct SeedSpan {
-  std::uint64_t first, last;
-};
+using SeedSpan = std::pair<std::uint64_t, std::uint64_t>;  // the first and the last
 
 SeedSpan span_of(std::string_view part, std::string_view whole) {
   const auto number = [&](std::string_view digits) {
@@ -158,7 +162,7 @@ SeedSpan span_of(std::string_view part, std::string_view whole) {
     return {0, count - 1};
   }
   const SeedSpan span{number(part.substr(0, dots)), number(part.substr(dots + 2))};
-  require(span.first <= span.last, [&] { return fmt::format("seeds must rise, got '{}'", whole); });
+  if (span.first > span.second) throw UsageError(fmt::format("seeds must rise, got '{}'", whole));
   return span;
 }
 
@@ -213,14 +217,13 @@ std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most
   std::uint64_t count = 0;
   for (const std::string& part : split(text, ',')) {
     spans.push_back(span_of(part, text));
-    count = sum_of(count, sum_of(spans.back().last - spans.back().first, 1));
+    count = sum_of(count, sum_of(spans.back().second - spans.back().first, 1));
   }
   require(count <= most, [&] {
     return fmt::format("'{}' are {} seeds, at most {} can be given", text, count_text(count),
                        count_text(most));
   });
   std::vector<std::uint64_t> seeds;
-  seeds.reserve(count);
   for (const auto& [first, last] : spans)
     for (std::uint64_t i = 0; i <= last - first; ++i) seeds.push_back(first + i);
   return seeds;

@@ -3,6 +3,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <poll.h>
 
 #include <algorithm>
@@ -46,6 +47,7 @@ class Runner {
                       outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused,
                       jobs_);
     for (const Request* request : pending.queued()) progress.expect(predicted(*request));
+    malloc_trim(0);  // what planning freed: a fork copies the tables of all pages that are held
     while (guard.asked() != Asked::stop) {
       if (guard.asked() == Asked::nothing) start_some(progress);
       keep_judged(progress);

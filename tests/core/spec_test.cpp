@@ -46,6 +46,27 @@ TEST(Spec, AValueInDoubleQuotesIsAJsonStringWithLiteralCommasBarsAndBrackets) {
   EXPECT_EQ(options_of(nested).text("network-optimizer"), R"(process[command="x,]"])");
 }
 
+// Found by fuzzing: the message began with the name, and so ended before it had begun.
+TEST(Spec, AZeroByteIsRefusedInWords) {
+  for (const std::string& text :
+       {std::string("\0a[b=1,b=2]", 11), std::string(R"(a[b="1\u0000"])")}) {
+    std::string message;
+    try {
+      options_of(parse_spec(text));
+    } catch (const UsageError& refusal) {
+      message = refusal.what();
+    }
+    EXPECT_NE(message.find("a zero byte"), std::string::npos) << message;
+  }
+}
+
+// Found by fuzzing: JSON, which quotes what a comma would split, replaced them later.
+TEST(Spec, BytesThatAreNotUtf8AreReplacedOnEntry) {
+  const std::string value = parse_spec("a[b=\xff\"1,2\"]").options.at(0).second;
+  EXPECT_EQ(value, "\uFFFD\"1,2\"");
+  EXPECT_EQ(parse_spec("a[b=" + quoted(value) + "]").options.at(0).second, value);
+}
+
 TEST(Spec, AnyTextComesBackFromTheSpecThatIsMadeOfIt) {
   const OptionTable table{{"command", std::string("none"), {}, {}, ""}};
   for (const char* text :
