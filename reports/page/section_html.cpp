@@ -1,6 +1,8 @@
 // A section of a report as HTML: its sentences, its plots, its tables.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
 
@@ -23,11 +25,8 @@ std::string about(const std::vector<Topic>& topics, std::size_t i) {
 std::string head_html(const Table& table) {
   std::string html = "<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const bool has_meaning = i < table.meanings.size() && !table.meanings[i].empty();
-    html +=
-        fmt::format("<th scope=col{}{}>{}", about(table.column_topics, i),
-                    has_meaning ? fmt::format(" title=\"{}\"", html_text(table.meanings[i])) : "",
-                    html_text(table.columns[i]));
+    html += fmt::format("<th scope=col{}>{}", about(table.column_topics, i),
+                        html_text(table.columns[i]));
   }
   return html + "<tbody>\n";
 }
@@ -63,6 +62,16 @@ std::string rows_html(const Table& table) {
   return html;
 }
 
+// What the columns are, in words that need no pointing.
+std::string meanings_html(const Table& table) {
+  std::string html;
+  for (std::size_t i = 0; i < std::min(table.meanings.size(), table.columns.size()); ++i)
+    if (!table.meanings[i].empty())
+      html += fmt::format("{}<b>{}</b>: {}", html.empty() ? "" : " · ", html_text(table.columns[i]),
+                          html_text(table.meanings[i]));
+  return html.empty() ? "" : "<p class=legend>" + html + "</p>";
+}
+
 std::string table_html(const Table& table, const std::string& name) {
   std::string html;
   if (!table.title.empty())
@@ -78,7 +87,7 @@ std::string table_html(const Table& table, const std::string& name) {
       html_text(table.title.empty() ? name : table.title), head_html(table), rows_html(table));
   if (!table.caption.empty())
     html += fmt::format("<p class=legend>{}</p>", html_text(table.caption));
-  html += table.is_folded ? "</details>\n" : "\n";
+  html += meanings_html(table) + (table.is_folded ? "</details>\n" : "\n");
   const std::string topic = about({table.topic}, 0);
   return topic.empty() ? html : fmt::format("<div{}>{}</div>\n", topic, html);
 }
