@@ -3,10 +3,14 @@
 
 const CHOSEN = new Map();  // the lines that a reader chose, by problem
 
-// One of each kind, and the best of this problem, unless chosen otherwise.
+// The best two of this problem, and the best of each kind, unless chosen otherwise.
 function linesAtFirst(problem) {
-  const ranking = rankingOf(problem), kinds = new Set();
-  return new Set(ranking.filter((s, place) => place < 2 || (!kinds.has(DATA.kinds[s]) && LEADERS.includes(s))).filter((s) => kinds.add(DATA.kinds[s])));
+  const kinds = new Set();
+  return new Set(rankingOf(problem).filter((s, place) => {
+    const isFirst = !kinds.has(DATA.kinds[s]);
+    kinds.add(DATA.kinds[s]);
+    return place < 2 || isFirst;
+  }));
 }
 const linesShown = (p) => CHOSEN.get(p) ?? linesAtFirst(DATA.problems[p]);
 
