@@ -39,12 +39,13 @@ function extent(points, key) {
   return high > low ? [low, high] : [low, low === 0 ? 1 : low + Math.abs(low)];
 }
 
-// The methods that the paper's claims are about, else one of each kind. Not the tuned twins of
-// published settings.
+// The methods that the paper's claims are about, else one of each kind. Of a published setting and
+// its tuned twin the published one.
 function firstLines(figure) {
-  const untuned = figure.lines.map((line) => line.s).filter((s) => !DATA.optimizers[s].endsWith(', tuned'));
-  if (figure.paper.length > 0) return new Set(figure.paper);
-  return new Set(untuned.length <= MOST_LINES ? untuned : untuned.filter((s) => LEADERS.includes(s)));
+  const hasTwin = (s, all) => all.some((other) => DATA.optimizers[s] === `${DATA.optimizers[other]}, tuned`);
+  const single = (all) => all.filter((s) => !hasTwin(s, all)), own = single(figure.lines.map((line) => line.s));
+  if (figure.paper.length > 0) return new Set(single(figure.paper));
+  return new Set(own.length <= MOST_LINES ? own : own.filter((s) => LEADERS.includes(s)));
 }
 
 // The fence of Tukey (1977), three ranges of the middle half beyond it, in the logarithm where the
