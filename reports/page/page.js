@@ -62,9 +62,11 @@ function commandOf(row, again, budgets) {
       `--optimizer ${shellWord(optimizer.join(' ') || DATA.labels[Number(row.dataset.s)])} --seeds ${seeds} ${budgets[Number(budget)]}`;
 }
 
+// To those of the table's rows that stand in the page.
 function offerCopies(table) {
   const budgets = JSON.parse(table.dataset.budgets);
-  for (const cell of table.querySelectorAll('[data-again]')) {  // before the rows are put away
+  for (const cell of table.querySelectorAll('[data-again]')) {
+    if (cell.childElementCount > 0) continue;  // it has one
     const button = pressable('copy', undefined, () => copyText(button.title, button));
     button.className = 'copy';
     button.title = commandOf(cell.parentElement, cell.dataset.again, budgets);
@@ -87,8 +89,7 @@ ON_UNPACK.push((place) => {
   if (place.id !== 'cells') return;
   const table = place.querySelector('table'), wide = document.getElementById('wide');
   if (table === null) return;  // too many
-  offerCopies(table);
-  countRows = makeFilter(document.getElementById('filter'), table, document.getElementById('shown'));
+  countRows = makeFilter(document.getElementById('filter'), table, document.getElementById('shown'), () => offerCopies(table));
   document.querySelector('.filter').hidden = false;
   wide.addEventListener('change', () => table.classList.toggle('wide', wide.checked));
 });

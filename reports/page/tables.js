@@ -63,8 +63,9 @@ function makeSortable(table) {
   });
 }
 
-// Shows the rows that hold every word of the input, among those of the view; returns how to do so anew.
-function makeFilter(input, table, output) {
+// Shows the rows that hold every word of the input, among those of the view, and tells when they
+// stand there; returns how to do so anew.
+function makeFilter(input, table, output, onShown) {
   const texts = new Map(), all = pressable('', undefined, () => { most = Infinity; show(); });
   let most = MOST_IN_PAGE;
   const textOf = (row) => {
@@ -78,6 +79,7 @@ function makeFilter(input, table, output) {
     table.tBodies[0].replaceChildren(...wanted.slice(0, most));
     all.hidden = wanted.length <= most;
     all.textContent = `all ${wanted.length} rows`;
+    onShown();
     output.textContent = `${wanted.length} of ${rows.length} rows`;
   };
   LONG.set(table, {rows: [...table.tBodies[0].rows], show});

@@ -17,8 +17,10 @@ function unpack(place) {
 }
 const ON_UNPACK = [];  // what scripts add to what was unpacked
 
-function unpackAll(tab) {
-  tab.querySelectorAll('.packed').forEach(unpack);
+// But what is folded: that waits until it is opened.
+function unpackAll(place) {
+  for (const packed of place.querySelectorAll('.packed'))
+    if (packed.closest('details:not([open])') === null) unpack(packed);
 }
 
 // What an address names, though it be packed: the element, or the place that holds it.
@@ -60,6 +62,7 @@ function openAddress() {
     if (around.tagName === 'DETAILS') {
       around.open = true;
       unpack(around);
+      unpackAll(around);
     }
   refreshAll();
   document.documentElement.style.scrollPaddingTop = `${document.querySelector('.bars').offsetHeight + 6}px`;
@@ -67,18 +70,27 @@ function openAddress() {
   else place.scrollIntoView({behavior: 'instant'});
 }
 
+let isPrinting = false;
+
 function makeTabs() {
-  for (const claim of document.querySelectorAll('details.claim'))
-    claim.addEventListener('toggle', () => { if (claim.open) unpack(claim); });
+  document.addEventListener('toggle', ({target}) => {
+    if (target.open !== true) return;
+    if (target.matches('.claim')) unpack(target);
+    unpackAll(target);
+  }, true);
   addEventListener('hashchange', openAddress);
   document.addEventListener('click', (event) => {  // the same address again says the same
     const link = event.target.closest('a[href^="#"]');
     if (link !== null && link.hash === location.hash) openAddress();
   });
   addEventListener('beforeprint', () => {
+    isPrinting = true;
     document.querySelectorAll('.packed, .one, details.claim').forEach(unpack);
     document.querySelectorAll('details').forEach((details) => { details.dataset.wasOpen = details.open; details.open = true; });
     [...STALE].forEach(refresh);
   });
-  addEventListener('afterprint', () => document.querySelectorAll('details').forEach((details) => { details.open = details.dataset.wasOpen === 'true'; }));
+  addEventListener('afterprint', () => {
+    isPrinting = false;
+    document.querySelectorAll('details').forEach((details) => { details.open = details.dataset.wasOpen === 'true'; });
+  });
 }
