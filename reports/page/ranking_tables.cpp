@@ -72,6 +72,8 @@ std::string work_cell(const Comparison& c, const Cell& cell, std::size_t p, Real
                      matrix_text(c, cell, kTightest), count);
 }
 
+using Learned = std::map<std::size_t, EqualWork>;  // by problem
+
 // The error in x of a learned problem at equal work.
 std::string learned_cell(const Comparison& c, const EqualWork& equal, std::size_t p,
                          std::size_t s) {
@@ -115,14 +117,24 @@ Real least_work(const Comparison& c, std::size_t problem) {
   return least;
 }
 
+// By rank; where all is learned, by how often each is nearest in x at equal work.
+std::vector<std::size_t> best_first(const Comparison& c, const Learned& learned) {
+  std::vector<std::size_t> order, nearest(c.optimizers.size(), 0);
+  for (const auto& [problem, equal] : learned)
+    if (const auto ranked = equal.nearest_first(); !ranked.empty()) ++nearest[ranked.front()];
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) order.push_back(s);
+  if (is_all_learned(c))
+    std::ranges::stable_sort(order, std::ranges::greater{},
+                             [&](std::size_t s) { return nearest[s]; });
+  return order;
+}
+
 // By kind, those with the best method first; best first within.
-std::vector<std::size_t> by_kind(const Comparison& c) {
+std::vector<std::size_t> by_kind(const Comparison& c, const Learned& learned) {
+  std::vector<std::size_t> order = best_first(c, learned);
   std::map<std::string, std::size_t> first;
-  std::vector<std::size_t> order;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    first.emplace(c.optimizers[s].mathematics(), s);
-    order.push_back(s);
-  }
+  for (std::size_t place = 0; place < order.size(); ++place)
+    first.emplace(c.optimizers[order[place]].mathematics(), place);
   std::ranges::stable_sort(order, {},
                            [&](std::size_t s) { return first.at(c.optimizers[s].mathematics()); });
   return order;
@@ -139,13 +151,21 @@ std::string standings_html(const Comparison& c) {
       "<th scope=col>runs<th scope=col>failed<tbody>\n",
       tau_name(c), counted_name(c), common_noun(c));
   const std::vector<Interval> intervals = score_intervals(c);
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += standing_row(c, s, intervals[s]);
-  return html + "</table>" + more_button("standings-table", c.optimizers.size(), kShownAtFirst);
+  std::size_t rows = 0;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    if (c.optimizers[s].tightest().settings == 0) continue;  // it learns alone
+    html += standing_row(c, s, intervals[s]);
+    ++rows;
+  }
+  if (rows == 0 || is_all_learned(c))
+    return "<p class=lead>Nothing here is ranked by work: what was learned is told by its error in "
+           "x.</p>";
+  return html + "</table>" + more_button("standings-table", rows, kShownAtFirst);
 }
 
 std::string heat_html(const Comparison& c) {
   std::vector<Real> least;
-  std::map<std::size_t, EqualWork> learned;
+  Learned learned;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     least.push_back(least_work(c, p));
     if (c.problems[p].is_learned) learned.emplace(p, equal_work(c, p));
@@ -157,7 +177,7 @@ std::string heat_html(const Comparison& c) {
   html += heat_head(c);
   std::string kind;
   std::size_t kinds = 0;
-  for (const std::size_t s : by_kind(c)) {
+  for (const std::size_t s : by_kind(c, learned)) {
     const OptimizerAxis& optimizer = c.optimizers[s];
     const bool is_first = optimizer.mathematics() != std::exchange(kind, optimizer.mathematics());
     kinds += is_first;

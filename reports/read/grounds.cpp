@@ -46,7 +46,11 @@ std::size_t asked_of(const Comparison& c, const std::vector<std::size_t>& settin
 }  // namespace
 
 bool is_ordered(const Comparison& c, std::size_t p) {
-  return !c.problems[p].is_learned || std::ranges::all_of(c.problems, &ProblemAxis::is_learned);
+  return !c.problems[p].is_learned || is_all_learned(c);
+}
+
+bool is_all_learned(const Comparison& c) {
+  return std::ranges::all_of(c.problems, &ProblemAxis::is_learned);
 }
 
 Order common_order(const Comparison& c) {

@@ -10,6 +10,7 @@ namespace isoline::reports {
 // Whether a problem counts for an order: a tolerance of the loss says little of a network, so what
 // is learned is told apart, by its error in x, unless a study holds nothing else.
 bool is_ordered(const Comparison& comparison, std::size_t problem);
+bool is_all_learned(const Comparison& comparison);
 
 // The order of most methods. A setting is shared where more than half of the methods were given it;
 // a method is ranked that was given at least half of the shared ones; common are the settings that

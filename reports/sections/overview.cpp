@@ -173,8 +173,7 @@ std::vector<std::string> verdict(const Comparison& c) {
     return std::ranges::any_of(
         row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
   });
-  const bool is_all_learned = std::ranges::all_of(c.problems, &ProblemAxis::is_learned);
-  if (is_all_learned && !c.problems.empty()) return learned_sentences(c);
+  if (is_all_learned(c) && !c.problems.empty()) return learned_sentences(c);
   if (!is_any_solved)
     return {fmt::format("No optimizer solves any of the problems to {}.", tau_name(c))};
   if (!has_order(c) || !c.lead) return problem_sentences(c);

@@ -383,6 +383,8 @@ class Learned(unittest.TestCase):
                 self.assertIn("nearest in x", verdict)
                 heat = page.run("return document.querySelector('#heat').innerText")
                 self.assertIn("learned: error in x", heat)
+                self.assertIn("Nothing here is ranked by work",
+                              page.run("return document.getElementById('overview').innerText"))
                 cells = page.run("return [...document.querySelectorAll('#heat td[data-p]')]"
                                  ".map((cell) => cell.innerText)")
                 self.assertTrue(all(float(cell) > 0 for cell in cells), cells)
