@@ -72,11 +72,13 @@ function standingsAt(measure, target) {
 }
 const standingsNow = () => standingsAt(view.measure, view.target);
 
-// One of each kind, the best of it at the report's own tolerance, in order of rank.
-const LEADERS = (() => {
+// The first of each kind in a list that stands best first.
+function firstOfEachKind(ranking) {
   const kinds = new Set();
-  return DATA.kinds.map((kind, s) => ({kind, s})).filter(({kind}) => !kinds.has(kind) && kinds.add(kind)).map(({s}) => s);
-})();
+  return ranking.filter((s) => !kinds.has(DATA.kinds[s]) && kinds.add(DATA.kinds[s]));
+}
+// At the report's own tolerance, of all.
+const LEADERS = firstOfEachKind([...DATA.kinds.keys()]);
 
 // The optimizers of a problem, best first: of a learned one by its error in x at equal work.
 function rankingOf(problem) {

@@ -76,13 +76,15 @@ function least(values) {
   return values.reduce((low, value) => (value > 0 && value < low ? value : low), Infinity);
 }
 
+// What the curve had taken at each of its points, by the measure of the page.
+const takenAlong = (curve) => curve[measureNow().name];
+
 // Of a direct problem the best loss so far, which holds until a better one is evaluated: a staircase
-// through the very medians of the tables, so that a line crosses τ where the table says. Points
-// between and beyond them come from the kept iterations.
-function stairs(curve, cell, vertical) {
-  const key = measureNow().name, xs = curve[key === 'iterations' ? 'iterations' : key], points = [];
-  if (xs === undefined) return points;
-  const medians = vertical === 'gap' ? mediansOf(cell, view.measure) : [];
+// through the very medians of the tables where these are of the loss, so that a line crosses τ where
+// the table says. Points between and beyond them come from the kept iterations.
+function stairs(curve, cell, {problem, vertical}) {
+  const xs = takenAlong(curve), points = [];
+  const medians = vertical === 'gap' && problem.goal === undefined ? mediansOf(cell, view.measure) : [];
   const first = medians[0] ?? Infinity, last = medians[medians.length - 1] ?? -Infinity;
   const keep = (x, i) => curve[vertical][i] !== null && x !== null && (x < first || x > last);
   xs.forEach((x, i) => { if (keep(x, i)) points.push({x, y: curve[vertical][i]}); });
@@ -90,8 +92,7 @@ function stairs(curve, cell, vertical) {
   points.sort((a, b) => a.x - b.x || b.y - a.y);
   if (vertical === 'gap')
     for (let i = 1; i < points.length; ++i) points[i].y = Math.min(points[i].y, points[i - 1].y);
-  const ends = points.filter((point, i) => i === 0 || i === points.length - 1 || point.y !== points[i - 1].y);
-  return ends;
+  return points.filter((point, i) => i === 0 || i === points.length - 1 || point.y !== points[i - 1].y);
 }
 
 // Zero has no logarithm: it is drawn below all others, and what is below the floor on the floor.
@@ -101,21 +102,20 @@ const LOWEST = 1e-12;  // of a loss gap or error: below lies rounding
 function linesOf(state) {
   const {problem, vertical} = state;
   return problem.curves.filter((curve) => state.visible.has(curve.s) && isShown('s', curve.s) && curve[vertical] !== undefined)
-      .map((curve) => ({curve, points: problem.learned === undefined || vertical === 'gap' && problem.isOrdered
-          ? stairs(curve, cellOf(problem, curve.s), vertical) : pointsAlong(curve, vertical)}));
+      .map((curve) => ({curve, points: problem.learned === undefined
+          ? stairs(curve, cellOf(problem, curve.s), state) : pointsAlong(curve, vertical)}));
 }
 
 // Of a learned problem what the network of each kept iteration is worth.
 function pointsAlong(curve, vertical) {
-  const xs = curve[measureNow().name === 'iterations' ? 'iterations' : measureNow().name];
-  return xs.map((x, i) => ({x, y: curve[vertical][i]})).filter(({x, y}) => x !== null && y !== null);
+  return takenAlong(curve).map((x, i) => ({x, y: curve[vertical][i]})).filter(({x, y}) => x !== null && y !== null);
 }
 
 // The range over seeds, where the curve has one: two unseen stairs with what is between them filled.
 function bandDatasets(curve, state, place) {
   const low = curve[`${state.vertical}_low`], high = curve[`${state.vertical}_high`];
   if (low === undefined || state.visible.size > FEW) return [];
-  const xs = curve[measureNow().name === 'iterations' ? 'iterations' : measureNow().name];
+  const xs = takenAlong(curve);
   const band = {
     bandOf: curve.s, borderWidth: 0, pointRadius: 0, pointHitRadius: 0, pointHoverRadius: 0, showLine: true, stepped: true,
     backgroundColor: colourOf(curve.s) + BAND, order: 4,

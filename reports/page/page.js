@@ -11,23 +11,14 @@ function pressable(text, isPressed, onPress) {
 }
 
 // A group of buttons of which one is pressed. choices: {value: label}.
-function fillSwitch(group, caption, choices, chosen, onChoose) {
-  const label = document.createElement('span');
-  label.textContent = caption;
+function newSwitch(caption, choices, chosen, onChoose) {
   const buttons = Object.entries(choices).map(([value, text]) => pressable(text, value === chosen, (event) => {
     buttons.forEach((button) => button.setAttribute('aria-pressed', button === event.currentTarget));
     onChoose(value);
   }));
-  group.replaceChildren(label, ...buttons);
-  group.hidden = false;
-}
-
-function newSwitch(caption, choices, chosen, onChoose) {
-  const group = document.createElement('div');
-  group.className = 'switch';
+  const group = element('div', {className: 'switch'}, element('span', {}, caption), ...buttons);
   group.setAttribute('role', 'group');
   group.setAttribute('aria-label', caption);
-  fillSwitch(group, caption, choices, chosen, onChoose);
   return group;
 }
 

@@ -5,12 +5,8 @@ const CHOSEN = new Map();  // the lines that a reader chose, by problem
 
 // The best two of this problem, and the best of each kind, unless chosen otherwise.
 function linesAtFirst(problem) {
-  const kinds = new Set();
-  return new Set(rankingOf(problem).filter((s, place) => {
-    const isFirst = !kinds.has(DATA.kinds[s]);
-    kinds.add(DATA.kinds[s]);
-    return place < 2 || isFirst;
-  }));
+  const ranking = rankingOf(problem);
+  return new Set([...ranking.slice(0, 2), ...firstOfEachKind(ranking)]);
 }
 const linesShown = (p) => CHOSEN.get(p) ?? linesAtFirst(DATA.problems[p]);
 

@@ -287,6 +287,16 @@ class Page(unittest.TestCase):
                 ".filter((set) => set.optimizer !== undefined).every((set) => set.stepped)")
             self.assertTrue(stepped, "points are joined straight")
 
+    def test_a_loss_is_not_drawn_by_when_x_was_found(self):
+        p = self.problem("square")  # whose user wants x
+        self.open(f"#problem-{p}")
+        self.browser.wait(IS_DRAWN, f"#problem-{p} .curves")
+        self.assertTrue(self.browser.run(
+            "const problem = DATA.problems[arguments[0]];"
+            "return problem.goal !== undefined && problem.curves.every((curve) => stairs(curve, "
+            "cellOf(problem, curve.s), {problem, vertical: 'gap'}).every(({y}) => "
+            "curve.gap.includes(y)))", p))
+
     def test_planes_are_drawn_to_scale(self):
         p = self.problem("scaling")
         self.open(f"#problem-{p}")
