@@ -29,7 +29,4 @@ std::string kind_rules(const Comparison& comparison);
 // A short line in the colour and dash of the element around it.
 std::string swatch();
 
-// A button that shows the rows of class `rest`; empty where there are none.
-std::string more_button(const std::string& table, std::size_t all, std::size_t shown);
-
 }  // namespace isoline::reports

@@ -106,6 +106,7 @@ constexpr Script kScripts[] = {
 
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
+  const std::vector<Interval> intervals = score_intervals(c);
   std::map<std::string, std::string, std::less<>> parts = {
       {"style",
        std::string(embedded_page_css()).append(embedded_parts_css()).append(embedded_plots_css())},
@@ -118,7 +119,7 @@ std::string html_report(const Document& document) {
       {"overview", overview_html(document)},
       {"endings", endings_html(c)},
       {"remarks", remarks_html(document)},
-      {"standings", standings_html(c)},
+      {"standings", standings_html(c, intervals)},
       {"heat", heat_html(c)},
       {"profile", profile_html(c)},
       {"details", details_html(c)},
@@ -127,7 +128,7 @@ std::string html_report(const Document& document) {
       {"problems", problems_html(c)},
       {"methods", methods_html(c)},
       {"optimizers", optimizers_html(c)},
-      {"data", page_data(document)}};
+      {"data", page_data(document, intervals)}};
   for (const Script& script : kScripts) parts.emplace(script.name, script.text());
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));

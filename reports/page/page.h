@@ -5,6 +5,7 @@
 #include <string>
 
 #include "reports/sections/document.h"
+#include "reports/sections/scores.h"
 
 namespace isoline::reports {
 
@@ -18,7 +19,8 @@ std::string plot_svg(const Plot& plot);
 // What the scripts redraw, and what no other format has.
 std::string overview_html(const Document& document);     // alerts, verdict, what is settled
 std::string endings_html(const Comparison& comparison);  // how the runs ended
-std::string standings_html(const Comparison& comparison);
+// With the intervals of scores, which the scripts draw too.
+std::string standings_html(const Comparison& comparison, const std::vector<Interval>& intervals);
 std::string heat_html(const Comparison& comparison);  // what each took on each problem, by kind
 std::string details_html(const Comparison& comparison);
 std::string problems_html(const Comparison& comparison);    // one article each
@@ -28,7 +30,7 @@ std::string figures_html(const Document& document);
 std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
 
 // What the charts draw, as JSON that is safe inside a script element.
-std::string page_data(const Document& document);
+std::string page_data(const Document& document, const std::vector<Interval>& intervals);
 std::string figures_json(const std::vector<Figure>& figures);
 std::string json_quoted(const std::string& text);
 

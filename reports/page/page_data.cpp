@@ -13,7 +13,6 @@
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
 #include "reports/sections/measure_words.h"
-#include "reports/sections/scores.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -67,8 +66,7 @@ std::string standings_json(const Comparison& c, const Ladders& ladders) {
 }
 
 // What does not change from target to target: [settings, runs, failed, score's interval].
-std::string given_json(const Comparison& c) {
-  const std::vector<Interval> intervals = score_intervals(c);
+std::string given_json(const Comparison& c, const std::vector<Interval>& intervals) {
   std::vector<std::size_t> all;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.push_back(s);
   return list(all, [&](std::size_t s) {
@@ -127,7 +125,7 @@ std::string safe(const std::string& text) {
 
 }  // namespace
 
-std::string page_data(const Document& document) {
+std::string page_data(const Document& document, const std::vector<Interval>& intervals) {
   const Comparison& c = document.comparison;
   const Ladders ladders(c);
   std::string text = fmt::format(
@@ -136,7 +134,7 @@ std::string page_data(const Document& document) {
       name_of(c.yardstick.by), measures_json(c), c.is_any_timed_together,
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
-      indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
+      indices(targets_of(c)), axes_json(c), given_json(c, intervals), indices(c.order.methods),
       claims_about(document), figures_json(document.figures), standings_json(c, ladders));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_data(c, ladders, p);

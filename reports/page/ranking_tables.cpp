@@ -13,7 +13,6 @@
 #include "reports/read/equal_work.h"
 #include "reports/read/grounds.h"
 #include "reports/sections/measure_words.h"
-#include "reports/sections/scores.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -80,7 +79,7 @@ std::string learned_cell(const Comparison& c, const EqualWork& equal, std::size_
   if (!equal.methods[s]) return work_cell(c, c.cell(p, s), p, 0);
   const Spread& error = equal.methods[s]->x_error;
   if (!error.is_solved()) return fmt::format("<td data-p={} class=no>✗", p);
-  const Real least = equal.methods[equal.nearest_first().front()]->x_error.median;
+  const Real least = equal.least_x_error();
   return fmt::format("<td data-p={} class={}>{}", p,
                      error.median == least ? "\"h0 best\"" : heat_class(error.median, least, 0),
                      figure(error.median));
@@ -140,9 +139,18 @@ std::vector<std::size_t> by_kind(const Comparison& c, const Learned& learned) {
   return order;
 }
 
+// A button that shows the rows of class `rest`; empty where there are none.
+std::string more_button(const std::string& table, std::size_t all, std::size_t shown) {
+  if (all <= shown) return "";
+  return fmt::format(
+      "<p><button class=more type=button data-table={} data-less=\"the first {}\" hidden>all "
+      "{}</button></p>",
+      table, shown, all);
+}
+
 }  // namespace
 
-std::string standings_html(const Comparison& c) {
+std::string standings_html(const Comparison& c, const std::vector<Interval>& intervals) {
   std::string html = fmt::format(
       "<table class=\"standings sortable folded\" id=standings-table><caption>Standings to {} by "
       "{}</caption>"
@@ -150,7 +158,6 @@ std::string standings_html(const Comparison& c) {
       "<th scope=col>score<th scope=col>{}s solved<th scope=col>best on<th scope=col>× least"
       "<th scope=col>runs<th scope=col>failed<tbody>\n",
       tau_name(c), counted_name(c), common_noun(c));
-  const std::vector<Interval> intervals = score_intervals(c);
   std::size_t rows = 0;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     if (c.optimizers[s].tightest().settings == 0) continue;  // it learns alone
@@ -192,14 +199,6 @@ std::string heat_html(const Comparison& c) {
     html += "\n";
   }
   return html + "</table>" + more_button("heat", c.optimizers.size(), kinds);
-}
-
-std::string more_button(const std::string& table, std::size_t all, std::size_t shown) {
-  if (all <= shown) return "";
-  return fmt::format(
-      "<p><button class=more type=button data-table={} data-less=\"the first {}\" hidden>all "
-      "{}</button></p>",
-      table, shown, all);
 }
 
 }  // namespace isoline::reports

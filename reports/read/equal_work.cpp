@@ -44,6 +44,13 @@ std::vector<std::size_t> EqualWork::nearest_first() const {
   return order;
 }
 
+Real EqualWork::least_x_error() const {
+  Real least = kNever;
+  for (const auto& method : methods)
+    if (method) least = std::min(least, method->x_error.median);
+  return least;
+}
+
 EqualWork equal_work(const Comparison& c, std::size_t problem) {
   EqualWork all{.work = kNever, .methods = {}};
   for (const Cell& cell : c.cells[problem])

@@ -18,6 +18,7 @@ struct EqualWork {
 
   // Who measured something, least error in x first.
   std::vector<std::size_t> nearest_first() const;
+  Real least_x_error() const;  // infinite where no median is finite
 };
 // Of each run the last kept point that had spent no more. A run that ended sooner of its own keeps
 // its last point.
