@@ -167,6 +167,7 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
   sheet.unknowns = problem.unknowns();
   sheet.residuals = problem.residuals();
   sheet.target = small(problem.target());
+  sheet.field = problem.field();
   sheet.condition = condition_of(problem);
   if (problem.truth()) sheet.truth = small(*problem.truth());
   if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
