@@ -32,16 +32,15 @@ function sideBars(told) {
 // Each method against itself: where NEW needs more stands first.
 function sideTable(redraw) {
   const rows = SIDES.map(([a, b, name], i) => ({name, i, told: pairOf(a, b)})).filter(({told}) => told.names.length > 0)
-      .sort((x, y) => x.told.typical < y.told.typical ? 1 : x.told.typical > y.told.typical ? -1 : 0);
+      .sort((x, y) => y.told.typical - x.told.typical);
   const body = rows.map(({name, i, told}) => element('tr', {},
       element('th', {scope: 'row'}, pressable(name, undefined, () => { side.chosen = i; redraw(); })),
       ...[multiple(told.typical), `${multiple(told.low)} to ${multiple(told.high)}`, told.losses, told.wins, told.ties].map((text) => element('td', {}, String(text)))));
-  const heads = ['method', 'NEW over BASE', told95(rows), 'NEW needs less', 'more', 'the same'];
-  return element('table', {className: 'prices'}, element('caption', {}, `Median factor of ${measureNow().counted} to τ = ${tauName(view.target)}, and problems on which NEW needs less, more, the same`),
+  const heads = ['method', 'NEW over BASE', '95 % interval', 'NEW needs less', 'more', 'the same'];
+  const caption = `Median factor of ${measureNow().counted} to τ = ${tauName(view.target)}, its interval (of fewer than six problems the range), and on how many problems NEW needs less, more, the same`;
+  return element('table', {className: 'prices'}, element('caption', {}, caption),
       element('thead', {}, element('tr', {}, ...heads.map((text) => element('th', {scope: 'col'}, text)))), element('tbody', {}, ...body));
 }
-// Of fewer than six problems the range stands for the interval of the median.
-const told95 = (rows) => (rows.every(({told}) => told.names.length >= 6) ? '95 % interval' : '95 % interval, of fewer than 6 problems the range');
 
 function sideSentence(told) {
   const {wins, losses, ties, neither, typical, low, high} = told, n = told.names.length, who = side.chosen < 0 ? '' : `${SIDES[side.chosen][2]}: `;
