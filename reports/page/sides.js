@@ -47,8 +47,8 @@ function sideSentence(told) {
   if (n === 0) return `${who}neither result solves a problem that both have to τ = ${tauName(view.target)}.`;
   const range = n < 6 ? `range of ${n}` : '95 % interval', isOpen = low <= 1 && high >= 1;
   const rest = neither > 0 ? `; neither solves ${neither} more` : '';
-  if (wins + losses === 0) return `${who}NEW needs the same ${measureNow().counted} as BASE on all ${n} problems${rest}.`;
-  return `${who}NEW needs less ${measureNow().counted} than BASE on ${losses} of ${n} problems, more on ${wins}, the same on ${ties}${rest}. ` +
+  if (wins + losses === 0) return `${who}NEW needs the same ${measureNow().counted} as BASE on ${n === 1 ? 'the one problem' : `all ${n} problems`} that either solves${rest}.`;
+  return `${who}NEW needs less ${measureNow().counted} than BASE on ${losses} of ${n} ${n === 1 ? 'problem' : 'problems'}, more on ${wins}, the same on ${ties}${rest}. ` +
       `Median factor, NEW over BASE: ${multiple(typical)} (${range} ${multiple(low)} to ${multiple(high)})${isOpen || n < 6 ? ': not settled.' : '.'}`;
 }
 
