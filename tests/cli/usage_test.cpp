@@ -70,6 +70,7 @@ const std::vector<Mistake> kMistakes = {
     {"run --problm=square", "unknown option --problm; did you mean --problem?"},
     {"run quick twice", "run takes no further argument, got 'twice'"},
     {"run --problem", "--problem needs a value"},
+    {"run --seeds 3 --seeds 4", "--seeds is given more than once"},
     {"describe adan", "no problem, optimizer or network 'adan'; did you mean 'adam'?"},
     {"describe zzzz", "`isoline list` names them all"},
     {"audit zzzz", "unknown optimizer 'zzzz', which is like none of the "},
