@@ -1,0 +1,54 @@
+// The published figures of half-inverse gradients on the linear chain: the loss over the training
+// data after each epoch, as the book's notebook prints it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/optimizers/run.h"
+
+namespace isoline::optimizers {
+namespace {
+
+using problems::Batch;
+using problems::Point;
+
+Problem chain(std::uint64_t seed) {
+  ProblemRegistry registry("problem");
+  register_problems(registry);
+  const ProblemEntry& entry = registry.at("linear-chain");
+  const Spec spec = parse_spec("linear-chain[mode=learn,loss=square]");
+  return entry.make(complete_options(entry.options, entry.name, options_of(spec)),
+                    Draw(seed, entry.name));
+}
+
+// ‖y − y*‖², the mean over all 4,096 samples.
+Real training_loss(const Problem& problem, const Vector& theta) {
+  constexpr Index kBatches = 4096 / 32;
+  Batch batch;
+  Point at;
+  Real sum = 0;
+  for (Index step = 0; step < kBatches; ++step) {
+    problem.draw_batch(step, batch);
+    problem.forward(theta, batch, at);
+    sum += at.loss / kBatches;
+  }
+  return sum;
+}
+
+// η = 1, B = 32, κ = ½, a cut-off of 1e-10, 128 steps an epoch.
+TEST(Chain, HalfInverseGradientsReachThePublishedLossesEpochByEpoch) {
+  constexpr std::array kPublished = {5.44e-5, 1.06e-5, 3.16e-6, 1.19e-6};
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    const Problem problem = chain(seed);
+    const Outcome outcome = run(problem, "hig[rate=1,cutoff=1e-10]", {.iterations = 512});
+    for (std::size_t epoch = 0; epoch < kPublished.size(); ++epoch) {
+      const Real loss = training_loss(problem, outcome.path.at(128 * (epoch + 1) - 1));
+      EXPECT_LT(std::abs(std::log2(loss / kPublished[epoch])), 1) << seed << " " << epoch;
+      printf("%d %zu %g\n", (int)seed, epoch, loss);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace isoline::optimizers
