@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/lanes.h"
+#include "problems/sample_lanes.h"
 
 namespace isoline::problems {
 namespace {
