@@ -26,16 +26,17 @@ class LinearChain final : public Oscillators {
  public:
   LinearChain() : Oscillators({.linear = 0.2, .cubic = 0, .gain = 1}, kSteps, 0.5) {
     Workspace w;
-    Phi_.resize(4, 4);
-    forward(Matrix::Zero(kSteps, 4), Matrix::Identity(4, 4), Phi_, w);
-    A_.resize(4, kSteps);
-    forward(Matrix::Identity(kSteps, kSteps), Matrix::Zero(4, kSteps), A_, w);
+    Matrix A(4, kSteps), Phi(4, 4);
+    forward(Matrix::Identity(kSteps, kSteps), Matrix::Zero(4, kSteps), A, w);
+    forward(Matrix::Zero(kSteps, 4), Matrix::Identity(4, 4), Phi, w);
     Svd svd;
-    require(thin_svd(A_, svd), "the chain's Jacobian has no singular values");
+    require(thin_svd(A, svd), "the chain's Jacobian has no singular values");
     constexpr Real kCutoff = 1e-5;
     const Vector kept =
         (svd.sigma.array() > kCutoff * svd.sigma[0]).select(svd.sigma.cwiseInverse(), 0);
     A_plus_ = svd.Vt.transpose() * kept.asDiagonal() * svd.U.transpose();
+    A_plus_A_ = A_plus_ * A;
+    A_plus_Phi_ = A_plus_ * Phi;
   }
 
   bool has_curvature() const override { return true; }
@@ -46,24 +47,24 @@ class LinearChain final : public Oscillators {
 
   Inverse inverse_kind() const override { return Inverse::exact; }
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const override {
-    x.noalias() = x0 + step(y, x0, c);
+    x = x0;
+    x.noalias() += A_plus_ * y;
+    x.noalias() -= A_plus_A_ * x0;
+    x.noalias() -= A_plus_Phi_ * c;
     return Success::Constant(y.cols(), true);
   }
 
-  // From x to the nearest control that reaches y.
-  Matrix step(BatchRef y, BatchRef x, BatchRef c) const {
-    return A_plus_ * (y - A_ * x - Phi_ * c);
-  }
-
  private:
-  Matrix A_, Phi_, A_plus_;  // (4, T), (4, 4), (T, 4)
+  Matrix A_plus_, A_plus_A_, A_plus_Phi_;  // (T, 4), (T, T), (T, 4)
 };
 
 ProblemParts make_linear_chain(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const LinearChain>();
   ProblemParts parts = return_to_start(o.common, std::make_unique<LinearChain>(), draw);
   parts.x_error = [physics](BatchRef x, const Batch& batch) {
-    return physics->step(batch.target, x, batch.context).colwise().norm().mean();
+    Matrix nearest(x.rows(), x.cols());
+    physics->local_inverse(batch.target, x, batch.context, nearest);
+    return (nearest - x).colwise().norm().mean();
   };
   return parts;
 }

@@ -1,7 +1,7 @@
 // The oscillators' steps, their derivatives, and the data.
 #include "problems/oscillators.h"
 
-#include "problems/lanes.h"
+#include "problems/sample_lanes.h"
 #include "problems/watches.h"
 
 namespace isoline::problems {

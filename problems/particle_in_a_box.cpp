@@ -1,10 +1,11 @@
 // The particle's steps, their derivatives, and what is missing at a state.
 #include "problems/particle_in_a_box.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "problems/lanes.h"
+#include "problems/sample_lanes.h"
 
 namespace isoline::problems {
 namespace {
@@ -199,20 +200,19 @@ void ParticleInABox::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
 void ParticleInABox::jacobian(BatchOut J, Workspace& w) const {
   const Index samples = J.cols() / kSteps;
   Passes passes(w, samples);
-  std::vector<State> rho(kPoints);
+  std::array<State, kPoints> rho;
   by_lanes(samples, [&](Index group, Index first, Index count) {
     gather(w.x, first, count, passes.controls);
-    for (Index j = 0; j < kPoints; ++j) {
-      rho[j].setZero();
-      rho[j].col(2 * j).setOnes();
-    }
-    State derivatives, nu;
+    for (Index j = 0; j < kPoints; ++j)
+      put({Lanes::Ones(), Lanes::Zero()}, j, rho[j] = State::Zero());
+    State phi, nu, derivatives;
     for (Index t = kSteps; t-- > 0;) {
       const Factorized M(lanes_at(passes.controls, t), 1);
+      phi = passes.phi(group, t);
       for (Index j = 0; j < kPoints; ++j) {
         nu = rho[j];
         M.solve(nu);
-        put(derivative(passes.phi(group, t), nu), j, derivatives);
+        put(derivative(phi, nu), j, derivatives);
         rho[j] = 2 * nu - rho[j];
       }
       for (Index b = 0; b < count; ++b)
@@ -225,11 +225,11 @@ void ParticleInABox::jacobian(BatchOut J, Workspace& w) const {
 // y ← (I − aaᵀ) y for `columns` of each sample
 void ParticleInABox::project(BatchRef a, Index columns, BatchOut y) const {
   if (output_ == Output::state) return;
-  for (Index b = 0; b < a.cols(); ++b) {
-    const Eigen::VectorXcd direction = a.col(b).cast<std::complex<Real>>();
-    ComplexBatchOut states = complex_in(y.middleCols(b * columns, columns));
-    const Eigen::RowVectorXcd shares = direction.transpose() * states;
-    states -= direction * shares;
+  ComplexBatchOut states = complex_in(y);
+  for (Index i = 0; i < states.cols(); ++i) {
+    const Index b = i / columns;
+    const std::complex<Real> share = states.col(i).cwiseProduct(a.col(b)).sum();
+    states.col(i) -= share * a.col(b);
   }
 }
 

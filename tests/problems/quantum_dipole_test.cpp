@@ -143,7 +143,7 @@ TEST(QuantumDipole, DerivativesAreThoseOfTheStepsForEverySample) {
         (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
     EXPECT_LT((difference - Jv).norm(), 1e-9 * Jv.norm());
     for (Index b = 0; b < 9; ++b) {
-      const auto of = J.middleCols(b * kSteps, kSteps);
+      const Matrix of = J.middleCols(b * kSteps, kSteps);
       EXPECT_LT((of * v.col(b) - Jv.col(b)).norm(), 1e-12 * Jv.norm());
       EXPECT_LT((of.transpose() * r.col(b) - JTr.col(b)).norm(), 1e-12 * JTr.norm());
     }
