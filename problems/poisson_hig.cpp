@@ -32,9 +32,10 @@ class PoissonHig final : public Physics {
   void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { apply(v, Jv); }
   void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { apply(u, JTu); }
   // The same of each sample.
-  void jacobian(BatchOut J, Workspace&) const override {
+  void jacobian(BatchOut J, Workspace& w) const override {
     const Index k = inputs();
-    laplacian_.apply(Matrix::Identity(k, k), J.leftCols(k));
+    w.unit.setIdentity(k, k);
+    laplacian_.apply(w.unit, J.leftCols(k));
     for (Index first = k; first < J.cols(); first += k) J.middleCols(first, k) = J.leftCols(k);
   }
   bool has_curvature() const override { return true; }
