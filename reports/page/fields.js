@@ -15,7 +15,7 @@ function showPicture(image, address, alt) {
 function showStep(figure, {found, head, truth}, step) {
   const at = Math.min(step, found.iterations.length) - 1, cells = bytesOf(found.x[at]);
   const [x, missing] = figure.querySelectorAll('img'), of = `of ${DATA.optimizers[found.s]} at iteration ${found.iterations[at]}`;
-  const apart = found.apart[at] === '' ? '' : `, ‖x − x*‖ = ${found.apart[at]} ‖x*‖`;
+  const apart = found.apart[at] === '' ? '' : `, ‖x − x*‖ ${found.apart[at]} ‖x*‖`;
   showPicture(x, `data:image/bmp;base64,${head}${found.x[at]}`, `x ${of}${apart}`);
   figure.querySelector('.at').textContent = found.iterations[at];
   if (missing === undefined) return;

@@ -48,8 +48,11 @@ std::string range_of(std::span<const float> values) {
   return fmt::format("from {} to {}", short_figure(low), short_figure(high));
 }
 
+// "= 0.66": what ‖x − x*‖ is, in ‖x*‖. Below the last digits of single precision nothing is said.
 std::string apart_text(const FoundField& found, std::size_t i) {
-  return found.apart.empty() ? "" : short_figure(found.apart[i]);
+  constexpr Real kResolved = 1e-7;
+  if (found.apart.empty()) return "";
+  return found.apart[i] < kResolved ? "< 1e-7" : "= " + short_figure(found.apart[i]);
 }
 
 std::string given_html(const FoundFields& all) {
@@ -61,8 +64,8 @@ std::string given_html(const FoundFields& all) {
     pictures += picture(all, cells_of(all, frames.truth(), all.x_scale), "x*",
                         fmt::format("x*: {}, {}", named(all.x), range_of(frames.truth())));
   return fmt::format(
-      "<figure class=given><div class=two>{}</div><figcaption><b>What is given{}</b> {}; colours "
-      "of y* end at ±{}.</figcaption></figure>",
+      "<figure class=given><div class=two>{}</div><figcaption><b>What is given{}.</b> {}; its colours "
+      "end at ±{}.</figcaption></figure>",
       pictures, frames.has_truth() ? ", and what is sought" : "",
       html_text("y* is the " + named(all.y)), short_figure(all.y_scale));
 }
@@ -78,8 +81,8 @@ std::string found_html(const Comparison& c, const FoundFields& all, const FoundF
     const std::vector<float> rest = difference(x, found.frames.truth());
     pictures += picture(all, cells_of(all, rest, all.x_scale), "x − x*",
                         fmt::format("x − x* of {}, {}", name, range_of(rest)));
-    apart =
-        fmt::format(", ‖x − x*‖ = <output class=apart>{}</output> ‖x*‖", apart_text(found, last));
+    apart = fmt::format(", <span class=norm>‖x − x*‖ <output class=apart>{}</output> ‖x*‖</span>",
+                        html_text(apart_text(found, last)));
   }
   return fmt::format(
       "<figure data-s={}><div class=two>{}</div><figcaption>{}<b>{}</b>{} {}: iteration <output "
@@ -111,11 +114,12 @@ std::string reading_of(const Comparison& c, const FoundFields& all) {
   if (!all.frames().has_truth()) return text;
   const auto end = [](const FoundField& found) { return found.apart.back(); };
   const auto [least, most] = std::ranges::minmax_element(all.found, {}, end);
-  const auto name = [&](const auto& at) { return shown_spec(c.optimizers[at->optimizer].brief); };
-  text += fmt::format(" In the end x of {} is nearest to x*: ‖x − x*‖ = {} ‖x*‖", name(least),
-                      short_figure(end(*least)));
-  if (least != most)
-    text += fmt::format("; that of {} is farthest, {}", name(most), short_figure(end(*most)));
+  const auto words = [&](const auto& at) {
+    return fmt::format("{}, ‖x − x*‖ {} ‖x*‖", shown_spec(c.optimizers[at->optimizer].brief),
+                       apart_text(*at, at->apart.size() - 1));
+  };
+  text += fmt::format(" In the end the x nearest to x* is that of {}", words(least));
+  if (least != most) text += fmt::format("; the farthest is that of {}", words(most));
   return text + ".";
 }
 

@@ -30,6 +30,11 @@ std::vector<Real> distances(const FieldFrames& frames) {
   return apart;
 }
 
+// Of the same cells, of which x* is known of both or of none.
+bool is_alike(const FieldFrames& a, const FieldFrames& b) {
+  return a.shape[1] == b.shape[1] && a.shape[2] == b.shape[2] && a.has_truth() == b.has_truth();
+}
+
 // Of the least seed that keeps them; of this seed where one is wanted.
 std::optional<FoundField> field_of(const Comparison& c, std::size_t p, std::size_t s,
                                    std::optional<std::uint64_t>& seed) {
@@ -57,7 +62,7 @@ std::optional<FoundFields> found_fields(const Comparison& c, std::size_t p) {
     const std::string kind = c.optimizers[s].mathematics();
     if (kinds.contains(kind)) continue;
     std::optional<FoundField> found = field_of(c, p, s, seed);
-    if (!found || (!out.found.empty() && found->frames.shape != out.frames().shape)) continue;
+    if (!found || (!out.found.empty() && !is_alike(found->frames, out.frames()))) continue;
     kinds.insert(kind);
     out.found.push_back(std::move(*found));
   }

@@ -187,7 +187,7 @@ TEST(Fields, OfARunThatWasStoppedAndGoneOnAreThoseOfOneThatWasNot) {
   int pieces = 0;
   for (;; ++pieces) {
     Checkpoint checkpoint(folder.path() / "state", "cell", 0);
-    if (pieces > 0) std::raise(SIGTERM);
+    std::raise(SIGTERM);  // it is stopped after a step
     const auto [status, fields] = fields_of(std::move(checkpoint));
     if (status == Status::interrupted) continue;
     EXPECT_EQ(fields, whole);

@@ -133,6 +133,23 @@ TEST_F(ShownFields, AreOfTheBestOfEachKind) {
   EXPECT_NEAR(all->found[1].apart[1], 0.1, 1e-6);
 }
 
+TEST_F(ShownFields, OfRunsThatKeptFewerStepsStandBesideTheOthers) {
+  add("newton", "second-order", 1, 1.0F);
+  Record record = record_of({.problem = "grid", .optimizer = "fast", .work_per_hit = 2});
+  FieldFrames fields{.iterations = {0}, .shape = {3, 1, 2}};
+  fields.numbers = {4, 4, 1, 2, 0, 0};
+  fields.digest = digest(field_file(fields));
+  record.fields = fields;
+  folder.add(record);
+  write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
+  folder.add(sheet_of("optimizer", "fast", "gradient"));
+  records.push_back(record);
+  const auto all = found();
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->found.size(), 2U);
+  EXPECT_NE(fields_html(c, *all).find("&lt; 1e-7"), std::string::npos) << "of newton";
+}
+
 TEST_F(ShownFields, AreAllOfOneSeed) {
   add("newton", "second-order", 1, 1.0F, 3);
   add("fast", "gradient", 2, 0.9F, 0);
@@ -163,7 +180,7 @@ TEST_F(ShownFields, StandInTheArticleWithTheirUnitsScaleAndWhatIsMissing) {
   ASSERT_TRUE(all);
   const std::string html = fields_html(c, *all);
   for (const char* words : {"<h4>Fields</h4>", "source, 1/m²", "±4", "potential", "x − x*",
-                            "<output class=at>50</output>", "<output class=apart>0.1</output>",
+                            "<output class=at>50</output>", "<output class=apart>= 0.1</output>",
                             "alt=\"x of fast: source, 1/m², from 0.9 to 1.8\""})
     EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
   std::size_t pictures = 0, alts = 0;
@@ -180,7 +197,7 @@ TEST_F(ShownFields, AreTheSameBytesInTheDataAndInThePictures) {
   const Json json = parse_json(fields_json(*all), "fields");
   const auto& one = json.at("found").at(0);
   EXPECT_EQ(one.at("iterations"), Json({0, 50}));
-  EXPECT_EQ(one.at("apart"), Json({"1", "0.1"}));
+  EXPECT_EQ(one.at("apart"), Json({"= 1", "= 0.1"}));
   const std::string head = json.at("head"), last = one.at("x").at(1);
   EXPECT_NE(fields_html(c, *all).find(head + last), std::string::npos);
 }
