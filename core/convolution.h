@@ -27,6 +27,7 @@ struct ConvolutionShape {
 };
 
 class ConvolutionCall;  // oneDNN's objects, whose header stays inside convolution.cpp
+class ThreeChannels;
 
 // out = kernel * in, or out += kernel * in.
 class Convolution {
@@ -51,6 +52,7 @@ class KernelGradient {
   void operator()(const float* in, const float* cotangent, float* kernel);
 
  private:
+  std::unique_ptr<ThreeChannels> widened_;  // where `in` is handed over with channels of zeros
   std::unique_ptr<ConvolutionCall> call_;
 };
 

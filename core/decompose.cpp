@@ -29,6 +29,56 @@ bool thin_svd(const Matrix& A, Svd& out) {
                         superdiagonal.data()) == 0;
 }
 
+bool FactoredSvd::factor(const Matrix& A) {
+  const lapack_int m = as_int(A.rows()), n = as_int(A.cols());
+  if (n == 0 || !is_finite(A)) return false;
+  qr_ = A;
+  for (Vector* vector : {&tau_, &tau_x_, &tau_y_, &sigma_, &above_}) vector->setZero(n);
+  if (LAPACKE_dgeqrf(LAPACK_COL_MAJOR, m, n, qr_.data(), m, tau_.data()) != 0) return false;
+  bidiagonal_ = qr_.topRows(n).triangularView<Eigen::Upper>();
+  if (LAPACKE_dgebrd(LAPACK_COL_MAJOR, n, n, bidiagonal_.data(), n, sigma_.data(), above_.data(),
+                     tau_x_.data(), tau_y_.data()) != 0)
+    return false;
+  C_.resize(n, n);
+  Dt_.resize(n, n);
+  return LAPACKE_dbdsdc(LAPACK_COL_MAJOR, 'U', 'I', n, sigma_.data(), above_.data(), C_.data(), n,
+                        Dt_.data(), n, nullptr, nullptr) == 0;
+}
+
+void FactoredSvd::to_left(const Vector& x, Vector& out) {
+  const lapack_int m = as_int(qr_.rows()), n = as_int(qr_.cols());
+  column_ = x;
+  LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', m, 1, n, qr_.data(), m, tau_.data(), column_.data(),
+                 m);
+  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'T', n, 1, n, bidiagonal_.data(), n, tau_x_.data(),
+                 column_.data(), m);
+  out.noalias() = C_.transpose() * column_.head(n);
+}
+
+void FactoredSvd::from_left(const Vector& along, Vector& out) {
+  const lapack_int m = as_int(qr_.rows()), n = as_int(qr_.cols());
+  out.setZero(m);
+  out.head(n).noalias() = C_ * along;
+  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'N', n, 1, n, bidiagonal_.data(), n, tau_x_.data(),
+                 out.data(), m);
+  LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', m, 1, n, qr_.data(), m, tau_.data(), out.data(), m);
+}
+
+void FactoredSvd::to_right(const Vector& x, Vector& out) {
+  const lapack_int n = as_int(qr_.cols());
+  column_ = x;
+  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'P', 'L', 'T', n, 1, n, bidiagonal_.data(), n, tau_y_.data(),
+                 column_.data(), n);
+  out.noalias() = Dt_ * column_;
+}
+
+void FactoredSvd::from_right(const Vector& along, Vector& out) {
+  const lapack_int n = as_int(qr_.cols());
+  out.noalias() = Dt_.transpose() * along;
+  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'P', 'L', 'N', n, 1, n, bidiagonal_.data(), n, tau_y_.data(),
+                 out.data(), n);
+}
+
 bool symmetric_eigen(const Matrix& A, SymmetricEigen& out) {
   if (!is_finite(A)) return false;
   out.V = A;

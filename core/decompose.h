@@ -12,6 +12,23 @@ struct Svd {
 };
 bool thin_svd(const Matrix& A, Svd& out);  // A = U diag(σ) Vᵀ, A (m, n); false: no convergence
 
+// The same of a tall A, kept as the factors by which it is found, for a few products with U and V
+// instead of the matrices: A = Q R, R = X B Yᵀ with B bidiagonal, B = C diag(σ) Dᵀ; Chan (1982).
+// U = Q X C and V = Y D.
+class FactoredSvd {
+ public:
+  bool factor(const Matrix& A);                      // (m, n), m ≥ n ≥ 1; false: no convergence
+  const Vector& sigma() const { return sigma_; }     // (n), descending
+  void to_left(const Vector& x, Vector& out);        // Uᵀ x, (m) -> (n)
+  void from_left(const Vector& along, Vector& out);  // U along, (n) -> (m)
+  void to_right(const Vector& x, Vector& out);       // Vᵀ x, (n) -> (n)
+  void from_right(const Vector& along, Vector& out);  // V along, (n) -> (n)
+
+ private:
+  Matrix qr_, bidiagonal_, C_, Dt_;
+  Vector tau_, tau_x_, tau_y_, sigma_, above_, column_;
+};
+
 struct SymmetricEigen {
   Matrix V;       // (n, n), one eigenvector a column
   Vector lambda;  // (n), ascending

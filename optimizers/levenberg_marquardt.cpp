@@ -1,57 +1,57 @@
 // Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978) and the gain-ratio
 // rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
-// column of J has had. By QR of the augmented matrix (J; √μ D), which the normal equations' squared
-// condition number would spoil; where J is wide, as the shortest (z, w) with JD⁻¹ z + √μ w = −r,
-// d = D⁻¹ z, which is the same d. Steps that do not lower ‖r‖ are rejected and the damping is
-// raised. On fresh samples at every step J and r are those of the step's own.
+// column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. On fresh
+// samples at every step J and r are those of the step's own. With damping=fixed, the rule of
+// mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean
+// diagonal of K, and every step is taken.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "core/decompose.h"
+#include "optimizers/damped_least_squares.h"
 #include "optimizers/optimizer.h"
+#include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
 namespace {
 
-constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
-
 struct LevenbergMarquardt {
-  Real initial_damping = 1e-4;
+  Real initial_damping = 1e-4, rate = 1;
+  std::string damping = "adaptive", way = "auto";
 
   struct State {
-    Matrix augmented;  // (m·B + n, n) with J on top, or (m·B, n + m·B) with JD⁻¹ left
-    Vector right;      // −r, with n zeros below where J is not wide
-    Vector scale;      // (n) D
+    DampedLeastSquares squares;
+    SpectralStep spectral;
+    Vector scale;                  // (n) D
     Real damping = 0, growth = 2;  // μ, and its factor at the next rejection
     bool has_point = false;
     Linearization at, trial;
-    Vector solved, step, candidate;  // (z, w) or d, (n)
-    Vector Jd;                       // (m·B)
+    Vector step, candidate;  // (n)
+    Vector Jd, residual;     // (m·B)
   };
   static void persist(State& s, Archive& archive) {
-    archive(s.augmented, s.right, s.scale, s.damping, s.growth, s.has_point);
+    s.squares.persist(archive);
+    s.spectral.persist(archive);
+    archive(s.scale, s.damping, s.growth, s.has_point);
   }
 
-  State init(Meter& f, const Vector& theta) const {
-    const Index rows = f.residuals(), n = theta.size();
+  State init(Meter&, const Vector& theta) const {
     State s;
-    s.scale = Vector::Zero(n);
-    if (rows < n)
-      s.augmented.setZero(rows, n + rows);
-    else
-      s.augmented.setZero(rows + n, n);
-    s.right.setZero(s.augmented.rows());
+    s.scale = Vector::Zero(theta.size());
     s.damping = initial_damping;
+    s.spectral = SpectralStep(spectral_way(way));
     return s;
   }
 
   Status step(Meter& f, Vector& theta, State& s) const {
+    return damping == "fixed" ? step_fixed(f, theta, s) : step_adaptive(f, theta, s);
+  }
+
+  Status step_adaptive(Meter& f, Vector& theta, State& s) const {
     if (!s.has_point || f.has_fresh_batches()) {
       f.linearize(theta, s.at);
       accept(f, s);
     }
-    if (!solve(f, s)) return Status::stalled;
+    if (!s.squares.solve(s.damping, least_squares_way(), s.step, s.Jd)) return Status::stalled;
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
@@ -70,66 +70,77 @@ struct LevenbergMarquardt {
     return Status::running;
   }
 
+  Status step_fixed(Meter& f, Vector& theta, State& s) const {
+    f.linearize(theta, s.at);
+    s.residual = (s.at.y() - f.target()).reshaped();
+    const auto filter = tikhonov_filter(initial_damping);
+    return s.spectral.add(f, s.at, filter, s.residual, -rate, theta) ? Status::running
+                                                                     : Status::stalled;
+  }
+
   // J, −r and D at the point just accepted.
   void accept(Meter& f, State& s) const {
     const Matrix& J = s.at.jacobian();
-    s.right.head(J.rows()) = (f.target() - s.at.y()).reshaped();
+    s.residual = (f.target() - s.at.y()).reshaped();
     s.scale = s.scale.cwiseMax(J.colwise().norm().transpose());
-    if (J.rows() < J.cols()) {  // a parameter that has done nothing yet has no scale, and no step
-      for (Index j = 0; j < J.cols(); ++j)
-        s.augmented.col(j) = J.col(j) / (s.scale[j] > 0 ? s.scale[j] : 1);
-    } else {
-      s.augmented.topRows(J.rows()) = J;
-    }
+    s.squares.set(J, s.residual, s.scale);
     s.has_point = true;
-  }
-
-  // d, and J d
-  bool solve(Meter& f, State& s) const {
-    const Index rows = f.residuals(), n = s.scale.size();
-    const Real root = std::sqrt(s.damping);
-    if (rows < n) {
-      s.augmented.rightCols(rows).diagonal().setConstant(root);
-      if (!least_squares(s.augmented, s.right, kEpsilon, s.solved)) return false;
-      s.step = (s.scale.array() > 0).select(s.solved.head(n).cwiseQuotient(s.scale), 0);
-      s.Jd.noalias() = s.augmented.leftCols(n) * s.solved.head(n);
-    } else {
-      s.augmented.bottomRows(n).diagonal() = root * s.scale;
-      if (!least_squares(s.augmented, s.right, kEpsilon, s.step)) return false;
-      s.Jd.noalias() = s.augmented.topRows(rows) * s.step;
-    }
-    return true;
   }
 
   // Actual over predicted decrease of ½‖r‖², the latter ½‖J d‖² + μ‖D d‖² without cancellation.
   Real gain_ratio(Meter& f, const State& s) const {
-    const Real before = 0.5 * s.right.squaredNorm();
     const Real after = 0.5 * (s.trial.y() - f.target()).squaredNorm();
     const Real predicted =
         0.5 * s.Jd.squaredNorm() + s.damping * s.scale.cwiseProduct(s.step).squaredNorm();
-    return (before - after) / predicted;
+    return (s.squares.misfit() - after) / predicted;
+  }
+
+  DampedLeastSquares::Way least_squares_way() const {
+    using LeastSquares = DampedLeastSquares::Way;
+    if (way == "cholesky") return LeastSquares::cholesky;
+    return way == "orthogonal" ? LeastSquares::orthogonal : LeastSquares::automatic;
+  }
+  static Way spectral_way(const std::string& way) {
+    if (way == "orthogonal") return Way::qr;
+    return way_named(way);
   }
 };
 
 void fields(LevenbergMarquardt& o, auto& field) {
-  field("initial-damping", o.initial_damping, above(0), "damping μ at the start, in units of D²");
+  field("initial-damping", o.initial_damping, above(0),
+        "damping μ at the start, in units of D²; where it is fixed, μ as a share of the mean "
+        "diagonal of JJᵀ");
+  field("damping", o.damping, Choices{"adaptive", "fixed"},
+        "by the gain of each step, or always the same");
+  field("rate", o.rate, above(0), "of damping=fixed: step length η");
+  field(
+      "way", o.way, Choices{"auto", "orthogonal", "cholesky"},
+      "by QR, or by Cholesky of a Gram matrix, which of networks of dense layers and damping=fixed "
+      "is formed layer by layer; auto: by size and accuracy");
 }
 
 }  // namespace
 
 void register_levenberg_marquardt(OptimizerRegistry& registry) {
-  registry.add(
-      stepper_entry<LevenbergMarquardt>({.name = "levenberg-marquardt",
-                                         .title = "Levenberg-Marquardt",
-                                         .family = Family::curvature,
-                                         .kind = Kind::least_squares,
-                                         .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
-                                         .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
-                                         .note = "A rejected candidate is an iteration too.",
-                                         .needs = {Oracle::forward, Oracle::jacobian},
-                                         .is_input_scale_invariant = true,
-                                         .most_rank = 2048,
-                                         .tunable = {.option = "initial-damping", .factor = 10}}));
+  OptimizerEntry entry = stepper_entry<LevenbergMarquardt>(
+      {.name = "levenberg-marquardt",
+       .title = "Levenberg-Marquardt",
+       .family = Family::curvature,
+       .kind = Kind::least_squares,
+       .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
+       .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
+       .note = "A rejected candidate is an iteration too. With damping=fixed every step is taken, "
+               "D is 1, and μ a share of the mean diagonal of JJᵀ.",
+       .needs = {Oracle::forward, Oracle::jacobian},
+       .is_input_scale_invariant = true,
+       .most_rank = 2048,
+       .tunable = {.option = "initial-damping", .factor = 10}});
+  entry.needs_for = [](const OptionValues& options, const Problem& problem) -> OracleSet {
+    if (options.text("damping") == "adaptive") return {Oracle::forward, Oracle::jacobian};
+    const Way way = LevenbergMarquardt::spectral_way(options.text("way"));
+    return needs_of(way, tikhonov_filter(1), problem);
+  };
+  registry.add(std::move(entry));
 }
 
 }  // namespace isoline::optimizers

@@ -72,6 +72,7 @@ class Meter {
   bool has_identity_network() const { return problem_.has_identity_network(); }
   Inverse inverse_kind() const { return problem_.inverse_kind(); }
   bool has_fresh_batches() const { return problem_.has_fresh_batches(); }
+  bool is_granted(Oracle oracle) const { return granted_.contains(oracle); }
 
   // A library's solver reports each iteration here and stops unless told `running`.
   Status iterate(VectorRef theta);

@@ -40,7 +40,12 @@ std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& op
   if (problem.unknowns() > entry.most_unknowns)
     return fmt::format("{} unknowns, and {} is limited to {}", problem.unknowns(), entry.name,
                        entry.most_unknowns);
-  if (const Index rank = std::min(problem.unknowns(), problem.residuals()); rank > entry.most_rank)
+  if (entry.kind == Kind::least_squares && !problem.is_least_squares())
+    return "the loss is no multiple of ‖y − y*‖², which least squares would descend instead";
+  // What asks for products alone factorizes nothing.
+  const bool factorizes = needs.contains(Oracle::jacobian) || needs.contains(Oracle::layer_factors);
+  const Index rank = std::min(problem.unknowns(), problem.residuals());
+  if (factorizes && rank > entry.most_rank)
     return fmt::format("a Jacobian of rank {}, and {} is limited to {}", rank, entry.name,
                        entry.most_rank);
   return entry.objection ? entry.objection(options, problem) : "";

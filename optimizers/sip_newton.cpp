@@ -49,7 +49,7 @@ std::string objection(const OptionValues&, const Problem& problem) {
 
 void register_sip_newton(OptimizerRegistry& registry) {
   registry.add({.name = "sip-newton",
-                .title = "Taught by Newton's step in x",
+                .title = "Network trained by Newton's step in x",
                 .family = Family::inversion,
                 .kind = Kind::inversion,
                 .formula = "x̃ = x − sign(g) |g/h|,  g = ∂L/∂x, h = ∂²L/∂x²;  "

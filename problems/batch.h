@@ -28,6 +28,7 @@ struct Batch {
 struct Samples {
   Index batch = 0;          // B, drawn anew each step; 0: a direct problem
   Index data = 0;           // N: the same N samples at every step instead
+  Index epoch = 0;          // N: batches are consecutive slices of the same N, a multiple of B
   Index validation = 1024;  // samples that the curves are measured on
   Index contexts = 0;       // p
   bool has_truth = true;    // whether `draw` fills Batch::truth

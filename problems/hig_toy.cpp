@@ -6,7 +6,6 @@
 // published: 256 fixed samples, Glorot's start. The traced series are those of the figure: mean and
 // spread of the hidden neurons over the validation, of all together and of each, and y at the t
 // nearest π/9, whose target is (0.87, −1).
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -51,42 +50,10 @@ Vector curve(Real t) { return Eigen::Vector2d(std::sin(6 * t), std::cos(9 * t));
 
 constexpr Index kShownNeurons = 7;  // as many as the published network has
 
-// Mean and spread of the hidden neurons, and y at the sample nearest π/9. A neuron whose value is 1
-// or −1 for every t is saturated: it gives the network no more than a bias, and its weights no
-// gradient. The mean over all neurons can't show that, for some saturate at 1 and others at −1; nor
-// can a spread of 0 alone, which a neuron of small weights has too, and learns.
-void watch(const Problem& problem, Point& at, VectorOut values) {
-  constexpr Real kNear = 0.01;  // of ±1, and of a spread of 0
-  std::vector<LayerFactor> layers;
-  problem.network().layer_factors(Matrix::Zero(2, at.y.cols()), layers, at.network);
-  const Matrix& hidden = layers.back().inputs;
-  const Vector means = hidden.rowwise().mean();
-  const Vector spreads =
-      (hidden.colwise() - means).array().square().rowwise().mean().sqrt().matrix();
-  const Real mean = hidden.mean();
+Index nearest_to_the_shown(const Batch& batch) {
   Index nearest = 0;
-  (at.batch->input.row(0).array() - std::numbers::pi / 9).abs().minCoeff(&nearest);
-  values.head(4) << mean, std::sqrt((hidden.array() - mean).square().mean()), at.y.col(nearest);
-  values[4] =
-      static_cast<Real>((spreads.array() < kNear && means.array().abs() > 1 - kNear).count());
-  const Index shown = (values.size() - 5) / 2;
-  values.segment(5, shown) = means.head(shown);
-  values.tail(shown) = spreads.head(shown);
-}
-
-Series series_of(const Network& network) {
-  Index neurons = 0;
-  for (const networks::Block& block : network.layout())
-    if (block.kind == networks::Block::Kind::weight) neurons = block.columns;  // of the last layer
-  Series series{.names = {"mean of the hidden neurons", "spread of the hidden neurons",
-                          "y1 at t = π/9", "y2 at t = π/9", "saturated neurons"},
-                .evaluate = [](const Problem& problem, VectorRef, Point& at, VectorOut values) {
-                  watch(problem, at, values);
-                }};
-  for (const char* of : {"mean of neuron ", "spread of neuron "})
-    for (Index i = 1; i <= std::min(neurons, kShownNeurons); ++i)
-      series.names.push_back(of + std::to_string(i));
-  return series;
+  (batch.input.row(0).array() - std::numbers::pi / 9).abs().minCoeff(&nearest);
+  return nearest;
 }
 
 ProblemParts make_hig_toy(const Options& o, const Draw& draw) {
@@ -104,8 +71,9 @@ ProblemParts make_hig_toy(const Options& o, const Draw& draw) {
                              {.physics = std::make_unique<Scaled>(o.lambda),
                               .x_error = distance,
                               .samples = {.draw = sample}});
-  if (!parts.network->has_layer_factors()) return parts;
-  parts.series = joined(std::move(parts.series), series_of(*parts.network));
+  const Series shown = path({"y1 at t = π/9", "y2 at t = π/9"}, nearest_to_the_shown);
+  parts.series = joined(std::move(parts.series), joined(hidden_activity(*parts.network), shown));
+  parts.series = joined(std::move(parts.series), saturation(*parts.network, kShownNeurons));
   return parts;
 }
 

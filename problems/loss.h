@@ -8,6 +8,8 @@ namespace isoline::problems {
 class Loss {
  public:
   virtual ~Loss() = default;
+  // Whether it is a multiple of ‖y − y*‖², which methods of least squares descend.
+  virtual bool is_least_squares() const { return true; }
   virtual Real value(BatchRef y, BatchRef target) const = 0;
   virtual void cotangent(BatchRef y, BatchRef target, BatchOut g) const = 0;  // ∂L/∂y, (m, B)
   // ∂²L/∂y² dy, (m, B) -> (m, B)

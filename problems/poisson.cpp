@@ -1,11 +1,7 @@
 // P = ∇⁻²: y solves ∇²y = x on N×N cells of width 1, with the five-point Laplacian and a value 0
 // one width beyond the first and last cell. Holl, Koltun, Thuerey (2022), Fig. 6a, as a direct
-// problem. The sine transform diagonalizes ∇², λ_pq = −4 [sin²(πp/2(N+1)) + sin²(πq/2(N+1))]; the
-// authors solve by conjugate gradients to 1e-5.
-#include <cmath>
-#include <numbers>
-
-#include "core/fourier.h"
+// problem. The authors solve by conjugate gradients to 1e-5; the sine transform is exact.
+#include "problems/laplacian.h"
 #include "problems/learning.h"
 #include "problems/random_fields.h"
 
@@ -23,24 +19,11 @@ void fields(Options& o, auto& field) {
 
 class Poisson final : public Physics {
  public:
-  explicit Poisson(Index N) : N_(N), sine_(N, N), gain_(N, N) {
-    const auto s2 = [N](Index p) {
-      const Real angle = std::numbers::pi * static_cast<Real>(p + 1) / static_cast<Real>(N + 1);
-      return std::pow(std::sin(angle / 2), 2);
-    };
-    for (Index q = 0; q < N; ++q)
-      for (Index p = 0; p < N; ++p) gain_(p, q) = -1 / (4 * (s2(p) + s2(q)) * sine_.round_trip());
-  }
-  Index inputs() const override { return N_ * N_; }
-  Index outputs() const override { return N_ * N_; }
+  explicit Poisson(Index N) : laplacian_(N) {}
+  Index inputs() const override { return laplacian_.cells(); }
+  Index outputs() const override { return laplacian_.cells(); }
 
-  void solve(BatchRef x, BatchOut y) const {
-    for (Index b = 0; b < x.cols(); ++b) {
-      sine_.forward(x.col(b));
-      sine_.spectrum().array() *= gain_.array();
-      sine_.inverse(y.col(b));
-    }
-  }
+  void solve(BatchRef x, BatchOut y) const { laplacian_.solve(x, y); }
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override { solve(x, y); }
   void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { solve(v, Jv); }
   void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { solve(u, JTu); }
@@ -51,23 +34,13 @@ class Poisson final : public Physics {
   }
 
   Inverse inverse_kind() const override { return Inverse::exact; }
-  Success local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut x) const override {  // x = ∇²y
-    for (Index b = 0; b < y.cols(); ++b) {
-      const Eigen::Map<const Matrix> Y(y.col(b).data(), N_, N_);
-      Eigen::Map<Matrix> X(x.col(b).data(), N_, N_);
-      X = -4 * Y;
-      X.topRows(N_ - 1) += Y.bottomRows(N_ - 1);
-      X.bottomRows(N_ - 1) += Y.topRows(N_ - 1);
-      X.leftCols(N_ - 1) += Y.rightCols(N_ - 1);
-      X.rightCols(N_ - 1) += Y.leftCols(N_ - 1);
-    }
+  Success local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut x) const override {
+    laplacian_.apply(y, x);
     return Success::Constant(y.cols(), true);
   }
 
  private:
-  Index N_;
-  mutable SineTransform2d sine_;  // its spectrum is scratch
-  Matrix gain_;                   // 1/λ over the factor of a round trip, (N, N)
+  Laplacian laplacian_;
 };
 
 Field field_of(Index N) {

@@ -63,7 +63,8 @@ Real Problem::x_scale(const Batch& batch) const {
 void Problem::draw_batch(std::int64_t step, Batch& out) const {
   const Samples& samples = parts_.samples;
   const Index count = samples.data > 0 ? samples.data : samples.batch;
-  const std::int64_t first = samples.data > 0 ? 0 : step * count;
+  std::int64_t first = samples.data > 0 ? 0 : step * count;
+  if (samples.epoch > 0) first %= samples.epoch;
   draw("training", static_cast<std::uint64_t>(first), count, out);
 }
 
@@ -84,18 +85,18 @@ void Problem::draw(std::string_view purpose, std::uint64_t first, Index count, B
 
 OracleSet Problem::offers() const {
   OracleSet offered{Oracle::forward, Oracle::pullback, Oracle::pushforward, Oracle::network};
-  // A dense matrix of more than 1 GiB is not offered, nor more than a few columns a sample: the
+  // A dense matrix of more than 1 GiB is not offered, nor more than a few products a sample: the
   // Jacobian of a grid costs as many solves as it has cells.
   constexpr Real kMostEntries = 1 << 27;
-  constexpr Index kMostLearnedInputs = 64;
+  constexpr Index kMostProducts = 64;
   const Real entries = static_cast<Real>(residuals()) * static_cast<Real>(unknowns());
-  const bool is_small = has_identity_network() || inputs() <= kMostLearnedInputs;
+  const bool is_small = has_identity_network() || std::min(inputs(), outputs()) <= kMostProducts;
   if (is_small && entries <= kMostEntries) {
     offered.add(Oracle::jacobian);
     offered.add(Oracle::sensitivity);
   }
   if (parts_.physics->has_curvature()) {
-    if (is_small) offered.add(Oracle::curvature);
+    if (has_identity_network() || inputs() <= kMostProducts) offered.add(Oracle::curvature);
     if (has_identity_network()) offered.add(Oracle::hessian);
     if (parts_.network->has_curvature()) offered.add(Oracle::hessian_product);
   }

@@ -126,6 +126,7 @@ class Problem {
   const Series& series() const { return parts_.series; }
   bool is_learned() const { return parts_.samples.batch > 0; }
   bool has_fresh_batches() const { return is_learned() && parts_.samples.data == 0; }
+  bool is_least_squares() const { return parts_.loss->is_least_squares(); }
   Inverse inverse_kind() const { return parts_.physics->inverse_kind(); }
   Real x_error(BatchRef x, const Batch& batch) const;  // nan where no solution is known
   Real x_error(BatchRef x) const { return x_error(x, batch_); }

@@ -11,6 +11,44 @@
 namespace isoline::problems {
 namespace {
 
+// The values of the hidden neurons, layer below layer, (neurons, B).
+Matrix hidden_values(const Problem& problem, Point& at) {
+  std::vector<LayerFactor> layers;
+  problem.network().layer_factors(Matrix::Zero(problem.inputs(), at.y.cols()), layers, at.network);
+  Index neurons = 0;
+  for (std::size_t l = 1; l < layers.size(); ++l) neurons += layers[l].inputs.rows();
+  Matrix values(neurons, at.y.cols());
+  Index first = 0;
+  for (std::size_t l = 1; l < layers.size(); ++l) {
+    values.middleRows(first, layers[l].inputs.rows()) = layers[l].inputs;
+    first += layers[l].inputs.rows();
+  }
+  return values;
+}
+
+// Neurons of the last hidden layer, which are the last of the hidden values.
+Index last_neurons(const Network& network) {
+  Index neurons = 0;
+  for (const networks::Block& block : network.layout())
+    if (block.kind == networks::Block::Kind::weight) neurons = block.columns;
+  return neurons;
+}
+
+// The count first, then the means of the neurons shown, then their spreads.
+void saturation_of(const Matrix& hidden, Index last, VectorOut values) {
+  constexpr Real kNear = 0.01;  // of ±1, and of a spread of 0
+  const Vector means = hidden.rowwise().mean();
+  const Vector spreads =
+      (hidden.colwise() - means).array().square().rowwise().mean().sqrt().matrix();
+  const Eigen::Array<bool, Eigen::Dynamic, 1> at_one =
+      spreads.array() < kNear && means.array().abs() > 1 - kNear;
+  const Eigen::Array<bool, Eigen::Dynamic, 1> at_zero = (hidden.array() == 0).rowwise().all();
+  const Index shown = values.size() / 2;
+  values[0] = static_cast<Real>((at_one || at_zero).count());
+  values.segment(1, shown) = means.tail(last).head(shown);
+  values.tail(shown) = spreads.tail(last).head(shown);
+}
+
 // U = P⁻¹(y*; x) − x; 0 where a sample has no inverse, not-a-number where the physics has none.
 void update(const Problem& problem, Point& at, Matrix& U) {
   U = at.x();
@@ -123,6 +161,7 @@ class Spectrum {
 
 Series joined(Series first, Series second) {
   if (first.names.empty()) return second;
+  if (second.names.empty()) return first;
   const auto count = static_cast<Index>(first.names.size());
   Series both{.names = first.names};
   both.names.insert(both.names.end(), second.names.begin(), second.names.end());
@@ -132,6 +171,37 @@ Series joined(Series first, Series second) {
     second.evaluate(problem, theta, at, values.tail(values.size() - count));
   };
   return both;
+}
+
+Series hidden_activity(const Network& network) {
+  if (!network.has_layer_factors()) return {};
+  return {.names = {"mean of the hidden neurons", "spread of the hidden neurons"},
+          .evaluate = [](const Problem& problem, VectorRef, Point& at, VectorOut values) {
+            const Matrix hidden = hidden_values(problem, at);
+            const Real mean = hidden.mean();
+            values << mean, std::sqrt((hidden.array() - mean).square().mean());
+          }};
+}
+
+Series saturation(const Network& network, Index shown) {
+  if (!network.has_layer_factors()) return {};
+  const Index last = last_neurons(network);
+  Series series{.names = {"saturated neurons"},
+                .evaluate = [last](const Problem& problem, VectorRef, Point& at, VectorOut values) {
+                  saturation_of(hidden_values(problem, at), last, values);
+                }};
+  for (const char* of : {"mean of neuron ", "spread of neuron "})
+    for (Index i = 1; i <= std::min(last, shown); ++i)
+      series.names.push_back(of + std::to_string(i));
+  return series;
+}
+
+Series path(std::vector<std::string> names, std::function<Index(const Batch& batch)> which) {
+  return {.names = std::move(names),
+          .evaluate = [which = std::move(which)](const Problem&, VectorRef, Point& at,
+                                                 VectorOut values) {
+            values = at.y.col(which(*at.batch)).head(values.size());
+          }};
 }
 
 Series half_squared_error() {

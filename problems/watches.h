@@ -9,6 +9,20 @@ namespace isoline::problems {
 // The names of both, the values of `first` first.
 Series joined(Series first, Series second);
 
+// Mean and spread of the values of the hidden neurons over the samples, all layers together; empty
+// where the network has no layers of neurons.
+Series hidden_activity(const Network& network);
+
+// How many hidden neurons are saturated, and mean and spread of the first `shown` of the last
+// layer. A neuron is saturated whose value is 1 or −1 for every sample, or, of one that rectifies,
+// 0: it gives the network no more than a bias, and its weights no gradient. The mean over all
+// neurons can't show that, for some saturate at 1 and others at −1; nor can a spread of 0 alone,
+// which a neuron of small weights has too, and learns.
+Series saturation(const Network& network, Index shown);
+
+// The components of y that are named, of the sample that `which` chooses.
+Series path(std::vector<std::string> names, std::function<Index(const Batch& batch)> which);
+
 // ½Σ(x − x*)² over the components, the mean over samples: what the published curves of grids show
 // beside Σ|x − x*|.
 Series half_squared_error();

@@ -74,6 +74,10 @@ class ParsedArgument final : public Argument {
     option_.delimiter(',')->allow_extra_args(false);
     return *this;
   }
+  const Argument& joined() const override {
+    option_.join(',');
+    return *this;
+  }
   const Argument& needs(const Argument& other) const override {
     option_.needs(option_of(other));
     return *this;
@@ -137,6 +141,13 @@ std::vector<std::string> names_of(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   return names;
+}
+
+// Of an option with no value, or with two where one is taken.
+std::string sentence_on_values(const CLI::App& verb, const std::string& name) {
+  const CLI::Option* option = verb.get_option_no_throw(name);
+  const bool is_repeated = option != nullptr && option->count() > 1;
+  return name + (is_repeated ? " is given more than once" : " needs a value");
 }
 
 // Of what CLI11 could place nowhere the first.
@@ -276,7 +287,7 @@ std::string CommandLine::sentence_of(const CLI::ParseError& error) const {
   else if (!unexpected.empty() && (parsed.empty() || is_a<CLI::ExtrasError>(error)))
     text = sentence_on(verb, unexpected.front());
   else if (is_a<CLI::ArgumentMismatch>(error))
-    text = text.substr(0, text.find(':')) + " needs a value";
+    text = sentence_on_values(verb, text.substr(0, text.find(':')));
   const std::string name = parsed.empty() ? "" : " " + verb.get_name();
   return fmt::format("{} (see {}{} --help)", text, program_, name);
 }

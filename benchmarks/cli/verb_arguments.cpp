@@ -12,8 +12,8 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("SUITE", given.suite,
             "Name of a suite, or path of one (default: quick); --problem and --optimizer keep the "
             "cells that have these");
-  verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'");
-  verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'");
+  verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
+  verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
   verb.text("--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
   verb.whole("--iterations", given.iterations, "Most iterations of a cell");
   verb.whole("--work", given.work, "Most work of a cell, in forward solves");
@@ -167,7 +167,8 @@ void declare(VerbArguments& verb, TuneArguments& given) {
             "Problems, as in `isoline run`; with --suite those to keep");
   verb.text("--suite", given.suite, "The pairs of this suite, with its budgets");
   verb.text("--optimizer", given.optimizer,
-            "Names of optimizers (default: all that have an option to tune)");
+            "Names of optimizers (default: all that have an option to tune)")
+      .joined();
   verb.text("--grid", given.grid,
             "Option and its values, low..high x count (default: the option that a method "
             "declares, at seven values around its default and more at an edge)");

@@ -34,12 +34,13 @@ std::vector<Real> small(const Matrix& values) {
   return {values.data(), values.data() + values.size()};
 }
 
-// σ_max / σ_min of J; nothing where it is too large, or no number.
-std::optional<Real> condition_of(const Problem& problem) {
+bool has_small_jacobian(const Problem& problem) {
   const bool is_small = problem.unknowns() * problem.residuals() <= kMostEntries;
-  if (problem.is_learned() || !problem.has_identity_network() || !is_small) return std::nullopt;
-  const auto& truth = problem.truth();
-  const Vector theta = truth ? Vector(truth->reshaped()) : problem.start();
+  return !problem.is_learned() && problem.has_identity_network() && is_small;
+}
+
+// σ_max / σ_min of J there; nothing where it is no number.
+std::optional<Real> condition_at(const Problem& problem, VectorRef theta) {
   Point at;
   Matrix J;
   Svd svd;
@@ -167,8 +168,11 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
   sheet.unknowns = problem.unknowns();
   sheet.residuals = problem.residuals();
   sheet.target = small(problem.target());
+  if (has_small_jacobian(problem)) {
+    sheet.start_condition = condition_at(problem, problem.start());
+    if (problem.truth()) sheet.condition = condition_at(problem, problem.truth()->reshaped());
+  }
   sheet.field = problem.field();
-  sheet.condition = condition_of(problem);
   if (problem.truth()) sheet.truth = small(*problem.truth());
   if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
   return sheet;

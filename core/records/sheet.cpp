@@ -91,6 +91,7 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field("unknowns", sheet.unknowns);
   field("residuals", sheet.residuals);
   field.optional("aim", sheet.aim);
+  field.optional("start_condition", sheet.start_condition);
   field.optional("condition", sheet.condition);
   field("target", sheet.target);
   field("truth", sheet.truth);

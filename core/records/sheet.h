@@ -59,9 +59,9 @@ struct Sheet {
   std::string inverse;                  // of a problem: none, exact, damped or estimate
   Index unknowns = 0, residuals = 0;    // of a problem
   std::optional<Aim> aim;               // of a problem: what its user wants
-  // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the
-  // solution, or at the start where none is known; infinite where J lacks rank.
-  std::optional<Real> condition;
+  // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the standard
+  // start and, where it is known, at the solution; infinite where J lacks rank.
+  std::optional<Real> start_condition, condition;
   std::optional<Landscape> landscape_x, landscape_y;  // of a problem with two unknowns, two outputs
   std::vector<Real> target;                           // y*, where small
   std::vector<Real> truth;                            // x*, where small and known

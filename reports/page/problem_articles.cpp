@@ -55,13 +55,22 @@ std::string planes_html(const Comparison& c, std::size_t p) {
                     "solution in x, target in y");
 }
 
+// Of J at both ends, where they are known.
+std::string condition_text(const Sheet& sheet) {
+  std::string text;
+  if (sheet.start_condition) text += figure(*sheet.start_condition) + " at the start";
+  if (sheet.condition)
+    text += fmt::format("{}{} at the solution", text.empty() ? "" : ", ", figure(*sheet.condition));
+  return text.empty() ? "" : fmt::format("condition of J {}, ", text);
+}
+
 std::string about_html(const Sheet& sheet) {
   std::string facts;
   if (sheet.unknowns > 0)
     facts += fmt::format("{} unknown{}, ", sheet.unknowns, sheet.unknowns == 1 ? "" : "s");
   if (sheet.residuals > 0)
     facts += fmt::format("{} residual{}, ", sheet.residuals, sheet.residuals == 1 ? "" : "s");
-  if (sheet.condition) facts += fmt::format("condition of J {}, ", figure(*sheet.condition));
+  facts += condition_text(sheet);
   facts +=
       sheet.inverse.empty() || sheet.inverse == "none" ? "no inverse" : sheet.inverse + " inverse";
   std::string html = fmt::format(

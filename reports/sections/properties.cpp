@@ -97,13 +97,14 @@ const std::vector<Property> kProperties = {
     {"order, J singular", "the same where J is singular at the solution",
      [](const AuditedOptimizer& audited) { return approach_text(audited, audited.singular); }},
     {"angle",
-     "between the step a stage was promised and the step it made: a linear stage, a curved one",
+     "between the change of an intermediate quantity that was asked and the change that was made, "
+     "through a linear stage and through a curved one",
      [](const AuditedOptimizer& audited) {
        if (!audited.network.empty()) return std::string(kNoSense);
        return angle_text(audited.linear_angle) + ", " + angle_text(audited.curved_angle);
      }},
-    {"asked", "calls of each oracle, counted, in so many iterations", asked_cell},
-    {"declared otherwise", "what it declares and was measured to be false", flags_cell}};
+    {"asked", "calls of each oracle, as counted over the iterations that are named", asked_cell},
+    {"declared otherwise", "what the method declares and the measurement contradicts", flags_cell}};
 
 Table properties_table(const Audits& all) {
   Table table{.id = "audit-table",
@@ -134,8 +135,9 @@ Section properties_section(const Audits& all) {
                   .otherwise = "These results hold no audit of properties."};
   if (all.empty()) return section;
   section.lead =
-      "At default options, but epsilon and cutoff 0 where they may be, as the names show. A pair "
-      "of exponents is of the first step / of the loss change to first order.";
+      "Measured at default options, except that epsilon and cutoff are 0 where the method allows "
+      "it, as the names show. Of two exponents the first is that of the first step, the second that "
+      "of the change of the loss to first order.";
   section.readings = property_readings(all);
   section.tables = {properties_table(all)};
   section.plots = property_plots(all);

@@ -69,7 +69,8 @@ Plot orders_plot(const Audits& all) {
 }
 
 Plot angles_plot(const Audits& all) {
-  Plot plot = plot_of(all, "plot-angles", "Angle between promised and made step, degrees", {0, 90});
+  Plot plot = plot_of(all, "plot-angles",
+                      "Angle between the change that was asked and that made, degrees", {0, 90});
   add_series(plot, all, "linear stage", [](const auto& audited) { return audited.linear_angle; });
   add_series(plot, all, "curved stage", [](const auto& audited) { return audited.curved_angle; });
   return plot;

@@ -124,10 +124,11 @@ std::string composition_sentence(const Audits& all) {
         (worst == nullptr || audited.linear_angle > worst->linear_angle))
       worst = &audited;
   return fmt::format(
-      "Seen from an intermediate quantity, a step should be the one that the method would take "
-      "there: through a linear stage it is for {}; the farthest off is {}.",
+      "In a composition of stages, what a step changes in an intermediate quantity should be the "
+      "step that the method would take there. Through a linear stage it is, for {}; the largest "
+      "angle between the two is that of {}.",
       listed(faithful),
-      worst == nullptr ? "none" : fmt::format("{}, by {:.0f}°", worst->name, worst->linear_angle));
+      worst == nullptr ? "none" : fmt::format("{}, {:.0f}°", worst->name, worst->linear_angle));
 }
 
 std::string oracle_sentence(const Audits& all) {
@@ -157,8 +158,8 @@ std::string declaration_sentence(const Audits& all) {
       names_where(all, [](const AuditedOptimizer& audited) { return !audited.network.empty(); });
   if (!teachers.empty())
     unmeasured += fmt::format(
-        " Of {}, which teach a network, what is scaled is the loss and y, the path is that of its "
-        "weights, and changes of x, order and angle do not apply: x is not what they step in.",
+        " {} train a network: the loss and y are scaled, the path is that of the weights, and "
+        "changes of x, order and angle do not apply, since no step is made in x.",
         listed(teachers));
   if (text.empty()) text = "Every optimizer measured behaves as it declares";
   return text + "." + unmeasured;

@@ -38,14 +38,28 @@ TEST(Sheets, OfADirectProblemTellTheConditionNumberOfItsJacobian) {
   EXPECT_NEAR(sheet_of("poisson", {{"N", 8}}).condition.value(), poisson, 1e-10 * poisson);
 }
 
+// J of (x₁, x₂²) is diag(1, 2x₂), and `square` starts at (3, 3).
+TEST(Sheets, OfADirectProblemTellTheConditionNumberAtTheStartBesidesThatAtTheSolution) {
+  const Sheet square = sheet_of("square", {});
+  EXPECT_NEAR(square.start_condition.value(), 6, 1e-14);
+  EXPECT_EQ(sheet_from_json(to_json(square)).start_condition, square.start_condition);
+  EXPECT_NEAR(sheet_of("scaling", {{"alpha", 0.02}}).start_condition.value(), 50, 50e-12);
+  const Sheet brown_dennis = sheet_of("brown-dennis", {});
+  EXPECT_TRUE(brown_dennis.start_condition);
+  EXPECT_EQ(brown_dennis.condition.has_value(), !brown_dennis.truth.empty());
+}
+
 // At the solution (0, 0) of `square`, x₂² has no slope: J lacks rank there.
 TEST(Sheets, OfAProblemThatLacksRankAtItsSolutionSaySo) {
   EXPECT_TRUE(std::isinf(sheet_of("square", {}).condition.value()));
 }
 
 TEST(Sheets, TellNoConditionNumberOfWhatIsLearnedOrTooLarge) {
-  EXPECT_FALSE(sheet_of("sine", {{"mode", "learn"}, {"batch", 4}}).condition);
-  EXPECT_FALSE(sheet_of("poisson", {{"N", 64}}).condition);
+  for (const Sheet& sheet :
+       {sheet_of("sine", {{"mode", "learn"}, {"batch", 4}}), sheet_of("poisson", {{"N", 64}})}) {
+    EXPECT_FALSE(sheet.condition) << sheet.spec;
+    EXPECT_FALSE(sheet.start_condition) << sheet.spec;
+  }
 }
 
 // y = x, but for a pole at one point of the landscape, or a fault.

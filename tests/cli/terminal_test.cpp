@@ -29,6 +29,15 @@ TEST(Terminal, ARunSaysHowLongItTook) {
       << result.out;
 }
 
+TEST(Terminal, AnOptionOfSpecificationsMayBeRepeated) {
+  const std::string once = "./isoline run --problem square,scaling --optimizer gd,adam --dry-run";
+  const std::string twice =
+      "./isoline run --problem square --problem scaling --optimizer gd --optimizer adam --dry-run";
+  const Shell shell;
+  EXPECT_TRUE(shell(once).out.starts_with("4 cells")) << shell(once).out;
+  EXPECT_EQ(shell(twice).out, shell(once).out);
+}
+
 TEST(Terminal, ClaimsAreCountedThenListedTwentyAtMost) {
   const Shell shell;
   const std::vector<std::string> few = lines_of(shell("./isoline claims --list").out);

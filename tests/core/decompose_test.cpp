@@ -29,6 +29,31 @@ TEST(Decompose, SvdRebuildsTheMatrix) {
   }
 }
 
+TEST(Decompose, FactoredSvdIsTheThinOneKeptAsItsFactors) {
+  for (const auto& [m, n] : {std::pair<Index, Index>{9, 4}, {4, 4}, {40, 17}, {1, 1}}) {
+    const Matrix A = random_matrix(m, n);
+    Svd svd;
+    FactoredSvd factored;
+    ASSERT_TRUE(thin_svd(A, svd) && factored.factor(A));
+    EXPECT_LT((factored.sigma() - svd.sigma).norm(), kRound * svd.sigma[0]);
+    const Vector x = random_matrix(n, 1), y = random_matrix(m, 1);
+    Vector along, out;
+    factored.to_right(x, along);
+    along = factored.sigma().cwiseProduct(along);
+    factored.from_left(along, out);
+    EXPECT_LT((out - A * x).norm(), 10 * kRound * out.norm()) << m << " × " << n;
+    factored.to_left(y, along);
+    along = factored.sigma().cwiseProduct(along);
+    factored.from_right(along, out);
+    EXPECT_LT((out - A.transpose() * y).norm(), 10 * kRound * svd.sigma[0] * y.norm()) << m;
+  }
+}
+
+TEST(Decompose, FactoredSvdOfNotANumberIsRefused) {
+  FactoredSvd factored;
+  EXPECT_FALSE(factored.factor(Matrix::Constant(2, 2, std::nan(""))));
+}
+
 TEST(Decompose, SvdOfNotANumberIsRefused) {
   Svd svd;
   EXPECT_FALSE(thin_svd(Matrix::Constant(2, 2, std::nan("")), svd));

@@ -16,6 +16,7 @@ std::string sane(const std::string& name) {
   if (name == "adam" || name == "rmsprop") return name + "[rate=0.01]";
   if (name == "adamw") return "adamw[rate=0.01,weight-decay=0]";
   if (name == "adadelta") return "adadelta[rate=0.1]";
+  if (name == "shampoo") return "shampoo[rate=0.5]";
   if (name == "adagrad") return "adagrad[rate=0.5]";
   if (name == "rescaled") return "rescaled[network-optimizer=gd[rate=1e-3]]";  // of one length
   return name;

@@ -1,0 +1,262 @@
+// One spectral step by each of its ways.
+#include "optimizers/spectral_step.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/product.h"
+
+namespace isoline::optimizers {
+namespace {
+
+struct WayRow {
+  Way way;
+  std::string_view name, words;
+};
+constexpr WayRow kWays[] = {
+    {Way::automatic, "auto", ""},
+    {Way::svd, "svd", "the thin SVD of J"},
+    {Way::qr, "qr", "QR and the SVD of R"},
+    {Way::gram, "gram", "the Gram matrix of J"},
+    {Way::layers, "layers", "the Gram matrix layer by layer"},
+    {Way::cholesky, "cholesky", "Cholesky of the Gram matrix"},
+    {Way::orthogonal, "orthogonal", "a complete orthogonal factorization"},
+    {Way::lanczos, "lanczos", "Lanczos"},
+};
+
+constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+
+// In whose units one number is enough, without the spectrum.
+bool is_tikhonov(const SpectralFilter& filter) {
+  return filter.kappa == 1 && filter.damping > 0 && filter.unit == SpectralFilter::Unit::mean;
+}
+
+// Whatever the spectrum; a damping in units of the mean is judged when it is known.
+bool never_by_gram(const SpectralFilter& filter) {
+  const bool is_relative = filter.unit == SpectralFilter::Unit::largest;
+  return filter.clamps ||
+         (is_relative && std::max(filter.cutoff, std::sqrt(filter.damping)) < kLeastCutoffByGram);
+}
+
+bool has_layers(const Meter& f) { return f.is_granted(Oracle::layer_factors); }
+
+}  // namespace
+
+Way way_named(std::string_view name) {
+  for (const WayRow& row : kWays)
+    if (row.name == name) return row.way;
+  throw UsageError(fmt::format("there is no way '{}' of a spectral step", name));
+}
+
+void SpectralStep::start(Meter& f) const {
+  if (wanted_ == Way::lanczos)
+    f.name_series({"Krylov vectors of a step", "estimated relative error of a step"});
+}
+
+Way SpectralStep::choose(const Meter& f, const SpectralFilter& filter, bool is_wide) const {
+  if (wanted_ != Way::automatic) return wanted_;
+  const bool has_jacobian = f.is_granted(Oracle::jacobian);
+  if (filter.clamps && has_jacobian) return Way::svd;
+  if ((was_too_small_ || never_by_gram(filter)) && has_jacobian) return Way::qr;
+  if (is_tikhonov(filter)) return Way::cholesky;
+  return is_wide && has_layers(f) ? Way::layers : Way::gram;
+}
+
+bool SpectralStep::add(Meter& f, Linearization& at, const SpectralFilter& filter, const Vector& w,
+                       Real factor, Vector& out) {
+  Way way = choose(f, filter, w.size() < out.size());
+  bool is_done = false;
+  if (way == Way::gram || way == Way::layers || way == Way::cholesky) {
+    const Outcome outcome = by_gram(way, f, at, filter, w, factor, out);
+    is_done = outcome == Outcome::done;
+    if (outcome == Outcome::too_small) way = Way::qr;
+  }
+  if (way == Way::svd) is_done = by_svd(at.jacobian(), filter, w, factor, out);
+  if (way == Way::qr) is_done = by_qr(at.jacobian(), filter, w, factor, out);
+  if (way == Way::orthogonal) is_done = by_pivots(at.jacobian(), filter, w, factor, out);
+  if (way == Way::lanczos) {
+    is_done = lanczos_.add(f, at, filter, limits_, w, factor, out);
+    f.note(0, static_cast<Real>(lanczos_.vectors()));
+    f.note(1, lanczos_.error());
+  }
+  if (is_done)
+    say(f, way);
+  else
+    f.claim("the Jacobian has no singular values in finite numbers");
+  return is_done;
+}
+
+// Named when a way is taken for the first time, in the order of the table.
+void SpectralStep::say(Meter& f, Way way) {
+  const std::uint32_t bit = 1U << static_cast<unsigned>(way);
+  if ((ways_taken_ & bit) != 0) return;
+  ways_taken_ |= bit;
+  std::string words;
+  for (const WayRow& row : kWays)
+    if ((ways_taken_ & (1U << static_cast<unsigned>(row.way))) != 0)
+      words += fmt::format("{}{}", words.empty() ? "steps by " : ", and by ", row.words);
+  f.claim(words);
+}
+
+bool SpectralStep::by_svd(const Matrix& J, const SpectralFilter& filter, const Vector& w,
+                          Real factor, Vector& out) {
+  if (!thin_svd(J, svd_)) return false;
+  spectrum_ = {svd_.sigma[0], svd_.sigma.squaredNorm() / static_cast<Real>(J.rows())};
+  along_.noalias() = svd_.U.transpose() * w;
+  for (Index i = 0; i < along_.size(); ++i) along_[i] *= filter(svd_.sigma[i], spectrum_);
+  out.noalias() += factor * svd_.Vt.transpose() * along_;
+  return true;
+}
+
+// J = Aᵀ, A = U' diag(σ) V'ᵀ, where J is wide: V f(σ) Uᵀ w = U' f(σ) V'ᵀ w.
+bool SpectralStep::by_qr(const Matrix& J, const SpectralFilter& filter, const Vector& w,
+                         Real factor, Vector& out) {
+  const bool is_wide = J.rows() < J.cols();
+  if (is_wide) tall_ = J.transpose();
+  if (!is_finite(w) || !factored_.factor(is_wide ? tall_ : J)) return false;
+  const Vector& sigma = factored_.sigma();
+  spectrum_ = {sigma[0], sigma.squaredNorm() / static_cast<Real>(J.rows())};
+  is_wide ? factored_.to_right(w, along_) : factored_.to_left(w, along_);
+  for (Index i = 0; i < along_.size(); ++i) along_[i] *= filter(sigma[i], spectrum_);
+  is_wide ? factored_.from_left(along_, result_) : factored_.from_right(along_, result_);
+  out += factor * result_;
+  sigma_ = sigma;
+  judge(filter, is_wide, w.norm());
+  return true;
+}
+
+bool SpectralStep::by_pivots(const Matrix& J, const SpectralFilter& filter, const Vector& w,
+                             Real factor, Vector& out) {
+  if (!least_squares(J, w, filter.cutoff, result_)) return false;
+  out += factor * result_;
+  return true;
+}
+
+SpectralStep::Outcome SpectralStep::by_gram(Way way, Meter& f, Linearization& at,
+                                            const SpectralFilter& filter, const Vector& w,
+                                            Real factor, Vector& out) {
+  const bool is_wide = w.size() < out.size();
+  const bool is_layered =
+      is_wide && (way == Way::layers || (way == Way::cholesky && has_layers(f)));
+  form_gram(is_layered, is_wide, at, w);
+  spectrum_.mean_square = gram_.trace() / static_cast<Real>(w.size());
+  const bool is_solved =
+      way == Way::cholesky ? solve_damped(filter) : solve_filtered(filter, is_wide, w.norm());
+  if (!is_solved) return Outcome::failed;
+  if (wanted_ == Way::automatic && was_too_small_ && f.is_granted(Oracle::jacobian))
+    return Outcome::too_small;
+  if (!is_wide) {
+    out += factor * result_;
+  } else if (is_layered) {
+    cotangent_ = result_.reshaped(at.y().rows(), at.y().cols());
+    gradient_.resize(out.size());
+    at.pullback(cotangent_, gradient_);
+    out += factor * gradient_;
+  } else {
+    out.noalias() += factor * (at.jacobian().transpose() * result_);
+  }
+  return Outcome::done;
+}
+
+// K = JJᵀ and w where J is wide, else JᵀJ and Jᵀw.
+void SpectralStep::form_gram(bool is_layered, bool is_wide, Linearization& at, const Vector& w) {
+  if (is_layered) {
+    layered_.form(at, gram_);
+  } else {
+    const Matrix& J = at.jacobian();
+    const Index r = is_wide ? J.rows() : J.cols();
+    gram_.resize(r, r);
+    product(is_wide ? Form::A_BH : Form::AH_B, J, J, gram_);
+  }
+  if (is_wide)
+    right_ = w;
+  else
+    right_.noalias() = at.jacobian().transpose() * w;
+}
+
+// Of eigenvalues σ², by f(σ)/σ.
+bool SpectralStep::solve_filtered(const SpectralFilter& filter, bool is_wide, Real length) {
+  if (!symmetric_eigen(gram_, eigen_)) return false;
+  const Index r = eigen_.lambda.size();
+  sigma_ = eigen_.lambda.cwiseMax(0).cwiseSqrt();
+  spectrum_.largest = sigma_[r - 1];
+  along_.noalias() = eigen_.V.transpose() * right_;
+  for (Index i = 0; i < r; ++i) along_[i] *= filter.over_sigma(sigma_[i], spectrum_);
+  result_.noalias() = eigen_.V * along_;
+  if (is_wide) along_.array() *= sigma_.array();  // of the step, as it is where J is tall
+  judge(filter, is_wide, length);
+  return true;
+}
+
+// σ₁² is at most the trace, which is all that is known of it: the condition number of what is
+// factorized is at most trace/μ.
+bool SpectralStep::solve_damped(const SpectralFilter& filter) {
+  const Real trace = gram_.trace(), mu = filter.mu(spectrum_);
+  gram_.diagonal().array() += mu;
+  column_ = right_;
+  if (!solve_positive_definite(gram_, column_)) return false;
+  result_ = column_.col(0);
+  was_too_small_ = !(mu > 0 && kEpsilon * trace / mu <= kMostErrorByGram);
+  return true;
+}
+
+// Whether a Gram matrix is not enough for a step with the components along_ in the basis V. What it
+// is rounded by, ε σ₁², changes the i-th component by a share ε q σ₁²/(σᵢ² + μ), as −h' changes
+// h(σ²) = f(σ)/σ; and turns a part ε σ₁²/σⱼ² of a larger component j of w into the i-th one. Where
+// J is tall, Jᵀw is rounded by ε σ₁‖w‖ besides.
+void SpectralStep::judge(const SpectralFilter& filter, bool is_wide, Real length) {
+  const Real mu = filter.mu(spectrum_), largest = spectrum_.largest, q = (filter.kappa + 1) / 2;
+  const Index r = along_.size();
+  const bool is_ascending = sigma_[0] < sigma_[r - 1];
+  Real error = 0, turned = 0, least = largest;
+  for (Index step = 0; step < r; ++step) {  // from the largest on
+    const Index i = is_ascending ? r - 1 - step : step;
+    const Real sigma = sigma_[i];
+    if (!(sigma > filter.cutoff * largest)) break;
+    least = sigma;
+    const Real h = filter.over_sigma(sigma, spectrum_);
+    const Real bend = q * largest * largest / (sigma * sigma + mu) * along_[i];
+    const Real spill = is_wide ? sigma * h * std::sqrt(turned) : largest * h * length;
+    error += bend * bend + spill * spill;
+    turned += std::pow(largest * largest / (sigma * sigma + mu) * along_[i] / (sigma * h), 2);
+  }
+  const Real share = std::max(least, std::sqrt(mu)) / largest;
+  estimate_ = kEpsilon * std::sqrt(error) / along_.norm();
+  was_too_small_ = !(share >= kLeastShareByGram && estimate_ <= kMostErrorByGram);
+}
+
+OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem) {
+  const OracleSet by_matrix{Oracle::forward, Oracle::jacobian};
+  const OracleSet by_layers{Oracle::forward, Oracle::layer_factors, Oracle::pullback};
+  const bool has_layers =
+      problem.residuals() < problem.unknowns() && problem.offers().contains(Oracle::layer_factors);
+  const bool has_jacobian = problem.offers().contains(Oracle::jacobian);
+  switch (way) {
+    case Way::lanczos:
+      return {Oracle::forward, Oracle::pullback, Oracle::pushforward};
+    case Way::layers:
+      return by_layers;
+    case Way::cholesky:
+      return has_layers ? by_layers : by_matrix;
+    case Way::automatic: {
+      if (!has_layers) return by_matrix;
+      if (has_jacobian && never_by_gram(filter)) return by_matrix;
+      OracleSet both = by_layers;
+      if (has_jacobian) both.add(Oracle::jacobian);
+      return both;
+    }
+    default:
+      return by_matrix;
+  }
+}
+
+std::string objection_to(Way way, const Problem& problem) {
+  if (way == Way::layers && problem.residuals() >= problem.unknowns())
+    return fmt::format("way=layers forms JJᵀ, and J is not wide: {} residuals, {} unknowns",
+                       problem.residuals(), problem.unknowns());
+  return "";
+}
+
+}  // namespace isoline::optimizers

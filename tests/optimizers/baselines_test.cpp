@@ -1,0 +1,259 @@
+// The baselines on cases with a known answer.
+#include <gtest/gtest.h>
+
+#include "core/decompose.h"
+#include "optimizers/ssbroyden.h"
+#include "run.h"
+#include "trial_problems.h"
+
+namespace isoline::optimizers {
+
+using problems::Point;
+using problems::Problem;
+namespace {
+
+void expect_near(const Vector& one, const Vector& other, Real tolerance, const std::string& what) {
+  EXPECT_LE((one - other).norm(), tolerance * other.norm()) << what;
+}
+
+Problem network(const std::string& batch) {
+  return published(
+      "sine[mode=learn,xi=2,network=mlp[layers=8-6,activation=tanh,precision=double],batch=" +
+      batch + "]");
+}
+
+// J and r = y − y* of the batch that a problem starts with.
+struct Linearized {
+  Matrix J, g;
+  Vector r, gradient;
+};
+Linearized linearized(const Problem& problem, const Vector& theta) {
+  Point at;
+  Linearized all;
+  problem.forward(theta, at);
+  problem.jacobian(all.J, at);
+  all.r = (at.y - problem.target()).reshaped();
+  all.g.resize(problem.outputs(), problem.samples());
+  problem.cotangent(at, all.g);
+  all.gradient = all.J.transpose() * all.g.reshaped();
+  return all;
+}
+
+// Jᵀ (JJᵀ + λ)⁻¹ w, λ a share of the mean diagonal.
+Vector damped_inverse(const Matrix& J, Real share, const Vector& w) {
+  Matrix K = J * J.transpose();
+  K.diagonal().array() += share * K.diagonal().mean();
+  Vector solved;
+  EXPECT_TRUE(solve_square(K, w, solved));
+  return J.transpose() * solved;
+}
+
+TEST(FixedDamping, IsItsFormulaWideAndTall) {
+  for (const char* batch : {"5", "80"})
+    for (const char* way : {"auto", "orthogonal", "cholesky"}) {
+      const Problem problem = network(batch);
+      const Linearized at = linearized(problem, problem.start());
+      const Vector theta = run(problem,
+                               "levenberg-marquardt[damping=fixed,initial-damping=1e-2,rate=0.3,"
+                               "way=" +
+                                   std::string(way) + "]",
+                               iterations(1))
+                               .theta;
+      expect_near(theta - problem.start(), -0.3 * damped_inverse(at.J, 1e-2, at.r), 1e-9, way);
+    }
+}
+
+TEST(LevenbergMarquardt, StepsAlikeByQrAndByCholesky) {
+  const Problem problem = network("40,data=40");  // 80 residuals
+  const std::string spec = "levenberg-marquardt[initial-damping=1e-2,way=";
+  expect_near(run(problem, spec + "cholesky]", iterations(5)).theta,
+              run(problem, spec + "orthogonal]", iterations(5)).theta, 1e-8, "five steps");
+}
+
+TEST(Spring, IsFixedDampingWithoutMomentum) {
+  const Problem problem = network("5");
+  expect_near(run(problem, "spring[momentum=0,damping=1e-2,rate=0.3]", iterations(4)).theta,
+              run(problem, "levenberg-marquardt[damping=fixed,initial-damping=1e-2,rate=0.3]",
+                  iterations(4))
+                  .theta,
+              1e-12, "without momentum");
+}
+
+// On the same samples at both steps.
+TEST(Spring, SecondStepIsItsFormula) {
+  const Problem problem = network("5,data=5");
+  const Linearized first = linearized(problem, problem.start());
+  const Vector before = -damped_inverse(first.J, 1e-2, first.r);
+  const Vector theta = problem.start() + 0.3 * before;
+  const Linearized second = linearized(problem, theta);
+  const Vector step =
+      0.8 * before - damped_inverse(second.J, 1e-2, second.r + 0.8 * second.J * before);
+  expect_near(run(problem, "spring[momentum=0.8,damping=1e-2,rate=0.3]", iterations(2)).theta,
+              theta + 0.3 * step, 1e-10, "second");
+}
+
+// Kaczmarz' projection: undamped, the linearized batch is met whatever the momentum.
+TEST(Spring, UndampedStepMeetsTheLinearizedBatch) {
+  const Problem problem = network("4,data=4");
+  const Vector one = run(problem, "spring[damping=1e-9,rate=1]", iterations(1)).theta;
+  const Vector two = run(problem, "spring[damping=1e-9,rate=1]", iterations(2)).theta;
+  const Linearized at = linearized(problem, one);
+  expect_near(at.J * (two - one), -at.r, 1e-5, "J Δ = −r");
+}
+
+// Five steps of Newton-Schulz act on singular values alone.
+Real newton_schulz(Real x) {
+  for (int i = 0; i < 5; ++i) x = 3.4445 * x - 4.7750 * std::pow(x, 3) + 2.0315 * std::pow(x, 5);
+  return x;
+}
+
+TEST(Muon, FirstStepKeepsTheSingularVectorsOfTheGradient) {
+  const Problem problem = network("20");
+  const Vector gradient = linearized(problem, problem.start()).gradient;
+  const Vector step = run(problem, "muon[rate=0.01]", iterations(1)).theta - problem.start();
+  for (const Block& block : problem.layout()) {
+    const auto of = [&](const Vector& v) -> Matrix {
+      return v.segment(block.offset, block.rows * block.columns)
+          .reshaped(block.rows, block.columns);
+    };
+    if (block.rows == 1 || block.columns == 1) {  // Adam's first step is by signs
+      EXPECT_LE((of(step) + 0.01 * of(gradient).cwiseSign()).norm(), 1e-4) << block.offset;
+      continue;
+    }
+    Svd svd;
+    ASSERT_TRUE(thin_svd(of(gradient), svd));
+    const Real norm = svd.sigma.norm();
+    const Matrix expected =
+        svd.U * (svd.sigma / norm).unaryExpr(&newton_schulz).asDiagonal() * svd.Vt;
+    const Real length = 0.01 * 0.2 * std::sqrt(std::max(block.rows, block.columns));
+    EXPECT_LE((of(step) + length * expected).norm(), 1e-10 * length) << block.offset;
+  }
+}
+
+TEST(Muon, BringsSingularValuesNearOne) {
+  for (const Real x : {0.05, 0.1, 0.3, 0.7, 1.0}) {
+    EXPECT_GT(newton_schulz(x), 0.65);
+    EXPECT_LT(newton_schulz(x), 1.25);
+  }
+}
+
+// From one gradient G = U Σ Vᵀ both preconditioners leave the orthogonal factor U Vᵀ.
+TEST(Shampoo, FirstStepIsTheOrthogonalFactorOfTheGradient) {
+  const Problem problem = learned_affine(6);
+  const Vector gradient = linearized(problem, problem.start()).gradient;
+  Svd svd;
+  ASSERT_TRUE(thin_svd(gradient.head(4).reshaped(2, 2), svd));
+  const Matrix factor = svd.U * svd.Vt;
+  for (const char* spec : {"shampoo[rate=0.1,epsilon=1e-14]", "soap[rate=0.1,epsilon=1e-12]"}) {
+    const Vector step = run(problem, spec, iterations(1)).theta - problem.start();
+    EXPECT_LE((step.head(4).reshaped(2, 2) + 0.1 * factor).norm(), 1e-6) << spec;
+  }
+  const Vector step =
+      run(problem, "shampoo[rate=0.1,epsilon=1e-14]", iterations(1)).theta - problem.start();
+  expect_near(step.tail(2), -0.1 * gradient.tail(2).normalized(), 1e-6, "a vector");
+}
+
+// L of a vector is the sum of its gradients' outer products: AdaGrad with its full matrix.
+TEST(Shampoo, OfAVectorIsFullMatrixAdagrad) {
+  const Problem problem = easy();
+  Vector theta = problem.start();
+  Matrix sum = 1e-4 * Matrix::Identity(2, 2);
+  for (int i = 0; i < 4; ++i) {
+    const Vector g = linearized(problem, theta).gradient;
+    sum += g * g.transpose();
+    SymmetricEigen eigen;
+    ASSERT_TRUE(symmetric_eigen(sum, eigen));
+    theta -= 0.1 * eigen.V * eigen.lambda.cwiseSqrt().cwiseInverse().asDiagonal() *
+             eigen.V.transpose() * g;
+  }
+  expect_near(run(problem, "shampoo[rate=0.1,every=1]", iterations(4)).theta, theta, 1e-12,
+              "four steps");
+}
+
+// Without a basis of its own SOAP is Adam, of which the mean of squares decays alike.
+TEST(Soap, IsAdamWithoutABasis) {
+  const Problem problem = network("6");
+  expect_near(run(problem, "soap[rate=0.01,longest=1,beta1=0.9,beta2=0.99]", iterations(10)).theta,
+              run(problem, "adam[rate=0.01,beta1=0.9,beta2=0.99]", iterations(10)).theta, 1e-12,
+              "adam");
+}
+
+TEST(MatrixMethods, AreForNetworks) {
+  for (const char* name : {"muon", "soap"}) {
+    const OptimizerEntry& entry = optimizers().at(name);
+    EXPECT_NE(why_inapplicable(entry, options_of_spec(entry, name), easy()), "") << name;
+    EXPECT_EQ(why_inapplicable(entry, options_of_spec(entry, name), network("4")), "") << name;
+  }
+}
+
+TEST(MatrixMethods, LowerTheLossOfAPerceptron) {
+  const Problem problem = published("sine[mode=learn,xi=1,network=mlp[layers=16-16],batch=30]");
+  for (const auto& [spec, steps] : {std::pair{"muon[rate=0.01]", 300},
+                                    {"soap[rate=0.01]", 300},
+                                    {"shampoo[rate=0.1]", 300},
+                                    {"spring[rate=0.3]", 60},
+                                    {"levenberg-marquardt[damping=fixed,initial-damping=1e-2]", 60},
+                                    {"hig-damped", 100}}) {
+    const Outcome result = run(problem, spec, iterations(steps));
+    EXPECT_LT(result.trace->last.loss, 0.1 * result.trace->start_loss) << spec;
+  }
+}
+
+// --- self-scaled Broyden
+
+Matrix spread(Index n) {  // a convex quadratic of condition number 1e3
+  Matrix A = Matrix::Constant(n, n, 0.1);
+  for (Index i = 0; i < n; ++i) A(i, i) += std::pow(10, 3.0 * Real(i) / Real(n - 1));
+  return A;
+}
+
+TEST(SelfScaledBroyden, UpdateMeetsTheSecantConditionAndStaysPositiveDefinite) {
+  constexpr Index n = 6;
+  RandomStream stream(1, "test", "update");
+  Matrix H = spread(n);
+  Vector Hy, v;
+  for (int i = 0; i < 50; ++i) {
+    const Vector s = stream.normal_vector(n);
+    const Vector y = spread(n) * s + 0.5 * s.norm() * stream.normal_vector(n);
+    if (y.dot(s) <= 0) continue;
+    Vector Bs;
+    ASSERT_TRUE(solve_square(H, s, Bs));
+    update_self_scaled(H, s, y, s.dot(Bs), Hy, v);
+    expect_near(H * y, s, 1e-9, "H y = s");
+    EXPECT_LE((H - H.transpose()).norm(), 1e-12 * H.norm());
+    SymmetricEigen eigen;
+    ASSERT_TRUE(symmetric_eigen(H, eigen));
+    EXPECT_GT(eigen.lambda[0], 0);
+  }
+}
+
+// With exact searches Broyden's family makes conjugate directions, however it is scaled.
+TEST(SelfScaledBroyden, EndsAQuadraticInAsManyExactStepsAsUnknowns) {
+  constexpr Index n = 8;
+  const Matrix A = spread(n);
+  Vector x = Vector::Ones(n), Hy, v;
+  Matrix H = Matrix::Identity(n, n);
+  const Real before = (A * x).norm();
+  for (Index i = 0; i < n; ++i) {
+    const Vector g = A * x, d = -(H * g);
+    const Real length = -g.dot(d) / d.dot(A * d);
+    const Vector s = length * d, y = A * s;
+    x += s;
+    update_self_scaled(H, s, y, -length * g.dot(s), Hy, v);
+  }
+  EXPECT_LE((A * x).norm(), 1e-9 * before);
+}
+
+TEST(SelfScaledBroyden, SolvesRosenbrockToRounding) {
+  const Outcome result = run(published("rosenbrock"), "ssbroyden", iterations(60));
+  EXPECT_LE(result.trace->last.loss, 1e-20);
+}
+
+TEST(SelfScaledBroyden, NeedsTheSameSamples) {
+  const OptimizerEntry& entry = optimizers().at("ssbroyden");
+  EXPECT_NE(why_inapplicable(entry, options_of_spec(entry, "ssbroyden"), network("4")), "");
+  EXPECT_EQ(why_inapplicable(entry, options_of_spec(entry, "ssbroyden"), network("4,data=4")), "");
+}
+
+}  // namespace
+}  // namespace isoline::optimizers

@@ -1,0 +1,286 @@
+// Each way to compute a spectral step against the thin SVD, and the laws of the filters.
+#include <gtest/gtest.h>
+
+#include "core/decompose.h"
+#include "optimizers/spectral_step.h"
+#include "run.h"
+#include "trial_problems.h"
+
+namespace isoline::optimizers {
+
+using problems::Point;
+using problems::Problem;
+namespace {
+
+// Three layers in double; `batch` samples of two outputs each make J wide up to 98.
+Problem network(const std::string& batch, const std::string& activation = "tanh") {
+  return published("sine[mode=learn,xi=2,network=mlp[layers=12-12,precision=double,activation=" +
+                   activation + "],batch=" + batch + ",data=" + batch + "]");
+}
+
+constexpr OracleSet kAll{Oracle::forward, Oracle::jacobian, Oracle::pullback, Oracle::pushforward,
+                         Oracle::layer_factors};
+
+struct Computed {
+  Vector step;  // −V f(σ) Uᵀ g
+  std::string said;
+  Real estimate = 0;  // of the error by a Gram matrix
+};
+
+Computed step_of(const Problem& problem, const Vector& theta, Way way, const SpectralFilter& filter,
+                 const KrylovLimits& krylov = {}, const OracleSet& granted = kAll) {
+  const auto trace = std::make_unique<Trace>();
+  Meter meter(problem, iterations(10), granted, *trace);
+  Vector start = theta;
+  meter.begin(start);
+  SpectralStep spectral(way, krylov);
+  spectral.start(meter);
+  Linearization at;
+  meter.linearize(theta, at);
+  Matrix g;
+  at.cotangent(g);
+  Vector step = Vector::Zero(theta.size());
+  EXPECT_TRUE(spectral.add(meter, at, filter, g.reshaped(), -1, step));
+  return {step, trace->claimed, spectral.error_by_gram()};
+}
+
+void expect_near(const Vector& one, const Vector& other, Real tolerance, const std::string& what) {
+  EXPECT_LE((one - other).norm(), tolerance * other.norm()) << what;
+}
+
+// Wide, tall and square; at the start, and where 30 steps have led.
+void for_some_points(const std::function<void(const Problem&, const Vector&)>& check) {
+  struct Trained {
+    Problem problem;
+    Vector theta;
+  };
+  static const std::vector<Trained> all = [] {
+    std::vector<Trained> made;
+    for (const char* activation : {"tanh", "relu"})
+      for (const char* batch : {"8", "97", "150"}) {
+        Problem problem = network(batch, activation);
+        Vector theta = run(problem, "hig[rate=0.1,way=svd]", iterations(30)).theta;
+        made.push_back({std::move(problem), std::move(theta)});
+      }
+    return made;
+  }();
+  for (const auto& [problem, theta] : all) {
+    check(problem, problem.start());
+    check(problem, theta);
+  }
+}
+
+// Of which a Gram matrix, too, gives the step to 1e-8, wherever the spectrum lies.
+const SpectralFilter kFilters[] = {gradient_filter(),           power_filter(0, 1e-3),
+                                   power_filter(0.25, 1e-3),    power_filter(0.5, 1e-3),
+                                   power_filter(0.75, 1e-3),    truncated_inverse_filter(1e-3),
+                                   tikhonov_filter(1e-3),       decaying_filter(0.5, 1e-6),
+                                   decaying_filter(0.75, 1e-6), decaying_filter(1, 1e-6)};
+
+std::string text_of(const SpectralFilter& filter, const Problem& problem) {
+  return "κ " + std::to_string(filter.kappa) + ", μ " + std::to_string(filter.damping) + ", " +
+         std::to_string(problem.residuals()) + " × " + std::to_string(problem.unknowns());
+}
+
+TEST(SpectralStep, EveryWayAgreesWithTheSvd) {
+  for_some_points([](const Problem& problem, const Vector& theta) {
+    const bool is_wide = problem.residuals() < problem.unknowns();
+    for (const SpectralFilter& filter : kFilters) {
+      const Vector reference = step_of(problem, theta, Way::svd, filter).step;
+      const std::string what = text_of(filter, problem);
+      expect_near(step_of(problem, theta, Way::qr, filter).step, reference, 1e-10, "qr, " + what);
+      expect_near(step_of(problem, theta, Way::gram, filter).step, reference, 1e-8,
+                  "gram, " + what);
+      if (is_wide)
+        expect_near(step_of(problem, theta, Way::layers, filter).step, reference, 1e-8,
+                    "layers, " + what);
+    }
+    const SpectralFilter damped = tikhonov_filter(1e-4);
+    const Vector reference = step_of(problem, theta, Way::svd, damped).step;
+    expect_near(step_of(problem, theta, Way::cholesky, damped).step, reference, 1e-8,
+                "cholesky, " + text_of(damped, problem));
+  });
+}
+
+// With the published cut-offs, at which a Gram matrix alone would not do. The reference itself
+// knows a σ to rounding of the largest, so that a share of 1e-10 is left out here.
+TEST(SpectralStep, TheAutomaticWayAgreesWithTheSvd) {
+  for_some_points([](const Problem& problem, const Vector& theta) {
+    for (const Real cutoff : {1e-7, 1e-6, 1e-5, 1e-4})
+      for (const Real kappa : {0.5, 1.0}) {
+        const SpectralFilter filter = power_filter(kappa, cutoff);
+        expect_near(step_of(problem, theta, Way::automatic, filter).step,
+                    step_of(problem, theta, Way::svd, filter).step, 1e-8,
+                    std::to_string(cutoff) + ", " + text_of(filter, problem));
+      }
+  });
+}
+
+// To an order of magnitude, which is what the automatic way relies on.
+TEST(SpectralStep, TheErrorOfAGramMatrixIsEstimated) {
+  for_some_points([](const Problem& problem, const Vector& theta) {
+    for (const Real cutoff : {1e-4, 1e-3}) {
+      const SpectralFilter filter = truncated_inverse_filter(cutoff);
+      const Vector reference = step_of(problem, theta, Way::svd, filter).step;
+      const Computed by_gram = step_of(problem, theta, Way::gram, filter);
+      const Real error = (by_gram.step - reference).norm() / reference.norm();
+      EXPECT_LE(error, 5 * by_gram.estimate) << text_of(filter, problem);
+      EXPECT_LE(by_gram.estimate, cutoff < 1e-3 ? 1e-7 : 1e-9) << text_of(filter, problem);
+    }
+  });
+}
+
+// y = diag(1, share) x: the least singular value decides, and the run says what was done.
+TEST(SpectralStep, TheAutomaticWayIsChosenByTheLeastSingularValueKept) {
+  const auto said = [](Real share, const SpectralFilter& filter) {
+    const Matrix M = Eigen::Vector2d(1, share).asDiagonal();
+    const Problem problem = linear(M, Eigen::Vector2d(1, 1), Eigen::Vector2d(0, 0));
+    return step_of(problem, problem.start(), Way::automatic, filter, {},
+                   {Oracle::forward, Oracle::jacobian})
+        .said;
+  };
+  const std::string by_gram = "steps by the Gram matrix of J", by_qr = "steps by QR";
+  EXPECT_TRUE(said(1e-3, power_filter(0.5, 1e-6)).starts_with(by_gram));
+  EXPECT_TRUE(said(5e-6, power_filter(0.5, 1e-6)).starts_with(by_qr));
+  EXPECT_TRUE(said(5e-7, power_filter(0.5, 1e-6)).starts_with(by_gram));  // discarded
+  EXPECT_TRUE(said(0.1, power_filter(0.5, 1e-8)).starts_with(by_qr));
+  EXPECT_TRUE(said(1e-9, decaying_filter(0.5, 1e-4)).starts_with(by_gram));  // decays
+  EXPECT_TRUE(said(1e-9, decaying_filter(0.5, 1e-12)).starts_with(by_qr));
+  EXPECT_TRUE(said(1e-9, tikhonov_filter(1e-3)).starts_with("steps by Cholesky"));
+  EXPECT_TRUE(said(1e-9, tikhonov_filter(1e-12)).starts_with(by_qr));
+}
+
+TEST(SpectralStep, ANetworkOfDenseLayersIsTreatedLayerByLayerWhereJIsWide) {
+  const Problem wide = network("8"), tall = network("200");
+  const auto needs = [](const Problem& problem) {
+    return needs_of(Way::automatic, power_filter(0.5, 1e-6), problem);
+  };
+  EXPECT_TRUE(needs(wide).contains(Oracle::layer_factors));
+  EXPECT_FALSE(needs(tall).contains(Oracle::layer_factors));
+  EXPECT_EQ(step_of(wide, wide.start(), Way::automatic, power_filter(0.5, 1e-2)).said,
+            "steps by the Gram matrix layer by layer");
+  EXPECT_NE(objection_to(Way::layers, tall), "");
+}
+
+// Small σ carry a large part of the step, and the estimate must still be no less than the error.
+TEST(SpectralStep, LanczosComesAsNearAsItSays) {
+  for_some_points([](const Problem& problem, const Vector& theta) {
+    for (const SpectralFilter& filter :
+         {gradient_filter(), power_filter(0, 1e-2), power_filter(0.5, 1e-2),
+          decaying_filter(0.5, 1e-4), decaying_filter(1, 1e-4)}) {
+      const Vector reference = step_of(problem, theta, Way::svd, filter).step;
+      expect_near(step_of(problem, theta, Way::lanczos, filter, {.tolerance = 1e-3}).step,
+                  reference, 1e-3, text_of(filter, problem));
+      expect_near(step_of(problem, theta, Way::lanczos, filter, {.tolerance = 0}).step, reference,
+                  1e-8, "whole space, " + text_of(filter, problem));
+    }
+  });
+}
+
+TEST(SpectralStep, LanczosKeepsToItsVectorsAndSaysHowFarItCame) {
+  const Problem problem = network("40");
+  const Outcome result =
+      run(problem, "hig[way=lanczos,cutoff=1e-2,krylov-vectors=7,rate=1e-2]", iterations(3));
+  EXPECT_EQ(result.trace->last.series[0], 7);
+  EXPECT_GT(result.trace->last.series[1], 1e-3);
+  EXPECT_STREQ(result.trace->claimed, "steps by Lanczos");
+}
+
+// --- the laws
+
+constexpr Real kKappas[] = {-1, 0, 0.25, 0.5, 0.75, 1};
+
+// L → c L, y → s y, on a network's wide Jacobian.
+Problem scaled(Real loss, Real output) {
+  const Matrix M = output * easy_matrix();
+  Matrix input(2, 2), truth(2, 2);
+  input << 0.3, -0.8, 0.5, 0.1;
+  truth << 1, 2, -1, 0.5;
+  RandomStream start(1, "trial", "start");
+  auto affine = std::make_unique<Affine>(2, 2);
+  Vector theta = affine->start(start);
+  return Problem({.physics = std::make_unique<Linear>(M),
+                  .start = std::move(theta),
+                  .target = M * truth,
+                  .network = std::move(affine),
+                  .input = input,
+                  .loss = std::make_unique<HalfSquared>(loss),
+                  .minimum = 0});
+}
+
+TEST(SpectralStep, ScalesWithTheLossAndWithThePower1MinusKappaOfTheOutput) {
+  constexpr Real kScale = 7;
+  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::automatic})
+    for (const Real kappa : kKappas) {
+      const auto step = [&](const Problem& problem) {
+        return step_of(problem, problem.start(), way, power_filter(kappa, 1e-6)).step;
+      };
+      const Vector one = step(scaled(1, 1));
+      expect_near(step(scaled(kScale, 1)), kScale * one, 1e-10, "loss");
+      expect_near(step(scaled(1, kScale)), std::pow(kScale, 1 - kappa) * one, 1e-10, "output");
+    }
+}
+
+// B copies of a sample: exponent −(1+κ)/2 for every κ.
+TEST(SpectralStep, ScalesWithMinusHalfOf1PlusKappaOfEqualSamples) {
+  constexpr Index kCopies = 5;
+  const auto copies = [](Index count) {
+    RandomStream start(1, "trial", "start");
+    auto affine = std::make_unique<Affine>(2, 2);
+    Vector theta = affine->start(start);
+    return Problem({.physics = std::make_unique<Linear>(easy_matrix()),
+                    .start = std::move(theta),
+                    .target = Eigen::Vector2d(1, -2).replicate(1, count),
+                    .network = std::move(affine),
+                    .input = Eigen::Vector2d(0.4, -0.7).replicate(1, count),
+                    .minimum = 0});
+  };
+  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::automatic})
+    for (const Real kappa : kKappas) {
+      const SpectralFilter filter = power_filter(kappa, 1e-6);
+      const Vector one = step_of(copies(1), copies(1).start(), way, filter).step;
+      const Vector many = step_of(copies(kCopies), copies(kCopies).start(), way, filter).step;
+      expect_near(many, std::pow(kCopies, -(1 + kappa) / 2) * one, 1e-10, std::to_string(kappa));
+    }
+}
+
+TEST(SpectralStep, KappaMinusOneIsTheGradient) {
+  const Problem problem = network("8");
+  Point at;
+  Matrix g(problem.outputs(), problem.samples());
+  Vector gradient(problem.unknowns());
+  problem.forward(problem.start(), at);
+  problem.cotangent(at, g);
+  problem.pullback(g, gradient, at);
+  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::lanczos})
+    expect_near(step_of(problem, problem.start(), way, gradient_filter()).step, -gradient, 1e-10,
+                "gradient");
+}
+
+// κ = 1 without truncation, J of full row rank.
+TEST(SpectralStep, KappaOneTakesTheLinearizedOutputAllTheWay) {
+  const Problem problem = network("8");
+  Point at;
+  Matrix g(problem.outputs(), problem.samples()), J;
+  problem.forward(problem.start(), at);
+  problem.cotangent(at, g);
+  problem.jacobian(J, at);
+  for (const Way way : {Way::svd, Way::qr, Way::orthogonal, Way::automatic}) {
+    const Vector step = step_of(problem, problem.start(), way, truncated_inverse_filter(0)).step;
+    expect_near(J * step, -g.reshaped(), 1e-10, "J Δθ");
+  }
+}
+
+TEST(Filters, AreTheirFormulas) {
+  const Spectrum of{.largest = 4, .mean_square = 3};
+  EXPECT_EQ(gradient_filter()(0.7, of), 0.7);
+  EXPECT_DOUBLE_EQ(power_filter(0.5, 0.1)(2, of), 1 / std::sqrt(2.0));
+  EXPECT_EQ(power_filter(0.5, 0.5)(2, of), 0);  // strictly greater
+  EXPECT_DOUBLE_EQ(clamped_power_filter(1, 0.5)(1e-9, of), 0.5);
+  EXPECT_DOUBLE_EQ(truncated_inverse_filter(0.1)(2, of), 0.5);
+  EXPECT_DOUBLE_EQ(tikhonov_filter(0.5)(2, of), 2 / (4 + 1.5));
+  EXPECT_DOUBLE_EQ(decaying_filter(0.5, 0.25)(2, of), 2 / std::pow(4 + 4, 0.75));
+}
+
+}  // namespace
+}  // namespace isoline::optimizers
