@@ -1,7 +1,8 @@
 // Shampoo, Gupta, Koren, Singer (2018), algorithm 1: of each matrix of weights with gradient G,
 // L ← L + G Gᵀ, R ← R + Gᵀ G, W ← W − η L^(−¼) G R^(−¼), from L = R = ε I; of a vector L^(−½) g,
 // which is AdaGrad with its full matrix. A side longer than a limit is left alone, and the other's
-// exponent is then −½. The roots are renewed at each of the first steps and then every few.
+// exponent is then −½. The roots can be renewed every few steps only; but a root of a few gradients
+// is vast where they have not been, and one that is kept too long makes the next step diverge.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@ namespace {
 
 struct Shampoo {
   Real rate = 0.1, epsilon = 1e-4;
-  Index every = 10, longest = 512;
+  Index every = 1, longest = 512;
 
   struct Side {
     bool is_used = false;
@@ -60,10 +61,7 @@ struct Shampoo {
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
     s.at.gradient(s.gradient);
-    // A root of few gradients is vast where they have not been, and must not be kept.
-    const auto period = static_cast<std::uint64_t>(every);
-    const bool renews = s.steps < period || s.steps % period == 0;
-    ++s.steps;
+    const bool renews = s.steps++ % static_cast<std::uint64_t>(every) == 0;
     for (std::size_t i = 0; i < s.blocks.size(); ++i) {
       Sheet& sheet = s.sheets[i];
       sheet.G = s.blocks[i].of(s.gradient);
@@ -109,8 +107,7 @@ struct Shampoo {
 void fields(Shampoo& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
   field("epsilon", o.epsilon, above(0), "ε of the sums at the start");
-  field("every", o.every, between(1, 1e6),
-        "steps from one renewal of the roots to the next, but for as many at first");
+  field("every", o.every, between(1, 1e6), "steps from one renewal of the roots to the next");
   field("longest", o.longest, between(1, 4096), "longest side that has a preconditioner");
 }
 
@@ -124,18 +121,17 @@ std::string objection(const OptionValues& options, const Problem& problem) {
 }  // namespace
 
 void register_shampoo(OptimizerRegistry& registry) {
-  registry.add(stepper_entry<Shampoo>(
-      {.name = "shampoo",
-       .title = "Shampoo",
-       .family = Family::curvature,
-       .kind = Kind::adaptive,
-       .formula = "L ← L + G Gᵀ,  R ← R + Gᵀ G,  W ← W − η L^(−¼) G R^(−¼)",
-       .source = "Gupta, Koren, Singer (2018), algorithm 1",
-       .note = "Of a vector AdaGrad with its full matrix. The roots are renewed at "
-               "each of the first ten steps and then every ten.",
-       .needs = {Oracle::forward, Oracle::pullback},
-       .tunable = {.option = "rate", .below = 4},
-       .objection = objection}));
+  registry.add(
+      stepper_entry<Shampoo>({.name = "shampoo",
+                              .title = "Shampoo",
+                              .family = Family::curvature,
+                              .kind = Kind::adaptive,
+                              .formula = "L ← L + G Gᵀ,  R ← R + Gᵀ G,  W ← W − η L^(−¼) G R^(−¼)",
+                              .source = "Gupta, Koren, Singer (2018), algorithm 1",
+                              .note = "Of a vector AdaGrad with its full matrix.",
+                              .needs = {Oracle::forward, Oracle::pullback},
+                              .tunable = {.option = "rate", .below = 4},
+                              .objection = objection}));
 }
 
 }  // namespace isoline::optimizers

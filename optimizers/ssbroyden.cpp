@@ -34,8 +34,9 @@ void update_self_scaled(Matrix& H, const Vector& s, const Vector& y, Real bend, 
   }
   v = s / ys - Hy / yHy;
   const Real weight = phi * yHy;
-  for (Index j = 0; j < H.cols(); ++j)
+  for (Index j = 0; j < H.cols(); ++j)  // rounding must not make it asymmetric bit by bit
     H.col(j) = (H.col(j) - Hy[j] / yHy * Hy + weight * v[j] * v) / tau + s[j] / ys * s;
+  H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
 }
 
 namespace {

@@ -51,5 +51,6 @@ void register_transforms();
 void register_networks();
 void register_isolation();
 void register_unet();
+void register_spectral();
 
 }  // namespace isoline::benchmarks::micro

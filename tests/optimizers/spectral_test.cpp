@@ -116,6 +116,23 @@ TEST(SpectralStep, TheAutomaticWayAgreesWithTheSvd) {
   });
 }
 
+// At the cut-offs and rates of the paper, in smaller batches.
+TEST(SpectralStep, OfThePublishedProblemsAgreesWithTheSvd) {
+  for (const auto& [spec, cutoff, method] :
+       {std::tuple{"linear-chain[mode=learn,batch=16]", 1e-10, "hig[rate=2,cutoff=1e-10]"},
+        {"coupled-oscillators[mode=learn,batch=32]", 1e-6, "hig[rate=2]"},
+        {"quantum-dipole[mode=learn,batch=2]", 1e-5, "hig[rate=0.5,cutoff=1e-5]"}}) {
+    const Problem problem = published(spec);
+    for (const int steps : {0, 100}) {
+      const Vector theta =
+          steps > 0 ? run(problem, method, iterations(steps)).theta : problem.start();
+      const SpectralFilter filter = power_filter(0.5, cutoff);
+      expect_near(step_of(problem, theta, Way::automatic, filter).step,
+                  step_of(problem, theta, Way::svd, filter).step, 1e-8, spec);
+    }
+  }
+}
+
 // To an order of magnitude, which is what the automatic way relies on.
 TEST(SpectralStep, TheErrorOfAGramMatrixIsEstimated) {
   for_some_points([](const Problem& problem, const Vector& theta) {
