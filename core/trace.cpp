@@ -72,8 +72,24 @@ bool is_sound(const Trace::Exhibit& shown) {
 }
 
 bool are_exhibits_sound(const Trace& trace) {
-  return is_within(trace.shown_grid, Trace::kExhibit) && is_sound(trace.shown_target) &&
-         is_sound(trace.shown_x) && is_sound(trace.shown_truth);
+  return is_sound(trace.shown_target) && is_sound(trace.shown_x) && is_sound(trace.shown_truth);
+}
+
+bool are_frames_sound(const Trace::Frames& frames) {
+  constexpr int kMost = Trace::Frames::kCells;
+  if (!is_flag(frames.has_truth) || !is_within(frames.rows, kMost) ||
+      !is_within(frames.columns, kMost))
+    return false;
+  if ((frames.rows == 0) != (frames.columns == 0) ||
+      std::int64_t{frames.rows} * frames.columns > kMost)
+    return false;
+  std::vector<std::int64_t> iterations;
+  for (const std::int64_t iteration : frames.iteration) {
+    if (iteration < -1) return false;
+    if (iteration >= 0) iterations.push_back(iteration);
+  }
+  std::ranges::sort(iterations);
+  return std::ranges::adjacent_find(iterations) == iterations.end();
 }
 
 bool are_texts_sound(const Trace& trace) {
@@ -116,6 +132,7 @@ std::string defect_of(const Trace& trace) {
       !is_within(trace.path_outputs, Trace::kOutputs))
     return "a path of a size that cannot be";
   if (!are_exhibits_sound(trace)) return "samples of a size that cannot be";
+  if (!are_frames_sound(trace.frames)) return "fields of a size or at iterations that cannot be";
   if (!are_texts_sound(trace)) return "a text without an end";
   if (!are_series_sound(trace)) return "more series than there is room for";
   if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps))

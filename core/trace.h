@@ -62,13 +62,25 @@ struct Trace {
   double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
   int path_inputs = 0, path_outputs = 0;  // sizes of x and y in the path; 0: not kept
 
-  // What was learned, on samples of the validation: one grid, or some small samples, one a column.
+  // What was learned, on some small samples of the validation, one a column.
   struct Exhibit {
     int rows = 0, columns = 0;
     double value[kExhibit];
   };
   Exhibit shown_target, shown_x, shown_truth;
-  int shown_grid = 0;  // N where the columns are N×N grids
+  // y*, x* and x of the first sample that judges, where x and y are fields (core/frames.h), in the
+  // single precision that files keep.
+  struct Frames {
+    static constexpr std::size_t kPlaces = 12;
+    static constexpr int kCells = 128 * 128;  // of the largest grid
+    int rows = 0, columns = 0;                // 0: nothing is kept
+    bool has_truth = false;
+    std::int64_t iteration[kPlaces];  // −1: nothing there
+    float target[kCells], truth[kCells], x[kPlaces][kCells];
+
+    Frames() { std::fill_n(iteration, kPlaces, -1); }
+  };
+  Frames frames;
   bool is_learned = false;
   char series_names[kText] = "";  // a line each
 

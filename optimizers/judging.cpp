@@ -1,8 +1,10 @@
 // The meter as the harness has it: a run begun, traced, judged and ended.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/errors.h"
+#include "core/frames.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
@@ -26,10 +28,18 @@ std::int64_t next_kept_after(std::int64_t iteration) {
   return next;
 }
 
+std::span<const Real> first_sample(const Matrix& all) {
+  if (all.size() == 0) return {};
+  return {all.data(), static_cast<std::size_t>(all.rows())};
+}
+
 }  // namespace
 
 Status Meter::begin(VectorRef theta) {
   prepare();
+  if (const auto& field = problem_.field())
+    open_frames(trace_.frames, field->rows, field->columns, first_sample(judging().target),
+                first_sample(judging().truth));
   previous_ = theta;
   measure(theta);
   trace_.start_loss = judged_.loss;
@@ -143,7 +153,7 @@ void Meter::finish(VectorRef theta, Status verdict) {
   const int points = trace_.points;  // the curve ends at the returned point
   if (points > 0 && trace_.point[points - 1].iteration == iteration_) trace_.points = points - 1;
   keep_point();
-  if (problem_.is_learned()) show();
+  if (problem_.is_learned() && !problem_.field()) show();
   if (verdict == Status::running) verdict = Status::converged;
   if (judged_.loss <= target_loss_) verdict = Status::target;
   if (!std::isfinite(judged_.loss)) verdict = Status::diverged;
@@ -184,13 +194,12 @@ Real Meter::judged_gradient_norm() {
   return judged_gradient_.norm();
 }
 
-// The validation as it was last judged: its first grid, or its first small samples.
+// The validation as it was last judged: its first small samples.
 void Meter::show() {
   constexpr Index kMostSamples = 256;
   const auto keep = [&](const Matrix& all, Trace::Exhibit& shown) {
     if (all.size() == 0 || all.rows() > Trace::kExhibit) return;
-    const Index most =
-        problem_.grid() > 0 ? 1 : std::min(kMostSamples, Trace::kExhibit / all.rows());
+    const Index most = std::min(kMostSamples, Trace::kExhibit / all.rows());
     shown.columns = static_cast<int>(std::min(most, all.cols()));
     std::copy_n(all.data(), all.rows() * shown.columns, shown.value);
     shown.rows = static_cast<int>(all.rows());
@@ -198,7 +207,6 @@ void Meter::show() {
   keep(validation_.target, trace_.shown_target);
   keep(judged_.x(), trace_.shown_x);
   keep(validation_.truth, trace_.shown_truth);
-  trace_.shown_grid = static_cast<int>(problem_.grid());
 }
 
 void Meter::keep_point() {
@@ -209,6 +217,7 @@ void Meter::keep_point() {
     std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
+  keep_frame(trace_.frames, iteration_, first_sample(judged_.x()));
   trace_.points = index + 1;
   trace_.best_loss = best_loss_;
   next_kept_ = next_kept_after(iteration_);

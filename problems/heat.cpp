@@ -119,6 +119,10 @@ std::function<Real(const Batch&)> floor_of(std::shared_ptr<const Heat> physics, 
   };
 }
 
+Field field_of(Index N) {
+  return {.rows = N, .columns = N, .x = {"temperature before"}, .y = {"temperature after"}};
+}
+
 // The mean of x* is that of y*, which the network is given: x ← N(y*) + mean(y*) − mean(N(y*)).
 ProblemParts learn_heat(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const Heat>(o.N, 0);
@@ -134,7 +138,7 @@ ProblemParts learn_heat(const Options& o, const Draw& draw) {
                 .x_error = summed_error,
                 .x_floor = floor_of(physics, summed_error),
                 .samples = {.validation = 64, .draw = sample},
-                .grid = o.N});
+                .field = field_of(o.N)});
 }
 
 ProblemParts make_heat(const Options& o, const Draw& draw) {
@@ -151,7 +155,8 @@ ProblemParts make_heat(const Options& o, const Draw& draw) {
           .minimum = 0,
           .truth = truth,
           .x_error = distance,
-          .x_floor = floor_of(physics, distance)};
+          .x_floor = floor_of(physics, distance),
+          .field = field_of(o.N)};
 }
 
 }  // namespace

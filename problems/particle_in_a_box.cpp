@@ -72,11 +72,14 @@ class Factorized {
   State inverse_;  // 1/d_i
 };
 
-State ground_state() {
-  const Vector psi = ParticleInABox::eigenstate(1);
-  State s;
-  for (Index i = 0; i < kPoints; ++i) put({Lanes::Constant(psi[i]), Lanes::Zero()}, i, s);
-  return s;
+const State& ground_state() {
+  static const State everywhere = [] {
+    const Vector psi = ParticleInABox::eigenstate(1);
+    State s;
+    for (Index i = 0; i < kPoints; ++i) put({Lanes::Constant(psi[i]), Lanes::Zero()}, i, s);
+    return s;
+  }();
+  return everywhere;
 }
 
 // What stays of a forward pass, φ of each step, and room.

@@ -43,6 +43,10 @@ class Poisson final : public Physics {
   Laplacian laplacian_;
 };
 
+Field field_of(Index N) {
+  return {.rows = N, .columns = N, .x = {"source ∇²y", "1/cell²"}, .y = {"potential"}};
+}
+
 ProblemParts learn_poisson(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const Poisson>(o.N);
   const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {
@@ -54,7 +58,7 @@ ProblemParts learn_poisson(const Options& o, const Draw& draw) {
                {.physics = std::make_unique<Poisson>(o.N),
                 .x_error = summed_error,
                 .samples = {.validation = 64, .draw = sample},
-                .grid = o.N});
+                .field = field_of(o.N)});
 }
 
 ProblemParts make_poisson(const Options& o, const Draw& draw) {
@@ -69,7 +73,8 @@ ProblemParts make_poisson(const Options& o, const Draw& draw) {
           .target = target,
           .minimum = 0,
           .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
+          .field = field_of(o.N)};
 }
 
 }  // namespace

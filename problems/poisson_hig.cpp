@@ -32,9 +32,10 @@ class PoissonHig final : public Physics {
   void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { apply(v, Jv); }
   void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { apply(u, JTu); }
   // The same of each sample.
-  void jacobian(BatchOut J, Workspace&) const override {
+  void jacobian(BatchOut J, Workspace& w) const override {
     const Index k = inputs();
-    laplacian_.apply(Matrix::Identity(k, k), J.leftCols(k));
+    w.unit.setIdentity(k, k);
+    laplacian_.apply(w.unit, J.leftCols(k));
     for (Index first = k; first < J.cols(); first += k) J.middleCols(first, k) = J.leftCols(k);
   }
   bool has_curvature() const override { return true; }
@@ -59,6 +60,10 @@ Vector noise(Index N, RandomStream& stream) {
   return smooth_noise(N, static_cast<Real>(N), 1, stream);
 }
 
+Field field_of(Index N) {
+  return {.rows = N, .columns = N, .x = {"potential"}, .y = {"∇²x", "1/cell²"}};
+}
+
 ProblemParts learn_poisson_hig(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const PoissonHig>(o.N);
   const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {
@@ -71,7 +76,7 @@ ProblemParts learn_poisson_hig(const Options& o, const Draw& draw) {
                              {.physics = std::make_unique<PoissonHig>(o.N),
                               .x_error = summed_error,
                               .samples = {.validation = 64, .draw = sample},
-                              .grid = o.N});
+                              .field = field_of(o.N)});
   const Network& network = *parts.network;
   parts.series = joined(std::move(parts.series),
                         joined(hidden_activity(network), saturation(network, /*shown=*/0)));
@@ -90,7 +95,8 @@ ProblemParts make_poisson_hig(const Options& o, const Draw& draw) {
           .target = target,
           .minimum = 0,
           .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); }};
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
+          .field = field_of(o.N)};
 }
 
 }  // namespace

@@ -23,6 +23,9 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   require(batch_.target.rows() == outputs(), "the target does not fit the physics' outputs");
   require(parts_.network->outputs() == inputs(), "the network does not fit the physics' inputs");
   require(parts_.network->parameters() == unknowns(), "the start does not fit the network");
+  if (!parts_.field) return;
+  const Index cells = parts_.field->rows * parts_.field->columns;
+  require(inputs() == cells && outputs() == cells, "x and y do not fit the grid of the field");
 }
 
 Real Problem::x_error(BatchRef x, const Batch& batch) const {

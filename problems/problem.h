@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/aim.h"
+#include "core/field.h"
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/random.h"
@@ -88,8 +89,8 @@ struct ProblemParts {
   // The error in x that the data of these samples cannot better; 0 where empty.
   std::function<Real(const Batch& batch)> x_floor;
   Samples samples = {};
-  Index grid = 0;      // N where x and y are N×N grids, for pictures
-  Series series = {};  // further quantities to be traced, at most Trace::kSeries
+  std::optional<Field> field = {};  // where x and y are numbers on one grid, for pictures
+  Series series = {};               // further quantities to be traced, at most Trace::kSeries
   // Where to draw the landscape of a two-dimensional problem: low and high corner in x.
   std::optional<std::array<Real, 4>> window;    // x1 low, x1 high, x2 low, x2 high
   std::optional<std::array<Real, 4>> y_window;  // of y; what the window maps into where empty
@@ -121,7 +122,7 @@ class Problem {
   std::vector<Block> layout() const { return parts_.network->layout(); }
   const Network& network() const { return *parts_.network; }
   bool has_identity_network() const { return parts_.network->is_identity(); }
-  Index grid() const { return parts_.grid; }
+  const std::optional<Field>& field() const { return parts_.field; }
   const Series& series() const { return parts_.series; }
   bool is_learned() const { return parts_.samples.batch > 0; }
   bool has_fresh_batches() const { return is_learned() && parts_.samples.data == 0; }

@@ -31,19 +31,20 @@ class Infidelity final : public Loss {
  public:
   bool is_least_squares() const override { return false; }
   Real value(BatchRef y, BatchRef target) const override {
-    return 1 - overlaps(y, target).squaredNorm() / static_cast<Real>(y.cols());
+    const ComplexBatch psi = complex_of(y), a = complex_of(target);
+    Real sum = 0;
+    for (Index b = 0; b < psi.cols(); ++b) sum += 1 - std::norm(a.col(b).dot(psi.col(b)));
+    return sum / static_cast<Real>(psi.cols());
   }
   void cotangent(BatchRef y, BatchRef target, BatchOut g) const override {
     curvature(y, target, y, g);  // L is quadratic
   }
   void curvature(BatchRef, BatchRef target, BatchRef dy, BatchOut dg) const override {
-    complex_in(dg) = complex_of(target) *
-                     (-2 / static_cast<Real>(dy.cols()) * overlaps(dy, target)).asDiagonal();
-  }
-
- private:
-  static Eigen::VectorXcd overlaps(BatchRef y, BatchRef target) {  // ⟨y*, y⟩, (B)
-    return complex_of(target).conjugate().cwiseProduct(complex_of(y)).colwise().sum().transpose();
+    const ComplexBatch dpsi = complex_of(dy), a = complex_of(target);
+    ComplexBatchOut out = complex_in(dg);
+    const Real scale = -2 / static_cast<Real>(dpsi.cols());
+    for (Index b = 0; b < dpsi.cols(); ++b)
+      out.col(b) = scale * a.col(b).dot(dpsi.col(b)) * a.col(b);
   }
 };
 

@@ -47,6 +47,8 @@ Examined examined_record(const Json& record, const std::string& path) {
   Examined examined;
   if (std::string violation = cell_violation(record); !violation.empty())
     examined.violations.push_back(std::move(violation));
+  if (std::string violation = fields_violation(record, path); !violation.empty())
+    examined.violations.push_back(std::move(violation));
   examined.identity = RecordIdentity{path, record.at("cell"), record.at("build")};
   return examined;
 }

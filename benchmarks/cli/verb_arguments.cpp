@@ -39,6 +39,9 @@ void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
   verb.flag("--no-report", given.no_report, "Write no report");
   verb.flag("--keep-output", given.keeps_output,
             "Keep in each record what its cell wrote to the terminal, up to 64 KiB");
+  verb.flag(
+      "--fields", given.keeps_fields,
+      "Keep x of problems on a grid, at six iterations, for every seed: else for seed 0 alone");
 }
 
 }  // namespace
@@ -88,6 +91,9 @@ void declare(VerbArguments& verb, CompareArguments& given) {
   verb.text("--trend", given.trend,
             "Folder of earlier baselines, whose headline figures are shown, by file name");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
+  verb.text("--html", given.page,
+            "Also write a page, one file, in which each method is compared with itself; of two "
+            "result folders");
   const Argument& json = verb.flag("--json", given.as_json, "Print JSON");
   verb.flag("--markdown", given.as_markdown, "Print Markdown").excludes(json);
 }

@@ -20,6 +20,7 @@ struct RunArguments {
   int jobs = 0, threads = 0, repeat = 1;                    // 0: one a core; as the suite has it
   bool force = false, reuse = false, is_dry = false, lists_all = false, exclusive = false;
   bool no_report = false, quiet = false, allow_large = false, keeps_output = false;
+  bool keeps_fields = false;
   bool in_process = false;
 };
 int run_verb(const RunArguments& given, Session& session);
@@ -37,6 +38,7 @@ struct CompareArguments {
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
   std::vector<std::string> timed;
   std::string allowed, trend;  // a list of cells that NEW may lack; a folder of earlier baselines
+  std::string page;            // a file of HTML
   bool is_common_only = false, as_markdown = false, as_json = false, lists_all = false;
 };
 int compare_verb(const CompareArguments& given, Session& session);

@@ -10,7 +10,12 @@
 #include <tuple>
 
 #include "benchmarks/merge/join.h"
+#include "core/digest.h"
+#include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
+#include "core/records/field_frames.h"
+#include "core/records/file_text.h"
 #include "core/records/request.h"
 
 namespace isoline::benchmarks {
@@ -29,6 +34,18 @@ std::string cell_violation(const Json& record) {
   const std::string cell = request_from_json(record.at("request")).cell;
   if (cell == claimed) return "";
   return fmt::format("its cell is {}, the digest of its request is {}", claimed, cell);
+}
+
+std::string fields_violation(const Json& record, const std::filesystem::path& file) {
+  if (!record.contains("fields")) return "";
+  try {
+    const std::string bytes = read_text(field_path(file), kMostRecordBytes);
+    if (digest(bytes) == record.at("fields").at("digest")) return "";
+    return fmt::format("{} beside it is not the file of fields that it names",
+                       field_path(file).filename().string());
+  } catch (const UsageError& error) {
+    return fmt::format("its file of fields cannot be read: {}", error.what());
+  }
 }
 
 std::vector<DoubleRecord> double_records(std::vector<RecordIdentity> records) {

@@ -31,6 +31,7 @@ Json build_provenance(const Json& record) {
 auto rank_of(const Json& record) {
   Json rest = record;
   rest.erase("repeat_wall_seconds");
+  rest.erase("fields");
   const Json run = record.at("provenance").value("run", Json::object());
   return std::tuple(!is_nondeterministic(record),
                     run.is_object() ? run.value("started", std::string()) : std::string(),
@@ -72,11 +73,15 @@ std::string first_differences(const Json& a, const Json& b) {
 }  // namespace
 
 JoinedRecord join_records(const Json& a, const Json& b) {
-  if (!is_nondeterministic(a) && !is_nondeterministic(b)) {
-    const Json left = result_of(a), right = result_of(b);
-    if (left != right) return {nullptr, first_differences(left, right), false};
-  }
-  Json joined = rank_of(a) < rank_of(b) ? b : a;
+  const Json left = result_of(a), right = result_of(b);
+  const bool is_same = left == right;
+  if (!is_same && !is_nondeterministic(a) && !is_nondeterministic(b))
+    return {nullptr, first_differences(left, right), false};
+  const bool is_b = rank_of(a) < rank_of(b);
+  Json joined = is_b ? b : a;
+  const Json& other = is_b ? a : b;
+  if (is_same && other.contains("fields") && !joined.contains("fields"))
+    joined["fields"] = other.at("fields");  // one was asked for them and the other was not
   joined["repeat_wall_seconds"] =
       joined_timings(a.at("repeat_wall_seconds"), b.at("repeat_wall_seconds"));
   return {std::make_shared<const Json>(std::move(joined)), "",

@@ -189,6 +189,7 @@ class Runner {
   void keep(Task& task, const Worker& worker) {
     Record record = record_of(*task.request, worker.trace());
     record.provenance.run = task.run;
+    if (task.request->seed > 0 && !options_.keeps_fields) record.fields.reset();
     if (options_.keeps_output) record.output = worker.output().text();
     if (record.status == Status::crashed && record.output.empty())
       record.output = worker.output().last_words();
@@ -197,6 +198,7 @@ class Runner {
     if (earlier && !record.is_nondeterministic && !earlier->is_nondeterministic &&
         !same_result(*earlier, record))
       outcome_.conflicts.push_back(title_of(*task.request));
+    if (earlier && !record.fields) record.fields = earlier->fields;  // its file is there
     store_.write(record, earlier);
     if (record.status != Status::interrupted) store_.remove_checkpoint(record.request);
     ++outcome_.run;

@@ -25,6 +25,7 @@ struct RunOptions {
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
   bool keeps_output = false;  // of cells, in their records
+  bool keeps_fields = false;  // of every seed; else those of seed 0
   std::string command;        // for the record
 
   // Whether a record that is there, if one is, stands in nobody's way.

@@ -172,6 +172,7 @@ Sheet problem_sheet(const Catalog& catalog, const Component& component) {
     sheet.start_condition = condition_at(problem, problem.start());
     if (problem.truth()) sheet.condition = condition_at(problem, problem.truth()->reshaped());
   }
+  sheet.field = problem.field();
   if (problem.truth()) sheet.truth = small(*problem.truth());
   if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
   return sheet;

@@ -198,13 +198,15 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
 
 void Store::write_files(const Record& record) {
   const fs::path path = run_path(folder_, record.file_name());
-  if (record.exhibit && record.exhibit->is_picture()) {
-    const fs::path pictures = fs::path(path).replace_extension(".npy");
-    clear_way(pictures);
-    write_pictures(*record.exhibit, pictures);
+  const fs::path fields = field_path(path);
+  if (record.fields && !record.fields->numbers.empty()) {
+    clear_way(fields);
+    write_text(fields, field_file(*record.fields));
   }
   clear_way(path);
   write_text(path, file_text(record));
+  std::error_code unknown;
+  if (!record.fields) fs::remove(fields, unknown);  // of an earlier run that kept them
 }
 
 fs::path Store::checkpoint_path(const Request& request) const {

@@ -5,6 +5,8 @@
 
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/execute.h"
+#include "core/digest.h"
+#include "core/frames.h"
 #include "core/ladder.h"
 #include "core/records/provenance.h"
 #include "core/text.h"
@@ -50,20 +52,34 @@ Grid grid_of(const Trace::Exhibit& shown) {
   return {shown.rows, shown.columns, {shown.value, shown.value + shown.rows * shown.columns}};
 }
 
-// Of a run that was killed while it wrote them, there may be some of the three and not the others.
 std::optional<Exhibit> exhibit_of(const Trace& trace) {
   if (trace.shown_x.rows == 0) return std::nullopt;
-  const Index numbers = Index{trace.shown_grid} * trace.shown_grid;
-  const auto is_whole = [&](const Trace::Exhibit& shown) {
-    return shown.rows * shown.columns == numbers;
-  };
-  if (numbers > 0 &&
-      !(is_whole(trace.shown_target) && is_whole(trace.shown_x) && is_whole(trace.shown_truth)))
-    return std::nullopt;
-  return Exhibit{.grid = trace.shown_grid,
-                 .target = grid_of(trace.shown_target),
+  return Exhibit{.target = grid_of(trace.shown_target),
                  .x = grid_of(trace.shown_x),
                  .truth = grid_of(trace.shown_truth)};
+}
+
+// A field stands column by column, a file holds rows.
+void add_rows(const float* field, Index rows, Index columns, std::vector<float>& out) {
+  for (Index i = 0; i < rows; ++i)
+    for (Index j = 0; j < columns; ++j) out.push_back(field[j * rows + i]);
+}
+
+std::optional<FieldFrames> fields_of(const Trace& trace) {
+  const Trace::Frames& kept = trace.frames;
+  const std::vector<std::size_t> chosen = chosen_frames(kept);
+  if (kept.rows == 0 || chosen.empty()) return std::nullopt;
+  FieldFrames frames;
+  add_rows(kept.target, kept.rows, kept.columns, frames.numbers);
+  if (kept.has_truth) add_rows(kept.truth, kept.rows, kept.columns, frames.numbers);
+  for (const std::size_t place : chosen) {
+    frames.iterations.push_back(kept.iteration[place]);
+    add_rows(kept.x[place], kept.rows, kept.columns, frames.numbers);
+  }
+  const auto cells = static_cast<std::size_t>(kept.rows) * static_cast<std::size_t>(kept.columns);
+  frames.shape = {static_cast<Index>(frames.numbers.size() / cells), kept.rows, kept.columns};
+  frames.digest = digest(field_file(frames));
+  return frames;
 }
 
 Curve curve_of(const Trace& trace) {
@@ -193,6 +209,7 @@ Record record_of(const Request& request, const Trace& trace) {
   if (trace.path_inputs > 0) record.trajectory = trajectory_of(trace);
   record.series = series_of(trace);
   record.exhibit = exhibit_of(trace);
+  record.fields = fields_of(trace);
   record.privileges = lines_of(trace.privileges);
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||
                                record.status == Status::interrupted ||

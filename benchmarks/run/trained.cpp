@@ -129,6 +129,12 @@ TrainedNetwork from_raw(const Json& header, std::string_view numbers) {
   return network;
 }
 
+// N where samples are N×N grids, else 0.
+Index side_of_grid(const Problem& problem) {
+  const auto& field = problem.field();
+  return field && field->rows == field->columns ? field->rows : 0;
+}
+
 // A picture is stored row by row, a field column by column: each N×N block is transposed.
 void turn_grids(Matrix& samples, Index N) {
   if (N == 0) return;
@@ -214,7 +220,7 @@ NumberArray infer(const Problem& problem, const TrainedNetwork& network, const N
                   const std::string& origin) {
   constexpr Index kAtOnce = 1024;  // samples: all layers of all of them need not be held
   Matrix in = samples_of(input, problem.network().inputs(), origin);
-  turn_grids(in, problem.grid());
+  turn_grids(in, side_of_grid(problem));
   Matrix x(problem.inputs(), in.cols());
   Workspace workspace;
   for (Index first = 0; first < in.cols(); first += kAtOnce) {
@@ -223,11 +229,11 @@ NumberArray infer(const Problem& problem, const TrainedNetwork& network, const N
     problem.network().infer(network.theta, network.statistics, some, inferred, workspace);
     x.middleCols(first, some.cols()) = inferred;
   }
-  turn_grids(x, problem.grid());
+  turn_grids(x, side_of_grid(problem));
   NumberArray output{{x.cols()}, {x.data(), x.data() + x.size()}};
-  const bool is_picture = problem.grid() > 0 && input.shape.size() > 2;
+  const bool is_picture = side_of_grid(problem) > 0 && input.shape.size() > 2;
   if (is_picture)
-    output.shape.insert(output.shape.end(), {problem.grid(), problem.grid()});
+    output.shape.insert(output.shape.end(), {side_of_grid(problem), side_of_grid(problem)});
   else
     output.shape.push_back(x.rows());
   return output;

@@ -24,6 +24,9 @@ NumberArray npy_from_bytes(const std::string& bytes);
 // the file, where it is none, is cut short, or holds a number that is not finite.
 NumberArray read_npy(const std::filesystem::path& path);
 
+// The bytes of a file of float32. There are as many values as the shape asks for.
+std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>& values);
+
 // As float64; whole or not at all.
 void write_npy(const std::filesystem::path& path, const NumberArray& array);
 

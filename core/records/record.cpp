@@ -36,6 +36,7 @@ void require_equal_columns(const Record& record) {
            curve.x_error, curve.gradient_norm, curve.step_norm, curve.batch_loss,
            curve.batch_x_error, record.series);
   if (record.trajectory) of_curve(record.trajectory->x, record.trajectory->y);
+  if (record.fields) require_sound(*record.fields);
   if (!record.hits) return;
   const Hits& hits = *record.hits;
   const std::size_t targets = hits.target.size();
@@ -94,7 +95,8 @@ Json result_of(const Json& record) {
 
 Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
-  record.erase("output");                  // may hold addresses and times
+  record.erase("output");  // may hold addresses and times
+  record.erase("fields");
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
   for (const char* name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"}) {
     record.at("summary").erase(name);

@@ -12,6 +12,7 @@
 #include "core/oracle.h"
 #include "core/real.h"
 #include "core/records/exhibit.h"
+#include "core/records/field_frames.h"
 #include "core/records/provenance.h"
 #include "core/records/request.h"
 #include "core/status.h"
@@ -76,6 +77,7 @@ struct Record {
   std::optional<Trajectory> trajectory;
   std::map<std::string, std::vector<Real>> series;  // a problem's own quantities, as the curve
   std::optional<Exhibit> exhibit;
+  std::optional<FieldFrames> fields;  // of a problem on a grid
   std::vector<std::string> privileges;
   bool is_nondeterministic = false;       // ended by a clock or a kill
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
@@ -93,10 +95,12 @@ Record read_record(const std::string& path);
 
 Json run_schema();  // what benchmarks/schemas/run.json holds
 
-// All of a record that two runs of one build must agree on.
+// All of a record that two runs of one build must agree on. What fields it keeps is not: one may
+// have been asked for them and another not.
 Json result_of(const Json& record);
 
-// The record without what may differ between two runs of one build: times, memory, concurrency.
+// The record without what may differ between two runs of one build: times, memory, concurrency,
+// fields that were asked for.
 Json without_timings(Json record);
 
 inline constexpr const char* kRunSchema = "isoline.run/1";

@@ -56,12 +56,17 @@ void fields(Like<Summary> auto& summary, auto& field) {
   field("peak_memory_bytes", summary.peak_memory_bytes);
 }
 
-// Pictures stand in the file beside.
 void fields(Like<Exhibit> auto& exhibit, auto& field) {
-  field("grid", exhibit.grid, R"({"minimum": 0})");
+  field.optional("grid", exhibit.grid, R"({"minimum": 0, "description": "Of older records"})");
   field.when(!exhibit.is_picture(), "target", exhibit.target);
   field.when(!exhibit.is_picture(), "x", exhibit.x);
   field.when(!exhibit.is_picture(), "truth", exhibit.truth);
+}
+
+void fields(Like<FieldFrames> auto& frames, auto& field) {
+  field("iterations", frames.iterations, R"({"minItems": 1})");
+  field("shape", frames.shape, R"({"minItems": 3, "maxItems": 3})");
+  field("digest", frames.digest, kDigestLaw);
 }
 
 void fields(Like<Record> auto& record, auto& field) {
@@ -91,6 +96,8 @@ void fields(Like<Record> auto& record, auto& field) {
   field.optional("trajectory", record.trajectory);
   field.optional("series", record.series);
   field.optional("exhibit", record.exhibit);
+  field.optional("fields", record.fields,
+                 R"({"description": "x at some iterations, in the .npy file beside"})");
   field("privileges", record.privileges);
   field("nondeterministic", record.is_nondeterministic);
   field("repeat_wall_seconds", record.repeat_wall_seconds);

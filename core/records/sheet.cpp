@@ -22,6 +22,18 @@ void fields(Like<Panel> auto& panel, auto& field) {
   field("quantity", panel.quantity);
 }
 
+void fields(Like<Quantity> auto& quantity, auto& field) {
+  field("name", quantity.name);
+  field("unit", quantity.unit, R"({"description": "Empty: a pure number"})");
+}
+
+void fields(Like<Field> auto& grid, auto& field) {
+  field("rows", grid.rows, R"({"minimum": 1})");
+  field("columns", grid.columns, R"({"minimum": 1})");
+  field("x", grid.x);
+  field("y", grid.y);
+}
+
 void fields(Like<Landscape> auto& landscape, auto& field) {
   Index rows = landscape.loss.rows(), columns = landscape.loss.columns();
   std::vector<Real> loss = landscape.loss.values();
@@ -83,6 +95,7 @@ void fields(Like<Sheet> auto& sheet, auto& field) {
   field.optional("condition", sheet.condition);
   field("target", sheet.target);
   field("truth", sheet.truth);
+  field.optional("field", sheet.field);
   field.optional("panels", sheet.panels);
   field.optional("landscape_x", sheet.landscape_x);
   field.optional("landscape_y", sheet.landscape_y);

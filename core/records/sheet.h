@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/aim.h"
+#include "core/field.h"
 #include "core/grid.h"
 #include "core/records/panel.h"
 
@@ -64,6 +65,7 @@ struct Sheet {
   std::optional<Landscape> landscape_x, landscape_y;  // of a problem with two unknowns, two outputs
   std::vector<Real> target;                           // y*, where small
   std::vector<Real> truth;                            // x*, where small and known
+  std::optional<Field> field;                         // of a problem on a grid: what x and y are
   std::vector<Panel> panels;                          // of a problem: the figures of its paper
   std::optional<MeasuredPrices> prices;               // of a problem
 

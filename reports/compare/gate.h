@@ -77,6 +77,8 @@ GateResult compare_subjects(const std::vector<Subject>& before, const std::vecto
 std::string gate_terminal(const GateResult& result, bool lists_all = false);
 std::string gate_markdown(const GateResult& result);
 std::string gate_json(const GateResult& result);  // schema isoline.comparison/1
+struct Section;
+Section gate_section(const GateResult& result);  // its title is the verdict; all of its lines
 
 inline constexpr const char* kComparisonSchema = "isoline.comparison/1";
 

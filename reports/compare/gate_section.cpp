@@ -216,6 +216,12 @@ Section section_of(const GateResult& result, bool lists_all) {
 
 }  // namespace
 
+Section gate_section(const GateResult& result) {
+  Section section = section_of(result, true);
+  section.title = result.verdict;
+  return section;
+}
+
 std::string gate_terminal(const GateResult& result, bool lists_all) {
   const Section section = section_of(result, lists_all);
   return terminal_text(section.title) + "\n\n" +

@@ -8,6 +8,7 @@
 
 #include "reports/page/compact_json.h"
 #include "reports/page/contour.h"
+#include "reports/page/fields_html.h"
 #include "reports/page/page.h"
 #include "reports/page/target_codes.h"
 #include "reports/read/curves.h"
@@ -181,6 +182,7 @@ std::string problem_data(const Comparison& c, const Ladders& ladders, std::size_
       json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec), json_quoted(problem.name),
       problem.group(), is_ordered(c, p), cells_json(c, ladders, p), curves_json(c, p));
   text += origins_json(c, p) + goal_json(c, p) + learned_json(c, p);
+  if (const auto found = found_fields(c, p)) text += ",\"fields\":" + fields_json(*found);
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)

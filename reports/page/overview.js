@@ -73,6 +73,6 @@ function liveOverview() {
   FOLLOWERS.push(() => { areChanged = areChanged || !isOwn(); });
   live(standings, () => { if (areChanged) drawStandings(standings); });  // none where all is learned
   live(heat, () => { if (areChanged) drawHeat(heat); });
-  explainMatrix(heat);
+  if (heat !== null) explainMatrix(heat);
   document.querySelectorAll('button.more').forEach(makeMore);
 }

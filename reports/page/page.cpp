@@ -19,9 +19,11 @@
 namespace isoline::reports {
 
 std::string_view embedded_page_html();
+std::string_view embedded_comparison_html();
 std::string_view embedded_page_css();
 std::string_view embedded_parts_css();
 std::string_view embedded_plots_css();
+std::string_view embedded_fields_css();
 std::string_view embedded_chart_js();
 std::string_view embedded_lines_js();
 std::string_view embedded_view_js();
@@ -34,14 +36,17 @@ std::string_view embedded_figures_js();
 std::string_view embedded_tables_js();
 std::string_view embedded_overview_js();
 std::string_view embedded_pair_js();
+std::string_view embedded_sides_js();
 std::string_view embedded_problem_js();
+std::string_view embedded_fields_js();
 std::string_view embedded_page_js();
 
 namespace {
 
+using Parts = std::map<std::string, std::string, std::less<>>;
+
 // Replaces each {{name}} once; what is put in is not searched again.
-std::string filled(std::string_view page,
-                   const std::map<std::string, std::string, std::less<>>& parts) {
+std::string filled(std::string_view page, const Parts& parts) {
   std::string out;
   while (true) {
     const std::size_t open = page.find("{{"), close = page.find("}}", open);
@@ -99,40 +104,60 @@ constexpr Script kScripts[] = {
     {"charts-js", embedded_charts_js},     {"planes-js", embedded_planes_js},
     {"figures-js", embedded_figures_js},   {"tables-js", embedded_tables_js},
     {"overview-js", embedded_overview_js}, {"pair-js", embedded_pair_js},
-    {"problem-js", embedded_problem_js},   {"page-js", embedded_page_js},
+    {"sides-js", embedded_sides_js},       {"problem-js", embedded_problem_js},
+    {"fields-js", embedded_fields_js},     {"page-js", embedded_page_js},
 };
+
+// Style and scripts, and what the bar of filters says before they run.
+Parts common_parts(const Comparison& c) {
+  Parts parts = {{"style", std::string(embedded_page_css())
+                               .append(embedded_parts_css())
+                               .append(embedded_plots_css())
+                               .append(embedded_fields_css())},
+                 {"kinds", kind_rules(c)},
+                 {"tau", tau_name(c)},
+                 {"problems", problems_html(c)}};
+  for (const Script& script : kScripts) parts.emplace(script.name, script.text());
+  return parts;
+}
 
 }  // namespace
 
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const std::vector<Interval> intervals = score_intervals(c);
-  std::map<std::string, std::string, std::less<>> parts = {
-      {"style",
-       std::string(embedded_page_css()).append(embedded_parts_css()).append(embedded_plots_css())},
-      {"headline", head_html(document)},
-      {"tau", tau_name(c)},
-      {"counted", std::string(counted_name(c))},
-      {"unit", std::string(unit_name(c))},
-      {"setting", std::string(setting_noun(c))},
-      {"kinds", kind_rules(c)},
-      {"overview", overview_html(document)},
-      {"endings", endings_html(c)},
-      {"remarks", remarks_html(document)},
-      {"standings", standings_html(c, intervals)},
-      {"heat", heat_html(c)},
-      {"profile", profile_html(c)},
-      {"details", details_html(c)},
-      {"figures", figures_html(document)},
-      {"claims", claims_html(document)},
-      {"problems", problems_html(c)},
-      {"methods", methods_html(c)},
-      {"optimizers", optimizers_html(c)},
-      {"data", page_data(document, intervals)}};
-  for (const Script& script : kScripts) parts.emplace(script.name, script.text());
+  Parts parts = common_parts(c);
+  parts.merge(Parts{{"headline", head_html(document)},
+                    {"counted", std::string(counted_name(c))},
+                    {"unit", std::string(unit_name(c))},
+                    {"setting", std::string(setting_noun(c))},
+                    {"overview", overview_html(document)},
+                    {"endings", endings_html(c)},
+                    {"remarks", remarks_html(document)},
+                    {"standings", standings_html(c, intervals)},
+                    {"heat", heat_html(c)},
+                    {"profile", profile_html(c)},
+                    {"details", details_html(c)},
+                    {"figures", figures_html(document)},
+                    {"claims", claims_html(document)},
+                    {"methods", methods_html(c)},
+                    {"optimizers", optimizers_html(c)},
+                    {"data", page_data(document, intervals)}});
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
   return filled(embedded_page_html(), parts);
+}
+
+std::string comparison_page(const Comparison& sides, const Section& changes,
+                            const std::string& headline) {
+  const Document document{.comparison = sides};
+  const std::vector<Interval> none(sides.optimizers.size());  // no order of both is shown
+  Parts parts = common_parts(sides);
+  parts.merge(Parts{{"headline", html_text(headline)},
+                    {"verdict", html_text(changes.title)},
+                    {"changes", section_html(changes)},
+                    {"data", page_data(document, none)}});
+  return filled(embedded_comparison_html(), parts);
 }
 
 }  // namespace isoline::reports

@@ -30,17 +30,21 @@ function medianInterval(ascending) {
 }
 
 // Problems of one name are one: the median over those settings that both were given.
-function pairOf(a, b) {
+const pairOf = (a, b) => pairOfAll([[a, b]]);
+
+// Of several pairs the median over their settings too: of all methods in two results.
+function pairOfAll(pairs) {
   const names = new Map();
-  DATA.problems.forEach((problem, p) => {
+  DATA.problems.forEach((problem, p) => pairs.forEach(([a, b]) => {
     const mine = cellOf(problem, a), other = cellOf(problem, b);
     if (!problem.isOrdered || mine === undefined || other === undefined) return;
     const [x, y] = [takenBy(mine), takenBy(other)], one = names.get(problem.name) ?? {name: problem.name, values: [], settings: [], isSolved: false};
+    names.set(problem.name, one);
+    one.isSolved = one.isSolved || x < Infinity || y < Infinity;
+    if (pairs.length > 1 && x === Infinity && y === Infinity) return;  // it says nothing of the two
     one.values.push(doublingsOf(x, y));
     one.settings.push({p, a: x, b: y});
-    one.isSolved = one.isSolved || x < Infinity || y < Infinity;
-    names.set(problem.name, one);
-  });
+  }));
   const all = [...names.values()], solved = all.filter((one) => one.isSolved)
       .map((one) => ({...one, doublings: medianOf([...one.values].sort((x, y) => x - y))}));
   const sorted = solved.map((one) => one.doublings).sort((x, y) => x - y), count = (isCounted) => sorted.filter(isCounted).length;
@@ -143,15 +147,20 @@ function learnedBars() {
   return bars;
 }
 
+function learnedSection() {
+  const learned = learnedBars();
+  return learned.length === 0 ? [] : [element('h3', {}, 'Learned: error in x at equal work'), element('ol', {className: 'bars-of'}, ...learned)];
+}
+
 function drawPair(place) {
-  const told = pairOf(pair.a, pair.b), learned = learnedBars(), redraw = () => drawPair(place);
+  if (DATA.sides !== undefined) return drawSides(place);
+  const told = pairOf(pair.a, pair.b), redraw = () => drawPair(place);
   place.replaceChildren(
       element('p', {className: 'chosen-two'}, pairSelect('a', redraw), ' against ', pairSelect('b', redraw)),
       element('p', {className: 'verdict'}, pairSentence(told)),
       element('div', {className: 'decided'}, element('div', {},
           element('p', {className: 'legend'}, `To the left ${DATA.optimizers[pair.a]} needs less, to the right ${DATA.optimizers[pair.b]}; a full bar is 64 times or unsolved. Press one for its curves.`),
-          pairBars(told),
-          ...(learned.length === 0 ? [] : [element('h3', {}, 'Learned: error in x at equal work'), element('ol', {className: 'bars-of'}, ...learned)])),
+          pairBars(told), ...learnedSection()),
       priceTable()));
 }
 

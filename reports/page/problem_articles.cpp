@@ -6,6 +6,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/contour.h"
+#include "reports/page/fields_html.h"
 #include "reports/page/page.h"
 #include "reports/read/curves.h"
 #include "reports/sections/sections.h"
@@ -90,7 +91,9 @@ std::string problem_html(const Comparison& c, std::size_t p) {
       "<p class=reading>{}</p><div class=solve><div class=curves></div><div "
       "class=reached></div></div>",
       html_text(curve_reading(c, p)));
-  return html + planes_html(c, p) + "</noscript></article>\n";
+  html += planes_html(c, p);
+  if (const auto found = found_fields(c, p)) html += fields_html(c, *found);
+  return html + "</noscript></article>\n";
 }
 
 }  // namespace

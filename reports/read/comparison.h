@@ -88,6 +88,7 @@ struct OptimizerAxis {
   // "sip, given P⁻¹" and "sip". Then all of them stand under this label.
   std::string whole;
   bool is_meaning = false;
+  std::string side;  // "BASE" or "NEW", where two results are compared (read/both_sides.h)
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
   std::size_t planned = 0, applicable = 0;               // problems asked of it; that it can treat

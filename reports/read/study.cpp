@@ -94,15 +94,18 @@ void read_rates_of(Study& study, const fs::path& folder) {
 
 }  // namespace
 
-std::optional<Exhibit> Study::pictures_of(const Record& record) const {
-  Exhibit exhibit = *record.exhibit;
+std::optional<FieldFrames> Study::fields_of(const Record& record) const {
+  const bool is_older = record.exhibit && record.exhibit->is_picture();
+  if (!record.fields && !is_older) return std::nullopt;
   for (const fs::path folder : folders) {
-    const fs::path file = (folder / "runs" / record.file_name()).replace_extension(".npy");
+    const fs::path file = field_path(folder / "runs" / record.file_name());
     if (is_there(file)) try {
-        read_pictures(exhibit, file);
-        return exhibit;
+        if (!record.fields) return frames_of(*record.exhibit, record.summary.iterations, file);
+        FieldFrames frames = *record.fields;
+        read_field_numbers(frames, file);
+        return frames;
       } catch (const std::exception&) {
-        return std::nullopt;
+        continue;  // another folder may have it whole
       }
   }
   return std::nullopt;

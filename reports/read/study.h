@@ -31,8 +31,9 @@ struct Study {
   std::set<std::string> disputed;  // cells of which two records of one build hold other results
   std::vector<std::string> folders;
 
-  // The exhibit of a record that keeps pictures beside it; nothing where they cannot be read.
-  std::optional<Exhibit> pictures_of(const Record& record) const;
+  // The fields beside a record with their numbers; nothing where it keeps none, or where they
+  // cannot be read.
+  std::optional<FieldFrames> fields_of(const Record& record) const;
 };
 
 // Folders are laid out as core/records/sheet.h says; a missing one is a UsageError. The listener is

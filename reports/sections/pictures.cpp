@@ -1,5 +1,6 @@
 // Pictures of a sample: what was observed, what each method inferred, and what was to be found.
 #include <optional>
+#include <span>
 
 #include "reports/sections/panels.h"
 #include "reports/sections/words.h"
@@ -7,12 +8,8 @@
 namespace isoline::reports {
 namespace {
 
-Picture picture_of(std::string title, const Grid& field, Index N) {
-  Picture picture{std::move(title), N, {}};
-  for (Index row = 0; row < N; ++row)
-    for (Index column = 0; column < N; ++column)
-      picture.values.push_back(field(row + N * column, 0));
-  return picture;
+Picture picture_of(std::string title, std::span<const float> field, Index N) {
+  return {std::move(title), N, {field.begin(), field.end()}};
 }
 
 }  // namespace
@@ -20,21 +17,21 @@ Picture picture_of(std::string title, const Grid& field, Index N) {
 Figure picture_figure(const Comparison& c, std::size_t p) {
   Figure out;
   std::vector<Picture> inferred;
-  Exhibit last;
+  FieldFrames last;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     for (const std::size_t run : c.cell(p, s).runs) {
       const Record* record = c.runs[run].record;
-      if (!record->exhibit || !record->exhibit->is_picture()) continue;
-      const std::optional<Exhibit> shown = c.study->pictures_of(*record);
-      if (!shown) continue;
-      inferred.push_back(picture_of(shown_spec(c.optimizers[s].label), shown->x, shown->grid));
-      last = *shown;
+      std::optional<FieldFrames> shown = c.study->fields_of(*record);
+      if (!shown || !shown->has_truth() || shown->shape[1] != shown->shape[2]) continue;
+      const std::span<const float> x = shown->x(shown->iterations.size() - 1);
+      inferred.push_back(picture_of(shown_spec(c.optimizers[s].label), x, shown->shape[1]));
+      last = std::move(*shown);
       break;
     }
   if (inferred.empty()) return out;
-  out.pictures.push_back(picture_of("y*", last.target, last.grid));
+  out.pictures.push_back(picture_of("y*", last.target(), last.shape[1]));
   for (Picture& picture : inferred) out.pictures.push_back(std::move(picture));
-  out.pictures.push_back(picture_of("x*", last.truth, last.grid));
+  out.pictures.push_back(picture_of("x*", last.truth(), last.shape[1]));
   out.reading =
       "The first sample of the validation, as inferred after the last iteration of the first seed. "
       "The x share the grey scale of x*.";

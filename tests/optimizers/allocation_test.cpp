@@ -82,7 +82,9 @@ std::int64_t allocations_of_jacobians(const Problem& problem) {
 // By formula, by products, through a network, and row by row through one without its own.
 TEST(Allocation, JacobiansAllocateNothingOnceWarm) {
   for (const char* spec : {"rosenbrock", "broyden-tridiagonal[n=20]", "sine[mode=learn]", "hig-toy",
-                           "exponential[mode=learn]", "variably-dimensioned"})
+                           "exponential[mode=learn]", "variably-dimensioned", "linear-chain",
+                           "coupled-oscillators[mode=learn]", "quantum-dipole[mode=learn]",
+                           "quantum-dipole[loss=residual]", "poisson-hig"})
     EXPECT_EQ(allocations_of_jacobians(published(spec)), 0) << spec;
   EXPECT_EQ(allocations_of_jacobians(learned_affine(6)), 0) << "a network without its own";
 }

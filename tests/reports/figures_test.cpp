@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/digest.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "reports/report.h"
 #include "tests/reports/fixture.h"
@@ -104,18 +105,19 @@ TEST_F(Figures, ScatterAndDecadesReadTheSamples) {
 
 TEST_F(Figures, PicturesAreReadFromTheFileBesideTheRecord) {
   Record record = learned({.optimizer = "sip"});
-  Exhibit exhibit{.grid = 2, .target = {}, .x = {}, .truth = {}};
-  exhibit.target = Grid(4, 1, {1, 2, 3, 4});  // columns of the grid
-  exhibit.x = Grid(4, 1, {5, 6, 7, 8});
-  exhibit.truth = Grid(4, 1, {9, 10, 11, 12});
-  record.exhibit = exhibit;
+  FieldFrames fields{.iterations = {0, 9}, .shape = {4, 2, 2}};
+  fields.numbers = {1, 3, 2, 4, 9, 11, 10, 12, 0, 0, 0, 0, 5, 7, 6, 8};  // y*, x*, x at 0 and at 9
+  fields.digest = digest(field_file(fields));
+  record.fields = fields;
   folder.add(record);
-  write_pictures(exhibit, (folder.path() / "runs" / record.file_name()).replace_extension(".npy"));
+  write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
   const auto all = drawn({record}, {.title = "6", .kind = "pictures"});
   ASSERT_EQ(all.size(), 1U);
   ASSERT_EQ(all[0].pictures.size(), 3U);
   EXPECT_EQ(all[0].pictures[0].values, (std::vector<Real>{1, 3, 2, 4}));  // rows of the picture
   EXPECT_EQ(all[0].pictures[1].title, "sip");
+  EXPECT_EQ(all[0].pictures[1].values, (std::vector<Real>{5, 7, 6, 8}))
+      << "x at the last iteration";
   EXPECT_EQ(all[0].pictures[2].values, (std::vector<Real>{9, 11, 10, 12}));
 }
 

@@ -1,0 +1,92 @@
+// Frames in the places of a trace.
+#include "core/frames.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace isoline {
+namespace {
+
+constexpr std::int64_t kFree = -1;
+
+Real depth(std::int64_t iteration) { return std::log1p(static_cast<Real>(iteration)); }
+
+std::vector<std::size_t> taken_places(const Trace::Frames& frames) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < Trace::Frames::kPlaces; ++i)
+    if (frames.iteration[i] >= 0) places.push_back(i);
+  std::ranges::sort(places, {}, [&](std::size_t i) { return frames.iteration[i]; });
+  return places;
+}
+
+// Free, that of the same iteration, or that of the frame missed least once there is a later one.
+std::size_t place_for(const Trace::Frames& frames, std::int64_t iteration) {
+  for (const std::int64_t wanted : {iteration, kFree}) {
+    const std::int64_t* const place = std::ranges::find(frames.iteration, wanted);
+    if (place != std::end(frames.iteration))
+      return static_cast<std::size_t>(place - std::begin(frames.iteration));
+  }
+  const std::vector<std::size_t> taken = taken_places(frames);
+  const auto gap = [&](std::size_t i) {  // that the i-th of them would leave
+    const std::int64_t after = i + 1 < taken.size() ? frames.iteration[taken[i + 1]] : iteration;
+    return depth(after) - depth(frames.iteration[taken[i - 1]]);
+  };
+  std::size_t least = 1;
+  for (std::size_t i = 2; i < taken.size(); ++i)
+    if (gap(i) < gap(least)) least = i;
+  return taken[least];
+}
+
+bool fits(std::span<const Real> values) {
+  return std::ranges::all_of(values,
+                             [](Real value) { return std::isfinite(static_cast<float>(value)); });
+}
+
+void copy(std::span<const Real> values, float* out) {
+  std::ranges::transform(values, out, [](Real value) { return static_cast<float>(value); });
+}
+
+}  // namespace
+
+void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<const Real> target,
+                 std::span<const Real> truth) {
+  if (rows * columns > Trace::Frames::kCells || !fits(target) || !fits(truth)) return;
+  copy(target, frames.target);
+  copy(truth, frames.truth);
+  frames.has_truth = !truth.empty();
+  frames.columns = static_cast<int>(columns);
+  frames.rows = static_cast<int>(rows);
+}
+
+void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x) {
+  if (frames.rows == 0 || !fits(x)) return;
+  const std::size_t place = place_for(frames, iteration);
+  // Of a process that is killed within these lines the place stays free.
+  frames.iteration[place] = kFree;
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  copy(x, frames.x[place]);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  frames.iteration[place] = iteration;
+}
+
+std::vector<std::size_t> chosen_frames(const Trace::Frames& frames) {
+  const std::vector<std::size_t> taken = taken_places(frames);
+  if (taken.size() <= kMostFrames) return taken;
+  const auto depth_of = [&](std::size_t i) { return depth(frames.iteration[taken[i]]); };
+  std::vector<std::size_t> chosen = {taken.front()};
+  std::size_t first = 1;
+  for (std::size_t i = 1; i + 1 < kMostFrames; ++i) {
+    const Real even = static_cast<Real>(i) / (kMostFrames - 1) * depth_of(taken.size() - 1);
+    const std::size_t end = taken.size() - (kMostFrames - 1 - i);  // room for those to come
+    std::size_t nearest = first;
+    for (std::size_t j = first + 1; j < end; ++j)
+      if (std::abs(depth_of(j) - even) < std::abs(depth_of(nearest) - even)) nearest = j;
+    chosen.push_back(taken[nearest]);
+    first = nearest + 1;
+  }
+  chosen.push_back(taken.back());
+  return chosen;
+}
+
+}  // namespace isoline

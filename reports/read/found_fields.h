@@ -1,0 +1,31 @@
+// What one method of each kind found of a problem on a grid, from the fields beside its records.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/read/comparison.h"
+
+namespace isoline::reports {
+
+struct FoundField {
+  std::size_t optimizer = 0;
+  FieldFrames frames;       // with their numbers
+  std::vector<Real> apart;  // ‖x − x*‖ / ‖x*‖ of each frame; empty where x* is not known
+};
+
+struct FoundFields {
+  Quantity x, y;
+  std::uint64_t seed = 0;  // of all of them
+  bool is_learned = false;
+  Real x_scale = 0, y_scale = 0;  // the greatest |x*| and |y*|; where x* is not known, that of x
+  std::vector<FoundField> found;  // the best of each kind on this problem, the best first
+
+  const FieldFrames& frames() const { return found.front().frames; }  // y* and x* are all the same
+};
+
+// Nothing where no run keeps fields that can be read.
+std::optional<FoundFields> found_fields(const Comparison& comparison, std::size_t problem);
+
+}  // namespace isoline::reports
