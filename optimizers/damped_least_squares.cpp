@@ -60,7 +60,7 @@ bool DampedLeastSquares::may_square(Real mu) const {
 }
 
 bool DampedLeastSquares::by_cholesky(Real mu) {
-  const auto A = augmented.leftCols(scale.size());
+  const Eigen::Ref<const Matrix> A = augmented.leftCols(scale.size());
   if (!has_gram_) {
     gram_.resize(rows, rows);
     product(Form::A_BH, A, A, gram_);

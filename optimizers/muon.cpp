@@ -93,9 +93,9 @@ struct Muon {
   void step_vector(State& s, const MatrixBlock& block, Vector& theta) const {
     constexpr Real kEpsilon = 1e-8;
     const Index size = block.rows * block.columns;
-    const auto g = s.gradient.segment(block.offset, size).array();
-    auto m = s.m.segment(block.offset, size).array();
-    auto v = s.v.segment(block.offset, size).array();
+    const Eigen::Map<const Eigen::ArrayXd> g(s.gradient.data() + block.offset, size);
+    Eigen::Map<Eigen::ArrayXd> m(s.m.data() + block.offset, size);
+    Eigen::Map<Eigen::ArrayXd> v(s.v.data() + block.offset, size);
     m = beta1 * m + (1 - beta1) * g;
     v = beta2 * v + (1 - beta2) * g.square();
     theta.segment(block.offset, size).array() -=

@@ -82,7 +82,7 @@ struct Shampoo {
     for (Side* side : {&sheet.left, &sheet.right}) {
       if (!side->is_used) continue;
       if (!symmetric_eigen(side->sum, s.eigen)) return false;
-      const auto powers = s.eigen.lambda.array().max(0).pow(-0.5 / sides).matrix();
+      const Vector powers = s.eigen.lambda.array().max(0).pow(-0.5 / sides).matrix();
       s.scaled = s.eigen.V * powers.asDiagonal();
       side->root.resize(s.scaled.rows(), s.scaled.rows());
       product(Form::A_BH, s.scaled, s.eigen.V, side->root);

@@ -11,44 +11,11 @@
 namespace isoline::optimizers {
 namespace {
 
-struct WayRow {
-  Way way;
-  std::string_view name, words;
-};
-constexpr WayRow kWays[] = {
-    {Way::automatic, "auto", ""},
-    {Way::svd, "svd", "the thin SVD of J"},
-    {Way::qr, "qr", "QR and the SVD of R"},
-    {Way::gram, "gram", "the Gram matrix of J"},
-    {Way::layers, "layers", "the Gram matrix layer by layer"},
-    {Way::cholesky, "cholesky", "Cholesky of the Gram matrix"},
-    {Way::orthogonal, "orthogonal", "a complete orthogonal factorization"},
-    {Way::lanczos, "lanczos", "Lanczos"},
-};
-
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
-
-// In whose units one number is enough, without the spectrum.
-bool is_tikhonov(const SpectralFilter& filter) {
-  return filter.kappa == 1 && filter.damping > 0 && filter.unit == SpectralFilter::Unit::mean;
-}
-
-// Whatever the spectrum; a damping in units of the mean is judged when it is known.
-bool never_by_gram(const SpectralFilter& filter) {
-  const bool is_relative = filter.unit == SpectralFilter::Unit::largest;
-  return filter.clamps ||
-         (is_relative && std::max(filter.cutoff, std::sqrt(filter.damping)) < kLeastCutoffByGram);
-}
 
 bool has_layers(const Meter& f) { return f.is_granted(Oracle::layer_factors); }
 
 }  // namespace
-
-Way way_named(std::string_view name) {
-  for (const WayRow& row : kWays)
-    if (row.name == name) return row.way;
-  throw UsageError(fmt::format("there is no way '{}' of a spectral step", name));
-}
 
 void SpectralStep::start(Meter& f) const {
   if (wanted_ == Way::lanczos)
@@ -94,9 +61,10 @@ void SpectralStep::say(Meter& f, Way way) {
   if ((ways_taken_ & bit) != 0) return;
   ways_taken_ |= bit;
   std::string words;
-  for (const WayRow& row : kWays)
-    if ((ways_taken_ & (1U << static_cast<unsigned>(row.way))) != 0)
-      words += fmt::format("{}{}", words.empty() ? "steps by " : ", and by ", row.words);
+  for (unsigned other = 0; other <= static_cast<unsigned>(Way::lanczos); ++other)
+    if ((ways_taken_ & (1U << other)) != 0)
+      words += fmt::format("{}{}", words.empty() ? "steps by " : ", and by ",
+                           words_of(static_cast<Way>(other)));
   f.claim(words);
 }
 
@@ -225,38 +193,6 @@ void SpectralStep::judge(const SpectralFilter& filter, bool is_wide, Real length
   const Real share = std::max(least, std::sqrt(mu)) / largest;
   estimate_ = kEpsilon * std::sqrt(error) / along_.norm();
   was_too_small_ = !(share >= kLeastShareByGram && estimate_ <= kMostErrorByGram);
-}
-
-OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem) {
-  const OracleSet by_matrix{Oracle::forward, Oracle::jacobian};
-  const OracleSet by_layers{Oracle::forward, Oracle::layer_factors, Oracle::pullback};
-  const bool has_layers =
-      problem.residuals() < problem.unknowns() && problem.offers().contains(Oracle::layer_factors);
-  const bool has_jacobian = problem.offers().contains(Oracle::jacobian);
-  switch (way) {
-    case Way::lanczos:
-      return {Oracle::forward, Oracle::pullback, Oracle::pushforward};
-    case Way::layers:
-      return by_layers;
-    case Way::cholesky:
-      return has_layers ? by_layers : by_matrix;
-    case Way::automatic: {
-      if (!has_layers) return by_matrix;
-      if (has_jacobian && never_by_gram(filter)) return by_matrix;
-      OracleSet both = by_layers;
-      if (has_jacobian) both.add(Oracle::jacobian);
-      return both;
-    }
-    default:
-      return by_matrix;
-  }
-}
-
-std::string objection_to(Way way, const Problem& problem) {
-  if (way == Way::layers && problem.residuals() >= problem.unknowns())
-    return fmt::format("way=layers forms JJᵀ, and J is not wide: {} residuals, {} unknowns",
-                       problem.residuals(), problem.unknowns());
-  return "";
 }
 
 }  // namespace isoline::optimizers

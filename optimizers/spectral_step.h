@@ -2,34 +2,15 @@
 // compute it.
 #pragma once
 
-#include <string_view>
-
 #include "core/archive.h"
 #include "core/decompose.h"
-#include "core/options.h"
 #include "optimizers/lanczos_step.h"
 #include "optimizers/layered_gram.h"
 #include "optimizers/meter.h"
 #include "optimizers/spectral_filter.h"
+#include "optimizers/way.h"
 
 namespace isoline::optimizers {
-
-enum class Way {
-  automatic,
-  svd,       // thin SVD of J, the reference
-  qr,        // Jᵀ = QR, or J = QR where it is tall, and the SVD of R, without forming U and V
-  gram,      // eigenvalues of the smaller Gram matrix, from J
-  layers,    // eigenvalues of K = JJᵀ formed layer by layer, and one pullback
-  cholesky,  // of Tikhonov alone: (K + μ)⁻¹ or (JᵀJ + μ)⁻¹, which need no spectrum
-  orthogonal,  // of 1/σ alone: J⁺ by a complete orthogonal factorization, the cut-off on its pivots
-  lanczos,     // products with J and Jᵀ alone
-};
-Way way_named(std::string_view name);  // "auto", and each as it is called here
-
-// Of `automatic`. A Gram matrix squares the condition number: it is used where the estimated
-// relative error of the step is at most 2e-9 by it, and the least σ that matters 1e-5 of the
-// largest; and is not tried where the cut-off is too near its rounding for that to be seen.
-inline constexpr Real kMostErrorByGram = 2e-9, kLeastShareByGram = 1e-5, kLeastCutoffByGram = 1e-7;
 
 class SpectralStep {
  public:
@@ -85,10 +66,5 @@ class SpectralStep {
   Matrix cotangent_;               // (m, B)
   Vector gradient_;                // (n)
 };
-
-// What a method with a SpectralStep asks of a problem, by its way.
-OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem);
-// Why it can't treat a problem, in words; empty if it can.
-std::string objection_to(Way way, const Problem& problem);
 
 }  // namespace isoline::optimizers

@@ -1,52 +1,12 @@
-// Each way to compute a spectral step against the thin SVD, and the laws of the filters.
+// Each way to compute a spectral step against the thin SVD.
 #include <gtest/gtest.h>
 
-#include "core/decompose.h"
-#include "optimizers/spectral_step.h"
-#include "run.h"
-#include "trial_problems.h"
+#include "spectral_trial.h"
 
 namespace isoline::optimizers {
 
-using problems::Point;
 using problems::Problem;
 namespace {
-
-// Three layers in double; `batch` samples of two outputs each make J wide up to 98.
-Problem network(const std::string& batch, const std::string& activation = "tanh") {
-  return published("sine[mode=learn,xi=2,network=mlp[layers=12-12,precision=double,activation=" +
-                   activation + "],batch=" + batch + ",data=" + batch + "]");
-}
-
-constexpr OracleSet kAll{Oracle::forward, Oracle::jacobian, Oracle::pullback, Oracle::pushforward,
-                         Oracle::layer_factors};
-
-struct Computed {
-  Vector step;  // −V f(σ) Uᵀ g
-  std::string said;
-  Real estimate = 0;  // of the error by a Gram matrix
-};
-
-Computed step_of(const Problem& problem, const Vector& theta, Way way, const SpectralFilter& filter,
-                 const KrylovLimits& krylov = {}, const OracleSet& granted = kAll) {
-  const auto trace = std::make_unique<Trace>();
-  Meter meter(problem, iterations(10), granted, *trace);
-  Vector start = theta;
-  meter.begin(start);
-  SpectralStep spectral(way, krylov);
-  spectral.start(meter);
-  Linearization at;
-  meter.linearize(theta, at);
-  Matrix g;
-  at.cotangent(g);
-  Vector step = Vector::Zero(theta.size());
-  EXPECT_TRUE(spectral.add(meter, at, filter, g.reshaped(), -1, step));
-  return {step, trace->claimed, spectral.error_by_gram()};
-}
-
-void expect_near(const Vector& one, const Vector& other, Real tolerance, const std::string& what) {
-  EXPECT_LE((one - other).norm(), tolerance * other.norm()) << what;
-}
 
 // Wide, tall and square; at the start, and where 30 steps have led.
 void for_some_points(const std::function<void(const Problem&, const Vector&)>& check) {
@@ -201,91 +161,6 @@ TEST(SpectralStep, LanczosKeepsToItsVectorsAndSaysHowFarItCame) {
   EXPECT_EQ(result.trace->last.series[0], 7);
   EXPECT_GT(result.trace->last.series[1], 1e-3);
   EXPECT_STREQ(result.trace->claimed, "steps by Lanczos");
-}
-
-// --- the laws
-
-constexpr Real kKappas[] = {-1, 0, 0.25, 0.5, 0.75, 1};
-
-// L → c L, y → s y, on a network's wide Jacobian.
-Problem scaled(Real loss, Real output) {
-  const Matrix M = output * easy_matrix();
-  Matrix input(2, 2), truth(2, 2);
-  input << 0.3, -0.8, 0.5, 0.1;
-  truth << 1, 2, -1, 0.5;
-  RandomStream start(1, "trial", "start");
-  auto affine = std::make_unique<Affine>(2, 2);
-  Vector theta = affine->start(start);
-  return Problem({.physics = std::make_unique<Linear>(M),
-                  .start = std::move(theta),
-                  .target = M * truth,
-                  .network = std::move(affine),
-                  .input = input,
-                  .loss = std::make_unique<HalfSquared>(loss),
-                  .minimum = 0});
-}
-
-TEST(SpectralStep, ScalesWithTheLossAndWithThePower1MinusKappaOfTheOutput) {
-  constexpr Real kScale = 7;
-  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::automatic})
-    for (const Real kappa : kKappas) {
-      const auto step = [&](const Problem& problem) {
-        return step_of(problem, problem.start(), way, power_filter(kappa, 1e-6)).step;
-      };
-      const Vector one = step(scaled(1, 1));
-      expect_near(step(scaled(kScale, 1)), kScale * one, 1e-10, "loss");
-      expect_near(step(scaled(1, kScale)), std::pow(kScale, 1 - kappa) * one, 1e-10, "output");
-    }
-}
-
-// B copies of a sample: exponent −(1+κ)/2 for every κ.
-TEST(SpectralStep, ScalesWithMinusHalfOf1PlusKappaOfEqualSamples) {
-  constexpr Index kCopies = 5;
-  const auto copies = [](Index count) {
-    RandomStream start(1, "trial", "start");
-    auto affine = std::make_unique<Affine>(2, 2);
-    Vector theta = affine->start(start);
-    return Problem({.physics = std::make_unique<Linear>(easy_matrix()),
-                    .start = std::move(theta),
-                    .target = Eigen::Vector2d(1, -2).replicate(1, count),
-                    .network = std::move(affine),
-                    .input = Eigen::Vector2d(0.4, -0.7).replicate(1, count),
-                    .minimum = 0});
-  };
-  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::automatic})
-    for (const Real kappa : kKappas) {
-      const SpectralFilter filter = power_filter(kappa, 1e-6);
-      const Vector one = step_of(copies(1), copies(1).start(), way, filter).step;
-      const Vector many = step_of(copies(kCopies), copies(kCopies).start(), way, filter).step;
-      expect_near(many, std::pow(kCopies, -(1 + kappa) / 2) * one, 1e-10, std::to_string(kappa));
-    }
-}
-
-TEST(SpectralStep, KappaMinusOneIsTheGradient) {
-  const Problem problem = network("8");
-  Point at;
-  Matrix g(problem.outputs(), problem.samples());
-  Vector gradient(problem.unknowns());
-  problem.forward(problem.start(), at);
-  problem.cotangent(at, g);
-  problem.pullback(g, gradient, at);
-  for (const Way way : {Way::svd, Way::qr, Way::gram, Way::layers, Way::lanczos})
-    expect_near(step_of(problem, problem.start(), way, gradient_filter()).step, -gradient, 1e-10,
-                "gradient");
-}
-
-// κ = 1 without truncation, J of full row rank.
-TEST(SpectralStep, KappaOneTakesTheLinearizedOutputAllTheWay) {
-  const Problem problem = network("8");
-  Point at;
-  Matrix g(problem.outputs(), problem.samples()), J;
-  problem.forward(problem.start(), at);
-  problem.cotangent(at, g);
-  problem.jacobian(J, at);
-  for (const Way way : {Way::svd, Way::qr, Way::orthogonal, Way::automatic}) {
-    const Vector step = step_of(problem, problem.start(), way, truncated_inverse_filter(0)).step;
-    expect_near(J * step, -g.reshaped(), 1e-10, "J Δθ");
-  }
 }
 
 TEST(Filters, AreTheirFormulas) {
