@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -154,8 +156,8 @@ TEST(Audit, FindsNoFalseDeclarationInTheRegistry) {
   for (const AuditedOptimizer& each : everything()) {
     EXPECT_EQ(each.flags, std::vector<std::string>{}) << each.name;
     EXPECT_EQ(each.reason, "") << each.name;
-    const bool needs_network =
-        each.name == "kfac" || each.name == "supervised" || each.name == "two-stage";
+    constexpr std::array kNeedNetworks = {"kfac", "muon", "soap", "supervised", "two-stage"};
+    const bool needs_network = std::ranges::find(kNeedNetworks, each.name) != kNeedNetworks.end();
     EXPECT_EQ(!each.network.empty(), needs_network) << each.name;
   }
 }
