@@ -77,12 +77,13 @@ struct Shampoo {
     return Status::running;
   }
 
-  static bool renew(Sheet& sheet, State& s) {
+  // A sum is at least ε in every direction, whatever rounding makes of a large one.
+  bool renew(Sheet& sheet, State& s) const {
     const int sides = sheet.left.is_used + sheet.right.is_used;
     for (Side* side : {&sheet.left, &sheet.right}) {
       if (!side->is_used) continue;
       if (!symmetric_eigen(side->sum, s.eigen)) return false;
-      const Vector powers = s.eigen.lambda.array().max(0).pow(-0.5 / sides).matrix();
+      const Vector powers = s.eigen.lambda.array().max(epsilon).pow(-0.5 / sides).matrix();
       s.scaled = s.eigen.V * powers.asDiagonal();
       side->root.resize(s.scaled.rows(), s.scaled.rows());
       product(Form::A_BH, s.scaled, s.eigen.V, side->root);

@@ -38,6 +38,12 @@ Linearized linearized(const Problem& problem, const Vector& theta) {
   return all;
 }
 
+Real start_loss(const Problem& problem) {
+  Point at;
+  problem.forward(problem.start(), at);
+  return at.loss;
+}
+
 // Jᵀ (JJᵀ + λ)⁻¹ w, λ a share of the mean diagonal.
 Vector damped_inverse(const Matrix& J, Real share, const Vector& w) {
   Matrix K = J * J.transpose();
@@ -167,6 +173,18 @@ TEST(Shampoo, OfAVectorIsFullMatrixAdagrad) {
   }
   expect_near(run(problem, "shampoo[rate=0.1,every=1]", iterations(4)).theta, theta, 1e-12,
               "four steps");
+}
+
+// Squares of gradients of 1e6 leave nothing of ε: what is rounding in their sum must not be raised
+// to a power of −1/2.
+TEST(Shampoo, StandsGradientsWhoseSquaresSwampEpsilon) {
+  const Problem problem = published("variably-dimensioned");
+  for (const char* spec : {"shampoo[rate=0.1]", "shampoo[rate=1]", "shampoo[rate=10]"}) {
+    const Vector theta = run(problem, spec, iterations(50)).theta;
+    Point at;
+    problem.forward(theta, at);
+    EXPECT_LT(at.loss, start_loss(problem)) << spec;
+  }
 }
 
 // Without a basis of its own SOAP is Adam, of which the mean of squares decays alike.
