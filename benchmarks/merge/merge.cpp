@@ -14,6 +14,7 @@
 
 #include "benchmarks/merge/copies.h"
 #include "benchmarks/merge/ending.h"
+#include "benchmarks/merge/field_copies.h"
 #include "benchmarks/merge/join.h"
 #include "benchmarks/merge/merge_audits.h"
 #include "core/digest.h"
@@ -90,27 +91,10 @@ class Merge {
     const bool is_record = name.ends_with(".json");
     if (copies.size() == 1) return keep(name, copies[0].text, is_record);
     if (is_record) return join(name, copies);
-    const std::string wanted = digest_of_fields(name);
+    const std::string wanted = digest_of_fields(folders_, name);
     for (const Copy& copy : copies)
       if (digest(copy.text) == wanted) return keep(name, copy.text, false);
     dispute(name, {"", fmt::format("{}: its copies differ in {}", name, places(copies))});
-  }
-
-  // What the record that is kept names as the digest of the file beside it; "" where it names none.
-  std::string digest_of_fields(const fs::path& name) const {
-    const std::string record = name.stem().string() + ".json";
-    std::optional<Json> joined;
-    for (const fs::path& folder : folders_) try {
-        const fs::path file = folder / "runs" / record;
-        if (!is_there(file)) continue;
-        Json one = parse_json(read_text(file, kMostRecordBytes, Links::refused), file.string());
-        const JoinedRecord both = join_records(joined ? *joined : one, one);
-        if (!both.record) return "";
-        joined = *both.record;
-      } catch (const std::exception&) {
-        continue;  // told where the records are merged
-      }
-    return joined && joined->contains("fields") ? joined->at("fields").value("digest", "") : "";
   }
 
   void join(const std::string& name, const std::vector<Copy>& copies) {

@@ -200,6 +200,22 @@ std::vector<Real> turned(const std::vector<Real>& values, const std::vector<Inde
   return out;
 }
 
+template <class Number>
+std::string bytes_of(const char* type, const std::vector<Index>& shape,
+                     const std::vector<Number>& values) {
+  const char* comma = shape.size() == 1 ? "," : "";
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}",
+                                   type, fmt::join(shape, ", "), comma);
+  const std::size_t unpadded = kPreamble + 2 + header.size() + 1;
+  header.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ').push_back('\n');
+  std::string bytes(kMagic);
+  bytes += {'\x01', '\x00', static_cast<char>(header.size() & 0xff),
+            static_cast<char>(header.size() >> 8)};
+  bytes += header;
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number));
+  return bytes;
+}
+
 }  // namespace
 
 NumberArray npy_from_bytes(const std::string& bytes) {
@@ -219,26 +235,6 @@ NumberArray read_npy(const std::filesystem::path& path) {
     throw UsageError(fmt::format("{}: {}", path.string(), error.what()));
   }
 }
-
-namespace {
-
-template <class Number>
-std::string bytes_of(const char* type, const std::vector<Index>& shape,
-                     const std::vector<Number>& values) {
-  const char* comma = shape.size() == 1 ? "," : "";
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}",
-                                   type, fmt::join(shape, ", "), comma);
-  const std::size_t unpadded = kPreamble + 2 + header.size() + 1;
-  header.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ').push_back('\n');
-  std::string bytes(kMagic);
-  bytes += {'\x01', '\x00', static_cast<char>(header.size() & 0xff),
-            static_cast<char>(header.size() >> 8)};
-  bytes += header;
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number));
-  return bytes;
-}
-
-}  // namespace
 
 std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>& values) {
   return bytes_of("<f4", shape, values);

@@ -77,7 +77,7 @@ std::string bitmap_head(Index rows, Index columns) {
     for (const std::uint8_t part : {blue, green, red, std::uint8_t{0}}) add_number(out, part, 1);
   }
   out.resize(kBegin, '\0');
-  return base64(out);
+  return radix64(out);
 }
 
 std::string bitmap_cells(std::string_view bytes, Index columns) {
@@ -88,10 +88,10 @@ std::string bitmap_cells(std::string_view bytes, Index columns) {
     out += bytes.substr(begin, row);
     out.append(whole - row, static_cast<char>(kZero));
   }
-  return base64(out);
+  return radix64(out);
 }
 
-std::string base64(std::string_view bytes) {
+std::string radix64(std::string_view bytes) {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;

@@ -29,6 +29,6 @@ std::string bitmap_head(Index rows, Index columns);  // in base 64
 // Its cells, row by row from the top, each row filled up to four bytes.
 std::string bitmap_cells(std::string_view bytes, Index columns);  // in base 64
 
-std::string base64(std::string_view bytes);  // RFC 4648, section 4
+std::string radix64(std::string_view bytes);  // RFC 4648, section 4
 
 }  // namespace isoline::reports

@@ -17,14 +17,14 @@ namespace {
 
 // --- pictures
 
-TEST(Base64, IsThatOfTheStandard) {  // the test vectors of RFC 4648, section 10
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foo"), "Zm9v");
-  EXPECT_EQ(base64("foob"), "Zm9vYg==");
-  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+TEST(Radix64, IsThatOfTheStandard) {  // the test vectors of RFC 4648, section 10
+  EXPECT_EQ(radix64(""), "");
+  EXPECT_EQ(radix64("f"), "Zg==");
+  EXPECT_EQ(radix64("fo"), "Zm8=");
+  EXPECT_EQ(radix64("foo"), "Zm9v");
+  EXPECT_EQ(radix64("foob"), "Zm9vYg==");
+  EXPECT_EQ(radix64("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(radix64("foobar"), "Zm9vYmFy");
 }
 
 Real lightness(const Colour& colour) {  // L* of CIE Lab, from the luminance of sRGB
