@@ -172,23 +172,28 @@ bool SpectralStep::solve_damped(const SpectralFilter& filter) {
 
 // Whether a Gram matrix is not enough for a step with the components along_ in the basis V. What it
 // is rounded by, ε σ₁², changes the i-th component by a share ε q σ₁²/(σᵢ² + μ), as −h' changes
-// h(σ²) = f(σ)/σ; and turns a part ε σ₁²/σⱼ² of a larger component j of w into the i-th one. Where
-// J is tall, Jᵀw is rounded by ε σ₁‖w‖ besides.
+// h(σ²) = f(σ)/σ; and turns into the i-th component of w a part ε σ₁²/σⱼ² of a larger one j, and a
+// part ε σ₁²/σᵢ² of all that is discarded. Where J is tall, Jᵀw is rounded by ε σ₁‖w‖ instead.
 void SpectralStep::judge(const SpectralFilter& filter, bool is_wide, Real length) {
   const Real mu = filter.mu(spectrum_), largest = spectrum_.largest, q = (filter.kappa + 1) / 2;
   const Index r = along_.size();
   const bool is_ascending = sigma_[0] < sigma_[r - 1];
+  const auto at = [&](Index step) { return is_ascending ? r - 1 - step : step; };  // largest first
+  const auto is_kept = [&](Index i) { return sigma_[i] > filter.cutoff * largest; };
+  Real discarded = length * length;
+  for (Index i = 0; i < r; ++i)
+    if (is_kept(i)) discarded -= std::pow(along_[i] / filter(sigma_[i], spectrum_), 2);
+  discarded = std::max(discarded, Real(0));
   Real error = 0, turned = 0, least = largest;
-  for (Index step = 0; step < r; ++step) {  // from the largest on
-    const Index i = is_ascending ? r - 1 - step : step;
-    const Real sigma = sigma_[i];
-    if (!(sigma > filter.cutoff * largest)) break;
-    least = sigma;
-    const Real h = filter.over_sigma(sigma, spectrum_);
-    const Real bend = q * largest * largest / (sigma * sigma + mu) * along_[i];
-    const Real spill = is_wide ? sigma * h * std::sqrt(turned) : largest * h * length;
-    error += bend * bend + spill * spill;
-    turned += std::pow(largest * largest / (sigma * sigma + mu) * along_[i] / (sigma * h), 2);
+  for (Index step = 0; step < r && is_kept(at(step)); ++step) {
+    const Index i = at(step);
+    least = sigma_[i];
+    const Real h = filter.over_sigma(least, spectrum_), f = least * h;
+    const Real share = largest * largest / (least * least + mu);
+    const Real spill =
+        is_wide ? f * std::sqrt(turned + share * share * discarded) : largest * h * length;
+    error += std::pow(q * share * along_[i], 2) + spill * spill;
+    turned += std::pow(share * along_[i] / f, 2);
   }
   const Real share = std::max(least, std::sqrt(mu)) / largest;
   estimate_ = kEpsilon * std::sqrt(error) / along_.norm();
