@@ -60,6 +60,23 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
+// While a child is made, signals wait: one that it sends at once must find it in the table.
+class HeldSignals {
+ public:
+  HeldSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    sigprocmask(SIG_SETMASK, &all, &before_);
+  }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+  ~HeldSignals() { release(); }
+  void release() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
 // In the child: dies with its parent, leaves the keyboard to it, dumps no core.
 void settle(pid_t parent, std::uint64_t mark) {
   setpgid(0, 0);
@@ -97,11 +114,13 @@ void ProcessGroup::start(const std::function<void()>& work) {
   reaped_seconds_ = 0;
   peak_bytes_ = 0;
   std::fflush(nullptr);  // or the child would print what is still buffered again
+  const HeldSignals held;
   const pid_t parent = getpid(), child = fork();
   if (child < 0)
     throw std::runtime_error(fmt::format("cannot start a process: {}", strerror(errno)));
   if (child == 0) {
     settle(parent, mark_);
+    held.release();
     work();
     _exit(0);
   }
