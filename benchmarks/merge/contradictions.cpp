@@ -39,12 +39,14 @@ std::string cell_violation(const Json& record) {
 std::string fields_violation(const Json& record, const std::filesystem::path& file) {
   if (!record.contains("fields")) return "";
   try {
+    const Json& fields = record.at("fields");
+    require_sound({.iterations = fields.at("iterations"), .shape = fields.at("shape")});
     const std::string bytes = read_text(field_path(file), kMostRecordBytes);
-    if (digest(bytes) == record.at("fields").at("digest")) return "";
+    if (digest(bytes) == fields.at("digest")) return "";
     return fmt::format("{} beside it is not the file of fields that it names",
                        field_path(file).filename().string());
   } catch (const UsageError& error) {
-    return fmt::format("its file of fields cannot be read: {}", error.what());
+    return fmt::format("its fields cannot be read: {}", error.what());
   }
 }
 

@@ -253,6 +253,9 @@ TEST(Fields, ThatAreMissingOrDamagedAreNamedByTheirRecord) {
             std::string::npos);
   fs::remove(done.file());
   EXPECT_NE(fields_violation(read_json(path), path).find("cannot be read"), std::string::npos);
+  Json record = read_json(path);
+  record["fields"]["shape"] = {8, 8};
+  EXPECT_NE(fields_violation(record, path).find("shape"), std::string::npos);
 }
 
 TEST(Fields, ThatDifferMakeResultsDiffer) {
