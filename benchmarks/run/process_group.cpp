@@ -18,6 +18,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "benchmarks/run/held_signals.h"
 #include "benchmarks/run/processes.h"
 #include "core/clock.h"
 
@@ -59,23 +60,6 @@ pid_t giver_of(std::uint64_t mark) {
 double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
-
-// While a child is made, signals wait: one that it sends at once must find it in the table.
-class HeldSignals {
- public:
-  HeldSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    sigprocmask(SIG_SETMASK, &all, &before_);
-  }
-  HeldSignals(const HeldSignals&) = delete;
-  HeldSignals& operator=(const HeldSignals&) = delete;
-  ~HeldSignals() { release(); }
-  void release() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_;
-};
 
 // In the child: dies with its parent, leaves the keyboard to it, dumps no core.
 void settle(pid_t parent, std::uint64_t mark) {
