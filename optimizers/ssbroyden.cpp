@@ -1,8 +1,8 @@
 // Self-scaled Broyden: a dense quasi-Newton method with a line search, θ ← θ − α H ∇L, whose H is
 // scaled down at each update as far as the curvature just seen asks for, and lies between the
 // updates of BFGS and DFP as Al-Baali, Khalfan (2005), "Wide interval for efficient self-scaling
-// quasi-Newton algorithms", choose it; found by Urbán, Stefanou, Pons (2025), J. Comput. Phys. 523,
-// eqs. 13–23, to train physics-informed networks to far smaller losses than BFGS. Full batch. The
+// quasi-Newton algorithms", choose it; found by Urbán, Stefanou, Pons (2025), J. Comput. Phys. 523
+// to train physics-informed networks to far smaller losses than BFGS. Full batch. The
 // line search is to the strong Wolfe conditions. H starts as 1, scaled at the first update as BFGS
 // is, Nocedal, Wright (2006), eq. 6.20.
 #include "optimizers/ssbroyden.h"
@@ -142,7 +142,7 @@ void register_ssbroyden(OptimizerRegistry& registry) {
        .family = Family::curvature,
        .kind = Kind::quasi_newton,
        .formula = "θ ← θ − α H ∇L,  H ← (H − Hy yᵀH/(yᵀHy) + φ v vᵀ)/τ + s sᵀ/(yᵀs)",
-       .source = "Al-Baali, Khalfan (2005); Urbán, Stefanou, Pons (2025), eqs. 13–23",
+       .source = "Al-Baali, Khalfan (2005); Urbán, Stefanou, Pons (2025)",
        .note = "Dense, with a line search to the strong Wolfe conditions.",
        .needs = {Oracle::forward, Oracle::pullback},
        .needs_same_samples = true,
