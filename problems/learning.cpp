@@ -18,6 +18,8 @@ ProblemParts learn(const Learning& options, const NetworkShape& shape, const Dra
   parts.start = parts.network->start(stream);
   parts.samples.batch = options.batch;
   parts.samples.data = options.data;
+  const Index epoch = options.data > 0 ? 0 : parts.samples.epoch;
+  require(epoch % options.batch == 0, "the samples of an epoch must be a multiple of the batch");
   parts.samples.stream = [draw](std::string_view purpose) { return draw.stream(purpose); };
   if (shape.grid > 0) parts.series = joined(std::move(parts.series), half_squared_error());
   if (options.watch == "noise") parts.series = joined(std::move(parts.series), batch_noise());

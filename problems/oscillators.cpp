@@ -134,8 +134,6 @@ ProblemParts return_to_start(const ReturnOptions& o, std::unique_ptr<Physics> ph
     parts.minimum = 0;
     return parts;
   }
-  require(o.epoch == 0 || o.learning.data > 0 || o.epoch % o.learning.batch == 0,
-          "the samples of an epoch must be a multiple of the batch");
   parts.samples = {.epoch = o.epoch,
                    .contexts = 4,
                    .has_truth = false,

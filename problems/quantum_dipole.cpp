@@ -89,8 +89,6 @@ ProblemParts make_quantum_dipole(const Options& o, const Draw& draw) {
   else
     parts.loss = std::make_unique<Infidelity>();
   if (!o.learning.is_on()) return parts;
-  require(o.epoch == 0 || o.learning.data > 0 || o.epoch % o.learning.batch == 0,
-          "the samples of an epoch must be a multiple of the batch");
   parts.samples = {.epoch = o.epoch,
                    .contexts = is_residual ? kPoints : 0,
                    .has_truth = false,
