@@ -10,6 +10,8 @@ namespace {
 
 lapack_int as_int(Index n) { return static_cast<lapack_int>(n); }
 
+constexpr lapack_int kBlock = 64;  // columns of a QR that are applied at once
+
 }  // namespace
 
 bool thin_svd(const Matrix& A, Svd& out) {
@@ -29,12 +31,25 @@ bool thin_svd(const Matrix& A, Svd& out) {
                         superdiagonal.data()) == 0;
 }
 
+bool singular_values(const Matrix& A, Vector& sigma) {
+  const lapack_int m = as_int(A.rows()), n = as_int(A.cols()), r = std::min(m, n);
+  if (r == 0 || !is_finite(A)) return false;
+  sigma.resize(r);
+  Matrix scratch = A;
+  double nothing = 0;
+  return LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'N', m, n, scratch.data(), m, sigma.data(), &nothing, 1,
+                        &nothing, 1) == 0;
+}
+
 bool FactoredSvd::factor(const Matrix& A) {
   const lapack_int m = as_int(A.rows()), n = as_int(A.cols());
   if (n == 0 || !is_finite(A)) return false;
   qr_ = A;
-  for (Vector* vector : {&tau_, &tau_x_, &tau_y_, &sigma_, &above_}) vector->setZero(n);
-  if (LAPACKE_dgeqrf(LAPACK_COL_MAJOR, m, n, qr_.data(), m, tau_.data()) != 0) return false;
+  for (Vector* vector : {&tau_x_, &tau_y_, &sigma_, &above_}) vector->setZero(n);
+  const lapack_int block = std::min(n, kBlock);
+  blocks_.resize(block, n);
+  if (LAPACKE_dgeqrt(LAPACK_COL_MAJOR, m, n, block, qr_.data(), m, blocks_.data(), block) != 0)
+    return false;
   bidiagonal_ = qr_.topRows(n).triangularView<Eigen::Upper>();
   if (LAPACKE_dgebrd(LAPACK_COL_MAJOR, n, n, bidiagonal_.data(), n, sigma_.data(), above_.data(),
                      tau_x_.data(), tau_y_.data()) != 0)
@@ -47,9 +62,10 @@ bool FactoredSvd::factor(const Matrix& A) {
 
 void FactoredSvd::to_left(const Vector& x, Vector& out) {
   const lapack_int m = as_int(qr_.rows()), n = as_int(qr_.cols());
+  const lapack_int block = as_int(blocks_.rows());
   column_ = x;
-  LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'T', m, 1, n, qr_.data(), m, tau_.data(), column_.data(),
-                 m);
+  LAPACKE_dgemqrt(LAPACK_COL_MAJOR, 'L', 'T', m, 1, n, block, qr_.data(), m, blocks_.data(), block,
+                  column_.data(), m);
   LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'T', n, 1, n, bidiagonal_.data(), n, tau_x_.data(),
                  column_.data(), m);
   out.noalias() = C_.transpose() * column_.head(n);
@@ -57,11 +73,13 @@ void FactoredSvd::to_left(const Vector& x, Vector& out) {
 
 void FactoredSvd::from_left(const Vector& along, Vector& out) {
   const lapack_int m = as_int(qr_.rows()), n = as_int(qr_.cols());
+  const lapack_int block = as_int(blocks_.rows());
   out.setZero(m);
   out.head(n).noalias() = C_ * along;
   LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'N', n, 1, n, bidiagonal_.data(), n, tau_x_.data(),
                  out.data(), m);
-  LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', m, 1, n, qr_.data(), m, tau_.data(), out.data(), m);
+  LAPACKE_dgemqrt(LAPACK_COL_MAJOR, 'L', 'N', m, 1, n, block, qr_.data(), m, blocks_.data(), block,
+                  out.data(), m);
 }
 
 void FactoredSvd::to_right(const Vector& x, Vector& out) {

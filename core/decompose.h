@@ -12,6 +12,9 @@ struct Svd {
 };
 bool thin_svd(const Matrix& A, Svd& out);  // A = U diag(σ) Vᵀ, A (m, n); false: no convergence
 
+// σ alone, (r), descending; false: no convergence, or numbers that are not finite.
+bool singular_values(const Matrix& A, Vector& sigma);
+
 // The same of a tall A, kept as the factors by which it is found, for a few products with U and V
 // instead of the matrices: A = Q R, R = X B Yᵀ with B bidiagonal, B = C diag(σ) Dᵀ; Chan (1982).
 // U = Q X C and V = Y D.
@@ -25,8 +28,8 @@ class FactoredSvd {
   void from_right(const Vector& along, Vector& out);  // V along, (n) -> (n)
 
  private:
-  Matrix qr_, bidiagonal_, C_, Dt_;
-  Vector tau_, tau_x_, tau_y_, sigma_, above_, column_;
+  Matrix qr_, blocks_, bidiagonal_, C_, Dt_;  // Q as LAPACK keeps it, in blocks of columns
+  Vector tau_x_, tau_y_, sigma_, above_, column_;
 };
 
 struct SymmetricEigen {

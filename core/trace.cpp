@@ -92,6 +92,18 @@ bool are_frames_sound(const Trace::Frames& frames) {
   return std::ranges::adjacent_find(iterations) == iterations.end();
 }
 
+bool are_spectra_sound(const Trace::Spectra& spectra) {
+  if (!is_flag(spectra.are_wanted) || !is_within(spectra.values, Trace::Spectra::kValues) ||
+      !is_within(spectra.taken, Trace::Spectra::kPlaces))
+    return false;
+  std::int64_t last = -1;
+  for (int i = 0; i < spectra.taken; ++i) {
+    if (spectra.iteration[i] <= last) return false;
+    last = spectra.iteration[i];
+  }
+  return true;
+}
+
 bool are_texts_sound(const Trace& trace) {
   return ends(trace.series_names) && ends(trace.message) && ends(trace.privileges) &&
          ends(trace.claimed);
@@ -133,6 +145,7 @@ std::string defect_of(const Trace& trace) {
     return "a path of a size that cannot be";
   if (!are_exhibits_sound(trace)) return "samples of a size that cannot be";
   if (!are_frames_sound(trace.frames)) return "fields of a size or at iterations that cannot be";
+  if (!are_spectra_sound(trace.spectra)) return "spectra of a size or at iterations that cannot be";
   if (!are_texts_sound(trace)) return "a text without an end";
   if (!are_series_sound(trace)) return "more series than there is room for";
   if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps))

@@ -81,6 +81,17 @@ struct Trace {
     Frames() { std::fill_n(iteration, kPlaces, -1); }
   };
   Frames frames;
+  // Singular values of J = ∂y/∂θ over the batch of a step, at some kept iterations, where they are
+  // asked for.
+  struct Spectra {
+    static constexpr int kPlaces = 48;    // iterations 0, 1, 2, 4, 8, …, and the last
+    static constexpr int kValues = 2048;  // of one spectrum
+    bool are_wanted = false;
+    int values = 0, taken = 0;
+    std::int64_t iteration[kPlaces];
+    double sigma[kPlaces][kValues];  // descending
+  };
+  Spectra spectra;
   bool is_learned = false;
   char series_names[kText] = "";  // a line each
 

@@ -16,18 +16,6 @@ constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kDivergence = 1e12, kStallDecrease = 1e-12;
 constexpr std::int64_t kStallIterations = 100;
 
-// Iterations 0 to 100, then 32 a decade.
-std::int64_t next_kept_after(std::int64_t iteration) {
-  constexpr std::int64_t kEvery = 100;
-  constexpr Real kPerDecade = 32;
-  if (iteration < kEvery) return iteration + 1;
-  const Real passed = std::floor(kPerDecade * std::log10(static_cast<Real>(iteration)) + 1e-9);
-  std::int64_t next = iteration;
-  for (Real step = passed; next <= iteration; ++step)
-    next = std::llround(std::pow(10.0, step / kPerDecade));
-  return next;
-}
-
 std::span<const Real> first_sample(const Matrix& all) {
   if (all.size() == 0) return {};
   return {all.data(), static_cast<std::size_t>(all.rows())};
@@ -85,7 +73,9 @@ void Meter::persist(Archive& archive) {
   archive(counts_, work_, iteration_, next_kept_, best_loss_, next_target_, target_loss_,
           targets_met_, stall_loss_, stall_iteration_, status_, batch_loss_, batch_x_error_,
           judged_.loss, judged_theta_, previous_, wall, processor);
+  const bool are_spectra_wanted = trace_.spectra.are_wanted;  // by who goes on
   archive.raw(&trace_, sizeof trace_);  // plain data, but for atomics that nobody waits for
+  trace_.spectra.are_wanted = are_spectra_wanted;
   if (!archive.is_reading()) return;
   require_sound();
   trace_.is_finished = false;
@@ -153,6 +143,7 @@ void Meter::finish(VectorRef theta, Status verdict) {
   const int points = trace_.points;  // the curve ends at the returned point
   if (points > 0 && trace_.point[points - 1].iteration == iteration_) trace_.points = points - 1;
   keep_point();
+  keep_spectrum(true);
   if (problem_.is_learned() && !problem_.field()) show();
   if (verdict == Status::running) verdict = Status::converged;
   if (judged_.loss <= target_loss_) verdict = Status::target;
@@ -192,35 +183,6 @@ Real Meter::judged_gradient_norm() {
   problem_.cotangent(judged_, judged_g_);
   problem_.pullback(judged_g_, judged_gradient_, judged_);
   return judged_gradient_.norm();
-}
-
-// The validation as it was last judged: its first small samples.
-void Meter::show() {
-  constexpr Index kMostSamples = 256;
-  const auto keep = [&](const Matrix& all, Trace::Exhibit& shown) {
-    if (all.size() == 0 || all.rows() > Trace::kExhibit) return;
-    const Index most = std::min(kMostSamples, Trace::kExhibit / all.rows());
-    shown.columns = static_cast<int>(std::min(most, all.cols()));
-    std::copy_n(all.data(), all.rows() * shown.columns, shown.value);
-    shown.rows = static_cast<int>(all.rows());
-  };
-  keep(validation_.target, trace_.shown_target);
-  keep(judged_.x(), trace_.shown_x);
-  keep(validation_.truth, trace_.shown_truth);
-}
-
-void Meter::keep_point() {
-  const int index = trace_.points;
-  if (index >= Trace::kPoints) return;
-  trace_.point[index] = trace_.last;
-  if (trace_.path_inputs > 0) {
-    std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
-    std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
-  }
-  keep_frame(trace_.frames, iteration_, first_sample(judged_.x()));
-  trace_.points = index + 1;
-  trace_.best_loss = best_loss_;
-  next_kept_ = next_kept_after(iteration_);
 }
 
 bool Meter::has_stalled() {

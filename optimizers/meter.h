@@ -117,6 +117,8 @@ class Meter {
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   Real judged_gradient_norm();
   void keep_point();
+  bool is_spectrum_due(bool is_last) const;
+  void keep_spectrum(bool is_last);
   void show();     // what was learned
   void prepare();  // samples and limits
   void require_sound() const;

@@ -44,11 +44,14 @@ struct Rerun {
   std::optional<Record> record;
   bool is_interrupted = false;
 };
-Rerun run_again(const Request& request, bool keeps_fields, const ReplayArguments& given,
+Rerun run_again(const Request& request, const Record& kept, const ReplayArguments& given,
                 Session& session) {
   const HiddenFolder folder;
   Store store(folder.path());
-  RunOptions options{.force = true, .keeps_fields = keeps_fields, .command = session.command()};
+  RunOptions options{.force = true,
+                     .keeps_fields = kept.fields.has_value(),
+                     .keeps_spectra = kept.spectrum.has_value(),
+                     .command = session.command()};
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
   const Outcome outcome = run_all(session.catalog(), {request}, store, options);
   return {store.find(request), outcome.is_interrupted};
@@ -77,8 +80,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
     return kNotComparable;
   }
   const std::string builds = difference_of_builds(record, request);
-  const auto [again, is_interrupted] =
-      run_again(request, record.fields.has_value(), given, session);
+  const auto [again, is_interrupted] = run_again(request, record, given, session);
   if (is_interrupted) return kInterrupted;
   if (!again) {
     say(stdout, fmt::format("{}: not comparable: it was killed from outside\n", title));

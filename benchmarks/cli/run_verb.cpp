@@ -177,6 +177,7 @@ int run_verb(const RunArguments& given, Session& session) {
                      .repeat = given.repeat,
                      .keeps_output = given.keeps_output,
                      .keeps_fields = given.keeps_fields,
+                     .keeps_spectra = given.keeps_spectra,
                      .command = session.command()};
   if (given.exclusive) options.jobs = 1;
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;

@@ -42,6 +42,9 @@ void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
   verb.flag(
       "--fields", given.keeps_fields,
       "Keep x of problems on a grid, at six iterations, for every seed: else for seed 0 alone");
+  verb.flag("--spectrum", given.keeps_spectra,
+            "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
+            "cells that are done without them are repeated");
 }
 
 }  // namespace

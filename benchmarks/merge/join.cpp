@@ -32,6 +32,7 @@ auto rank_of(const Json& record) {
   Json rest = record;
   rest.erase("repeat_wall_seconds");
   rest.erase("fields");
+  rest.erase("spectrum");
   const Json run = record.at("provenance").value("run", Json::object());
   return std::tuple(!is_nondeterministic(record),
                     run.is_object() ? run.value("started", std::string()) : std::string(),
@@ -80,8 +81,9 @@ JoinedRecord join_records(const Json& a, const Json& b) {
   const bool is_b = rank_of(a) < rank_of(b);
   Json joined = is_b ? b : a;
   const Json& other = is_b ? a : b;
-  if (is_same && other.contains("fields") && !joined.contains("fields"))
-    joined["fields"] = other.at("fields");  // one was asked for them and the other was not
+  for (const char* asked : {"fields", "spectrum"})  // one was asked for them and the other was not
+    if (is_same && other.contains(asked) && !joined.contains(asked))
+      joined[asked] = other.at(asked);
   joined["repeat_wall_seconds"] =
       joined_timings(a.at("repeat_wall_seconds"), b.at("repeat_wall_seconds"));
   return {std::make_shared<const Json>(std::move(joined)), "",

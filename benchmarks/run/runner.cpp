@@ -85,6 +85,7 @@ class Runner {
       if (options_.force) store_.remove_checkpoint(*request);
       workers_[i].start(
           [&, i, request](Trace& trace) {
+            trace.spectra.are_wanted = options_.keeps_spectra;
             Vector returned;
             execute(catalog_, *request, trace, checkpoint_of(*request), &returned,
                     options_.perturbation);
@@ -199,6 +200,7 @@ class Runner {
         !same_result(*earlier, record))
       outcome_.conflicts.push_back(title_of(*task.request));
     if (earlier && !record.fields) record.fields = earlier->fields;  // its file is there
+    if (earlier && !record.spectrum) record.spectrum = earlier->spectrum;
     store_.write(record, earlier);
     if (record.status != Status::interrupted) store_.remove_checkpoint(record.request);
     ++outcome_.run;

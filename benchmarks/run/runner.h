@@ -24,13 +24,20 @@ struct RunOptions {
   double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
-  bool keeps_output = false;  // of cells, in their records
-  bool keeps_fields = false;  // of every seed; else those of seed 0
-  std::string command;        // for the record
+  bool keeps_output = false;   // of cells, in their records
+  bool keeps_fields = false;   // of every seed; else those of seed 0
+  bool keeps_spectra = false;  // a record without them is made anew
+  std::string command;         // for the record
 
   // Whether a record that is there, if one is, stands in nobody's way.
   bool redoes(const std::optional<Record>& done) const {
-    return force || (done && retry.contains(done->status));
+    return force || (done && (retry.contains(done->status) || lacks_spectrum(*done)));
+  }
+
+ private:
+  bool lacks_spectrum(const Record& done) const {
+    return keeps_spectra && !done.spectrum && !is_failure(done.status) &&
+           done.status != Status::inapplicable;
   }
 };
 

@@ -118,20 +118,34 @@ Json rest_of(const Record& record) {
   return rest;
 }
 
-}  // namespace
+// At an iteration where both keep theirs.
+std::string difference_in_spectra(const Spectrum& a, const Spectrum& b) {
+  for (std::size_t i = 0; i < a.iterations.size(); ++i) {
+    const auto there = std::ranges::find(b.iterations, a.iterations[i]);
+    if (there == b.iterations.end()) continue;
+    if (a.sigma[i] != b.sigma[static_cast<std::size_t>(there - b.iterations.begin())])
+      return fmt::format("singular values at iteration {}", a.iterations[i]);
+  }
+  return "";
+}
 
-// The earliest of the fields that both keep.
-std::string difference_in_fields(const Record& a, const Record& b) {
+// Of the spectra that both keep, then the earliest of the fields.
+std::string difference_in_what_is_kept(const Record& a, const Record& b) {
+  if (a.spectrum && b.spectrum)
+    if (std::string found = difference_in_spectra(*a.spectrum, *b.spectrum); !found.empty())
+      return found;
   if (!a.fields || !b.fields || *a.fields == *b.fields) return "";
   if (a.fields->iterations != b.fields->iterations) return "iterations of the fields";
   return fmt::format("fields: {} against {}", a.fields->digest, b.fields->digest);
 }
 
+}  // namespace
+
 bool same_result(const Record& a, const Record& b) {
   Json left = without_timings(to_json(a)), right = without_timings(to_json(b));
   left.erase("provenance");
   right.erase("provenance");
-  return left == right && difference_in_fields(a, b).empty();
+  return left == right && difference_in_what_is_kept(a, b).empty();
 }
 
 Comparison compare_results(const Record& a, const Record& b) {
@@ -150,7 +164,7 @@ Comparison compare_results(const Record& a, const Record& b) {
         fmt::format("last iteration: {} against {}", a.summary.iterations, b.summary.iterations);
   else
     found.difference = difference_in(rest_of(a), rest_of(b), "");
-  if (found.difference.empty()) found.difference = difference_in_fields(a, b);
+  if (found.difference.empty()) found.difference = difference_in_what_is_kept(a, b);
   return found;
 }
 

@@ -82,6 +82,17 @@ std::optional<FieldFrames> fields_of(const Trace& trace) {
   return frames;
 }
 
+std::optional<Spectrum> spectrum_of(const Trace& trace) {
+  const Trace::Spectra& kept = trace.spectra;
+  if (!kept.are_wanted) return std::nullopt;
+  Spectrum spectrum;
+  for (int i = 0; i < kept.taken; ++i) {
+    spectrum.iterations.push_back(kept.iteration[i]);
+    spectrum.sigma.emplace_back(kept.sigma[i], kept.sigma[i] + kept.values);
+  }
+  return spectrum;
+}
+
 Curve curve_of(const Trace& trace) {
   Curve curve;
   const int points = trace.points;
@@ -210,6 +221,7 @@ Record record_of(const Request& request, const Trace& trace) {
   record.series = series_of(trace);
   record.exhibit = exhibit_of(trace);
   record.fields = fields_of(trace);
+  record.spectrum = spectrum_of(trace);
   record.privileges = lines_of(trace.privileges);
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||
                                record.status == Status::interrupted ||

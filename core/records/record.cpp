@@ -37,6 +37,9 @@ void require_equal_columns(const Record& record) {
            curve.batch_x_error, record.series);
   if (record.trajectory) of_curve(record.trajectory->x, record.trajectory->y);
   if (record.fields) require_sound(*record.fields);
+  if (record.spectrum)
+    require(record.spectrum->iterations.size() == record.spectrum->sigma.size(),
+            "its spectra are not as many as their iterations");
   if (!record.hits) return;
   const Hits& hits = *record.hits;
   const std::size_t targets = hits.target.size();
@@ -97,6 +100,7 @@ Json without_timings(Json record) {
   record.erase("repeat_wall_seconds");
   record.erase("output");  // may hold addresses and times
   record.erase("fields");
+  record.erase("spectrum");
   record.at("provenance").erase(kRunKey);  // start time, concurrent jobs, exclusive
   for (const char* name : {"wall_seconds", "processor_seconds", "peak_memory_bytes"}) {
     record.at("summary").erase(name);

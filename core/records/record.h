@@ -41,6 +41,15 @@ struct Trajectory {
   std::vector<std::vector<Real>> x, y;
 };
 
+// Singular values of J = ∂y/∂θ over the batch of a step, descending, where --spectrum asked for
+// them. Without iterations: J is not formed, or too large.
+struct Spectrum {
+  std::vector<std::int64_t> iterations = {};
+  std::vector<std::vector<Real>> sigma = {};  // one spectrum an iteration
+
+  bool operator==(const Spectrum&) const = default;
+};
+
 struct Summary {
   std::int64_t iterations = 0, work = 0, rejected_steps = 0;
   Real start_loss = 0, loss = 0, best_loss = 0;
@@ -78,6 +87,7 @@ struct Record {
   std::map<std::string, std::vector<Real>> series;  // a problem's own quantities, as the curve
   std::optional<Exhibit> exhibit;
   std::optional<FieldFrames> fields;  // of a problem on a grid
+  std::optional<Spectrum> spectrum;
   std::vector<std::string> privileges;
   bool is_nondeterministic = false;       // ended by a clock or a kill
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
@@ -95,12 +105,12 @@ Record read_record(const std::string& path);
 
 Json run_schema();  // what benchmarks/schemas/run.json holds
 
-// All of a record that two runs of one build must agree on. What fields it keeps is not: one may
-// have been asked for them and another not.
+// All of a record that two runs of one build must agree on. What fields and spectra it keeps is
+// not: one may have been asked for them and another not.
 Json result_of(const Json& record);
 
 // The record without what may differ between two runs of one build: times, memory, concurrency,
-// fields that were asked for.
+// fields and spectra that were asked for.
 Json without_timings(Json record);
 
 inline constexpr const char* kRunSchema = "isoline.run/1";

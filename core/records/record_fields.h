@@ -69,6 +69,11 @@ void fields(Like<FieldFrames> auto& frames, auto& field) {
   field("digest", frames.digest, kDigestLaw);
 }
 
+void fields(Like<Spectrum> auto& spectrum, auto& field) {
+  field("iterations", spectrum.iterations);
+  field("sigma", spectrum.sigma);
+}
+
 void fields(Like<Record> auto& record, auto& field) {
   field.constant("schema", kRunSchema);
   field("cell", record.cell, kDigestLaw);
@@ -98,6 +103,8 @@ void fields(Like<Record> auto& record, auto& field) {
   field.optional("exhibit", record.exhibit);
   field.optional("fields", record.fields,
                  R"({"description": "x at some iterations, in the .npy file beside"})");
+  field.optional("spectrum", record.spectrum,
+                 R"({"description": "Singular values of J, where --spectrum asked for them"})");
   field("privileges", record.privileges);
   field("nondeterministic", record.is_nondeterministic);
   field("repeat_wall_seconds", record.repeat_wall_seconds);

@@ -174,7 +174,8 @@ std::vector<Measure> measures_of(const Comparison& c) {
   return measures;
 }
 
-std::string problem_data(const Comparison& c, const Ladders& ladders, std::size_t p) {
+std::string problem_data(const Comparison& c, const Ladders& ladders, std::size_t p,
+                         const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
   std::string text = fmt::format(
       "{{\"spec\":{},\"asked\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
@@ -182,7 +183,7 @@ std::string problem_data(const Comparison& c, const Ladders& ladders, std::size_
       json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec), json_quoted(problem.name),
       problem.group(), is_ordered(c, p), cells_json(c, ladders, p), curves_json(c, p));
   text += origins_json(c, p) + goal_json(c, p) + learned_json(c, p);
-  if (const auto found = found_fields(c, p)) text += ",\"fields\":" + fields_json(*found);
+  if (fields) text += ",\"fields\":" + fields_json(*fields);
   const std::vector<Path> all = paths(c, p);
   if (const Sheet* sheet = problem.sheet; sheet != nullptr && !all.empty()) {
     if (sheet->landscape_x)

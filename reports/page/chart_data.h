@@ -1,9 +1,11 @@
 // What the page draws of one problem, as compact JSON.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "reports/read/found_fields.h"
 #include "reports/read/ladders.h"
 
 namespace isoline::reports {
@@ -15,6 +17,7 @@ std::vector<Measure> measures_of(const Comparison& comparison);
 // the tolerances of its report alone.
 std::vector<std::size_t> targets_of(const Comparison& comparison);
 
-std::string problem_data(const Comparison& comparison, const Ladders& ladders, std::size_t problem);
+std::string problem_data(const Comparison& comparison, const Ladders& ladders, std::size_t problem,
+                         const std::optional<FoundFields>& fields);
 
 }  // namespace isoline::reports

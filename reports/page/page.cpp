@@ -109,14 +109,14 @@ constexpr Script kScripts[] = {
 };
 
 // Style and scripts, and what the bar of filters says before they run.
-Parts common_parts(const Comparison& c) {
+Parts common_parts(const Comparison& c, const AllFields& fields) {
   Parts parts = {{"style", std::string(embedded_page_css())
                                .append(embedded_parts_css())
                                .append(embedded_plots_css())
                                .append(embedded_fields_css())},
                  {"kinds", kind_rules(c)},
                  {"tau", tau_name(c)},
-                 {"problems", problems_html(c)}};
+                 {"problems", problems_html(c, fields)}};
   for (const Script& script : kScripts) parts.emplace(script.name, script.text());
   return parts;
 }
@@ -126,7 +126,8 @@ Parts common_parts(const Comparison& c) {
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const std::vector<Interval> intervals = score_intervals(c);
-  Parts parts = common_parts(c);
+  const AllFields fields = all_found_fields(c);
+  Parts parts = common_parts(c, fields);
   parts.merge(Parts{{"headline", head_html(document)},
                     {"counted", std::string(counted_name(c))},
                     {"unit", std::string(unit_name(c))},
@@ -142,7 +143,7 @@ std::string html_report(const Document& document) {
                     {"claims", claims_html(document)},
                     {"methods", methods_html(c)},
                     {"optimizers", optimizers_html(c)},
-                    {"data", page_data(document, intervals)}});
+                    {"data", page_data(document, intervals, fields)}});
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
   return filled(embedded_page_html(), parts);
@@ -152,11 +153,12 @@ std::string comparison_page(const Comparison& sides, const Section& changes,
                             const std::string& headline) {
   const Document document{.comparison = sides};
   const std::vector<Interval> none(sides.optimizers.size());  // no order of both is shown
-  Parts parts = common_parts(sides);
+  const AllFields fields = all_found_fields(sides);
+  Parts parts = common_parts(sides, fields);
   parts.merge(Parts{{"headline", html_text(headline)},
                     {"verdict", html_text(changes.title)},
                     {"changes", section_html(changes)},
-                    {"data", page_data(document, none)}});
+                    {"data", page_data(document, none, fields)}});
   return filled(embedded_comparison_html(), parts);
 }
 

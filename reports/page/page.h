@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "reports/read/found_fields.h"
 #include "reports/sections/document.h"
 #include "reports/sections/scores.h"
 
@@ -28,14 +29,16 @@ std::string endings_html(const Comparison& comparison);  // how the runs ended
 std::string standings_html(const Comparison& comparison, const std::vector<Interval>& intervals);
 std::string heat_html(const Comparison& comparison);  // what each took on each problem, by kind
 std::string details_html(const Comparison& comparison);
-std::string problems_html(const Comparison& comparison);    // one article each
+// One article each, with what fields its runs keep.
+std::string problems_html(const Comparison& comparison, const AllFields& fields);
 std::string methods_html(const Comparison& comparison);     // the grid of properties
 std::string optimizers_html(const Comparison& comparison);  // one article each
 std::string figures_html(const Document& document);
 std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
 
 // What the charts draw, as JSON that is safe inside a script element.
-std::string page_data(const Document& document, const std::vector<Interval>& intervals);
+std::string page_data(const Document& document, const std::vector<Interval>& intervals,
+                      const AllFields& fields);
 std::string figures_json(const std::vector<Figure>& figures);
 std::string json_quoted(const std::string& text);
 

@@ -136,7 +136,8 @@ std::string safe(const std::string& text) {
 
 }  // namespace
 
-std::string page_data(const Document& document, const std::vector<Interval>& intervals) {
+std::string page_data(const Document& document, const std::vector<Interval>& intervals,
+                      const AllFields& fields) {
   const Comparison& c = document.comparison;
   const Ladders ladders(c);
   std::string text = fmt::format(
@@ -148,7 +149,7 @@ std::string page_data(const Document& document, const std::vector<Interval>& int
       indices(targets_of(c)), axes_json(c), given_json(c, intervals), indices(c.order.methods),
       claims_about(document), figures_json(document.figures), standings_json(c, ladders));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
-    text += (p > 0 ? "," : "") + problem_data(c, ladders, p);
+    text += (p > 0 ? "," : "") + problem_data(c, ladders, p, fields[p]);
   return safe(text + "]" + sides_json(c) + "}");
 }
 

@@ -80,7 +80,8 @@ std::string about_html(const Sheet& sheet) {
   return html;
 }
 
-std::string problem_html(const Comparison& c, std::size_t p) {
+std::string problem_html(const Comparison& c, std::size_t p,
+                         const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
   const Sheet* sheet = problem.sheet;
   std::string html =
@@ -92,20 +93,20 @@ std::string problem_html(const Comparison& c, std::size_t p) {
       "class=reached></div></div>",
       html_text(curve_reading(c, p)));
   html += planes_html(c, p);
-  if (const auto found = found_fields(c, p)) html += fields_html(c, *found);
+  if (fields) html += fields_html(c, *fields);
   return html + "</noscript></article>\n";
 }
 
 }  // namespace
 
 // By group, each a row of links.
-std::string problems_html(const Comparison& c) {
+std::string problems_html(const Comparison& c, const AllFields& fields) {
   std::map<std::string, std::string> groups;
   std::string index, html;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     groups[c.problems[p].group()] += fmt::format("<a href=\"#problem-{0}\" data-p={0}>{1}</a>\n", p,
                                                  html_text(shown_spec(c.problems[p].spec)));
-    html += problem_html(c, p);
+    html += problem_html(c, p, fields[p]);
   }
   for (const char* group : {"toy", "physics", "classical", "learned", "other"})
     if (groups.contains(group))

@@ -50,9 +50,7 @@ std::string standing_row(const Comparison& c, std::size_t s, const Interval& int
 
 // How far from the best, as a class of the style sheet: h0 the least, then by factors of two.
 std::string heat_class(Real value, Real least, Real unit) {
-  constexpr Real kDarkest = 7;
-  const Real doublings = std::log2(std::max(value, unit) / std::max(least, unit));
-  return fmt::format("h{:.0f}", std::min(std::ceil(doublings), kDarkest));
+  return fmt::format("h{}", shade_of(std::max(value, unit), std::max(least, unit)));
 }
 
 std::string work_cell(const Comparison& c, const Cell& cell, std::size_t p, Real least) {

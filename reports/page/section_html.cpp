@@ -35,7 +35,10 @@ std::string head_html(const Table& table) {
 std::string cell_html(const Table& table, const TableCell& cell, std::size_t column) {
   const bool is_name = column < table.names;
   const char align = table.align_of(column);
-  std::string tag = is_name ? "th scope=row" : align == 'r' ? "td" : "td class=text";
+  std::string tag = is_name        ? "th scope=row"
+                    : cell.shade   ? fmt::format("td class=h{}", *cell.shade)
+                    : align == 'r' ? "td"
+                                   : "td class=text";
   tag += about(table.column_topics, column);
   if (!cell.note.empty()) tag += fmt::format(" title=\"{}\"", html_text(cell.note));
   std::string text = html_text(cell.text);

@@ -79,4 +79,10 @@ std::optional<FoundFields> found_fields(const Comparison& c, std::size_t p) {
   return out;
 }
 
+AllFields all_found_fields(const Comparison& c) {
+  AllFields all;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) all.push_back(found_fields(c, p));
+  return all;
+}
+
 }  // namespace isoline::reports

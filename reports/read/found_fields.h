@@ -27,5 +27,7 @@ struct FoundFields {
 
 // Nothing where no run keeps fields that can be read.
 std::optional<FoundFields> found_fields(const Comparison& comparison, std::size_t problem);
+using AllFields = std::vector<std::optional<FoundFields>>;  // by problem
+AllFields all_found_fields(const Comparison& comparison);
 
 }  // namespace isoline::reports

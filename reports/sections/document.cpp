@@ -22,6 +22,8 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
   document.sections = {standings_section(c),
                        problems_section(c),
                        learned_section(c),
+                       sweeps_section(c),
+                       spectra_section(c),
                        claims_section(document.claims),
                        properties_section(c.study->audits),
                        tuning_section(c),

@@ -151,13 +151,15 @@ std::optional<Real> neutral_of(const std::string& kind) {
 
 namespace {
 
-// Too few seeds for an interval: what each of them alone gives, from the least to the greatest.
+// Too few seeds for an interval: what each of them alone gives and what all of them do together,
+// from the least to the greatest. (The greatest of medians is no more than that of any seed.)
 Measurement with_range(Measurement out, const std::string& kind, const std::vector<Term>& terms) {
   std::vector<Real> values;
   for (std::size_t seed = 0; seed < out.n; ++seed)
     if (const Real value = quantity_over(kind, terms, {seed}); !std::isnan(value))
       values.push_back(value);
   if (values.empty()) return out;
+  values.push_back(out.value);
   out.low = std::ranges::min(values);
   out.high = std::ranges::max(values);
   return out;

@@ -30,10 +30,11 @@ struct TableCell {
 
   std::string text;
   Numbers numbers;
-  std::string note = {};    // what the page tells who points at it
-  std::string remark = {};  // beside the text, in small
-  std::string link = {};    // where the page leads from here
-  bool is_best = false;     // of its column
+  std::string note = {};          // what the page tells who points at it
+  std::string remark = {};        // beside the text, in small
+  std::string link = {};          // where the page leads from here
+  bool is_best = false;           // of its column
+  std::optional<int> shade = {};  // of a heat map: 0 the best, then by factors of two, to 7
 };
 
 struct Table {

@@ -22,6 +22,8 @@ Section properties_section(const std::vector<AuditedOptimizer>& audits);
 Section tuning_section(
     const Comparison& comparison);  // where rates came from, and what they bought
 Section statistics_section(const Comparison& comparison);
+Section sweeps_section(const Comparison& comparison);   // two options at a time, as heat maps
+Section spectra_section(const Comparison& comparison);  // of J, where runs kept them
 Section failures_section(const Comparison& comparison);
 Section builds_section(const Comparison& comparison);
 

@@ -98,6 +98,11 @@ std::string shown_spec(std::string_view spec) {
 
 std::string multiple(Real ratio) { return fmt::format("{:.3g}×", ratio); }
 
+int shade_of(Real value, Real least) {
+  constexpr Real kDarkest = 7;
+  return static_cast<int>(std::min(std::ceil(std::log2(value / least)), kDarkest));
+}
+
 std::string joined(const std::vector<std::string>& words, std::string_view between) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {

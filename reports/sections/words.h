@@ -21,6 +21,8 @@ std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for wha
 std::string range_figure(const Spread& spread, std::string (*written)(Real));
 std::string percent(Real share);
 std::string multiple(Real ratio);  // "1.3×"
+// Of a heat map: 0 the least, then a step for each factor of two, to 7. Both are above 0.
+int shade_of(Real value, Real least);
 
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 std::string counted(std::size_t count, std::string_view noun);  // "1 seed", "3 seeds"

@@ -1,5 +1,5 @@
-// What is built into the program, for tests of suites and of rates: its catalog, the cells of a
-// suite at its own rates, its schemas.
+// What is built into the program, for tests of suites and of rates: its catalog, and the cells of a
+// suite at its own rates.
 #pragma once
 
 #include <string>
@@ -8,7 +8,6 @@
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/plan/suite.h"
-#include "core/json.h"
 
 namespace isoline::benchmarks {
 
@@ -19,10 +18,6 @@ inline const Catalog& catalog() {
 
 inline std::vector<Request> cells_of(const std::string& suite) {
   return expand(catalog(), read_suite(suite), Rates::builtin());
-}
-
-inline Json schema(const std::string& name) {
-  return parse_json(std::string(builtin_schemas().at(name)), name);
 }
 
 }  // namespace isoline::benchmarks

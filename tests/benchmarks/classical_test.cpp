@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/execute.h"

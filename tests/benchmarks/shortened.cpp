@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "tests/benchmarks/builtin.h"
 
 namespace isoline::benchmarks {

@@ -14,6 +14,7 @@
 #include "core/records/schema.h"
 #include "core/spec.h"
 #include "tests/benchmarks/builtin.h"
+#include "tests/benchmarks/builtin_schema.h"
 
 namespace isoline::benchmarks {
 

@@ -29,6 +29,19 @@ TEST(Decompose, SvdRebuildsTheMatrix) {
   }
 }
 
+TEST(Decompose, SingularValuesAloneAreThoseOfTheSvd) {
+  for (const auto& [m, n] : {std::pair<Index, Index>{7, 3}, {3, 7}, {5, 5}, {1, 4}}) {
+    const Matrix A = random_matrix(m, n);
+    Svd svd;
+    Vector sigma;
+    ASSERT_TRUE(thin_svd(A, svd) && singular_values(A, sigma));
+    EXPECT_LE((sigma - svd.sigma).norm(), kRound) << m << " × " << n;
+  }
+  Vector sigma;
+  EXPECT_FALSE(singular_values(Matrix::Constant(2, 2, std::nan("")), sigma));
+  EXPECT_FALSE(singular_values(Matrix(0, 3), sigma));
+}
+
 TEST(Decompose, FactoredSvdIsTheThinOneKeptAsItsFactors) {
   for (const auto& [m, n] : {std::pair<Index, Index>{9, 4}, {4, 4}, {40, 17}, {1, 1}}) {
     const Matrix A = random_matrix(m, n);

@@ -105,8 +105,9 @@ TEST(Allocation, HessiansAllocateNothingOnceWarm) {
 // A local inverse returns its successes, an array of its own.
 TEST(Allocation, TrainingStepsAllocateNothingOnceWarm) {
   const Problem problem = learned_affine(6);
-  for (const char* spec : {"sip[inverse=newton]", "sip[inverse=newton,inner-steps=2]", "supervised",
-                           "rescaled", "rescaled[by=truth]", "adahessian", "hessian-free", "kfac"})
+  for (const char* spec :
+       {"sip[inverse=newton]", "sip[inverse=newton,inner-steps=2]", "supervised", "rescaled",
+        "rescaled[by=truth]", "adahessian", "hessian-free", "kfac", "muon", "soap"})
     EXPECT_EQ(allocations_of_steps(problem, spec), 0) << spec;
 }
 

@@ -11,6 +11,7 @@ import urllib.request
 
 import browser
 import colours
+from in_browser import WIDER, InBrowser, resized, run
 
 PROBLEMS = "rosenbrock,square,beale,scaling,helical-valley,brown-badly-scaled"
 OPTIMIZERS = "gd,adam,newton,gauss-newton,sip,ceres-lm,levenberg-marquardt,nlopt-bobyqa"
@@ -38,48 +39,18 @@ SCREENS_DOWN = """const box = document.querySelector(arguments[0]).getBoundingCl
 return box.height > 0 ? (box.bottom + scrollY) / innerHeight : null;"""
 
 
-def run(*arguments):
-    """A run of the program; some of its cells fail, which is data."""
-    return subprocess.run([sys.argv[1], *arguments], check=False, capture_output=True, text=True)
-
-
-def resized(page, width, height):
-    page.call("POST", "/goog/cdp/execute", {  # windows are never so narrow
-        "cmd": "Emulation.setDeviceMetricsOverride",
-        "params": {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}})
-
-
-class Page(unittest.TestCase):
+class Page(InBrowser):
     @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
+    def made(cls, folder):
         run("run", "--problem", PROBLEMS, "--optimizer", OPTIMIZERS, "--seeds", "3",
-            "--iterations", "400", "--out", cls.folder.name, "--quiet")
-        report = pathlib.Path(cls.folder.name, "report")
+            "--iterations", "400", "--out", folder, "--quiet")
+        report = pathlib.Path(folder, "report")
         cls.json = json.loads((report / "report.json").read_text())
-        cls.address = (report / "index.html").as_uri()
-        cls.browser = browser.Browser()
-        cls.browser.open("about:blank")
-        cls.browser.log("performance")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.folder.cleanup()
+        return report / "index.html"
 
     def setUp(self):
-        resized(self.browser, 1400, 900)
+        super().setUp()
         self.open("")
-
-    def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
-        elsewhere = [url for url in self.browser.requests()
-                     if not url.startswith(("file:", "data:", "blob:", "chrome:"))]
-        self.assertEqual(elsewhere, [], "the page asks the network for something")
-
-    def open(self, rest):
-        self.browser.open("about:blank")
-        self.browser.open(self.address + rest)
 
     def optimizer(self, name):
         return self.browser.run("return DATA.optimizers.indexOf(arguments[0])", name)
@@ -367,7 +338,7 @@ class Page(unittest.TestCase):
         resized(self.browser, 400, 800)
         for tab in ("overview", "compare", "problems", "methods", "statistics", "runs"):
             self.open(f"#{tab}")
-            wide = self.browser.run("return document.documentElement.scrollWidth - innerWidth")
+            wide = self.browser.run(WIDER)
             self.assertLessEqual(wide, 0, f"{tab} is wider than the window")
 
     def test_paper_has_all_of_it(self):
@@ -450,7 +421,7 @@ class Claims(unittest.TestCase):
                 page.open(f"{self.address}#{claim}")
                 top, bars = self.seen_at(page, claim)
                 self.assertGreaterEqual(top, bars - 1, "its head is behind the bars")
-                wide = page.run("return document.documentElement.scrollWidth - innerWidth")
+                wide = page.run(WIDER)
                 self.assertLessEqual(wide, 0, "the page is wider than the window")
                 self.assertEqual(page.complaints(), [])
             finally:

@@ -4,13 +4,12 @@ is not installed."""
 import math
 import pathlib
 import statistics
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import browser
 import colours
+from in_browser import WIDER, InBrowser, resized, run
 
 # The colours of an image, cell by cell, as #rrggbb.
 CELLS = """const image = document.querySelector(arguments[0]);
@@ -27,51 +26,10 @@ IS_DRAWN = """const canvas = document.querySelector(arguments[0])?.querySelector
 if (!canvas || canvas.width === 0) return false;
 const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
 return new Set(new Uint32Array(data.buffer)).size > 20;"""
-WIDER = "return document.documentElement.scrollWidth - innerWidth"
-
-
-def run(*arguments):
-    return subprocess.run([sys.argv[1], *arguments], check=False, capture_output=True, text=True)
-
-
-def sized(page, width, height):
-    page.call("POST", "/goog/cdp/execute", {
-        "cmd": "Emulation.setDeviceMetricsOverride",
-        "params": {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}})
 
 
 def distance(one, other):
     return max(abs(int(one[i:i + 2], 16) - int(other[i:i + 2], 16)) for i in (1, 3, 5))
-
-
-class InBrowser(unittest.TestCase):
-    """A page in a browser of its own, which complains of nothing and asks the network nothing."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.address = cls.made(cls.folder.name).as_uri()
-        cls.browser = browser.Browser()
-        cls.browser.open("about:blank")
-        cls.browser.log("performance")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        cls.folder.cleanup()
-
-    def setUp(self):
-        sized(self.browser, 1400, 900)
-
-    def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
-        elsewhere = [url for url in self.browser.requests()
-                     if not url.startswith(("file:", "data:", "blob:", "chrome:"))]
-        self.assertEqual(elsewhere, [], "the page asks the network for something")
-
-    def open(self, rest):
-        self.browser.open("about:blank")
-        self.browser.open(self.address + rest)
 
 
 class Fields(InBrowser):
@@ -183,7 +141,7 @@ class Fields(InBrowser):
             self.assertLess(max(steps) / min(steps), 2.2, f"{vision}: its steps are even")
 
     def test_they_fit_a_phone(self):
-        sized(self.browser, 400, 800)
+        resized(self.browser, 400, 800)
         self.open(f"#problem-{self.p}")
         self.browser.wait("return document.querySelector(arguments[0]) !== null",
                           self.fields + " input")
@@ -288,7 +246,7 @@ class Sides(InBrowser):
             self.assertEqual(dash > 0, name.endswith(", BASE"), name)
 
     def test_each_tab_fits_a_phone_and_the_file_stands_alone(self):
-        sized(self.browser, 400, 800)
+        resized(self.browser, 400, 800)
         for tab in ("compare", "changes", "problems"):
             self.open(f"#{tab}")
             self.assertLessEqual(self.browser.run(WIDER), 0, f"{tab} is wider than the window")

@@ -1,0 +1,137 @@
+// The singular values of J along runs that kept them: who sees which part of the spectrum, and how
+// learning changes the conditioning.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr Real kNone = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real kVisible = 1e-6;  // of the largest, the usual cut-off
+
+// The run of the least seed that kept spectra.
+struct Seen {
+  std::size_t optimizer;
+  const Record* record;
+
+  const std::vector<Real>& first() const { return record->spectrum->sigma.front(); }
+  const std::vector<Real>& last() const { return record->spectrum->sigma.back(); }
+};
+
+bool has_spectrum(const Record& record) {
+  return record.spectrum && !record.spectrum->sigma.empty() &&
+         !record.spectrum->sigma.front().empty();
+}
+
+// The best first.
+std::vector<Seen> seen_on(const Comparison& c, std::size_t problem) {
+  std::vector<Seen> all;
+  for (const std::size_t s : ranking(c, problem))
+    for (const std::size_t run : c.cell(problem, s).runs)
+      if (has_spectrum(*c.runs[run].record)) {
+        all.push_back({s, c.runs[run].record});
+        break;
+      }
+  return all;
+}
+
+// σ₁/σ_r; nothing where the smallest is 0.
+Real condition(const std::vector<Real>& sigma) {
+  return sigma.back() > 0 ? sigma.front() / sigma.back() : kNone;
+}
+
+PlotSeries values(std::string name, const std::vector<Real>& sigma) {
+  PlotSeries line{.optimizer = {}, .name = std::move(name)};
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    line.x.push_back(Real(i + 1));
+    line.y.push_back(sigma[i] > 0 ? sigma[i] : kNone);
+  }
+  return line;
+}
+
+Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
+  Plot plot{.kind = Plot::Kind::lines,
+            .id = fmt::format("plot-spectrum-{}", p),
+            .title = fmt::format("Singular values on {}", shown_spec(c.problems[p].spec)),
+            .reading = "",
+            .caption =
+                "Of J = ∂y/∂θ over the batch of a step, the largest first, at the start and "
+                "where each method ended; one run each, of the least seed.",
+            .x_label = "number of the singular value",
+            .y_label = "σ",
+            .is_log_x = true,
+            .is_log_y = true};
+  plot.series.push_back(values("at the start", seen[0].first()));
+  for (std::size_t i = 0; i < std::min(seen.size(), kMostRivals); ++i)
+    plot.series.push_back(
+        values(fmt::format("{}, iteration {}", optimizer_text(c, seen[i].optimizer),
+                           seen[i].record->spectrum->iterations.back()),
+               seen[i].last()));
+  const auto visible = [](const std::vector<Real>& sigma) {
+    return std::ranges::count_if(sigma, [&](Real one) { return one > kVisible * sigma[0]; });
+  };
+  plot.reading =
+      fmt::format("At the start {} of {} lie above 1e-6 of the largest; where {} ended, {}.",
+                  visible(seen[0].first()), seen[0].first().size(),
+                  optimizer_text(c, seen[0].optimizer), visible(seen[0].last()));
+  return plot;
+}
+
+Plot conditions_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
+  Plot plot{.kind = Plot::Kind::lines,
+            .id = fmt::format("plot-conditioning-{}", p),
+            .title = fmt::format("Condition number on {}", shown_spec(c.problems[p].spec)),
+            .reading = "",
+            .caption =
+                "The largest singular value of J over the smallest, along the same runs; a "
+                "gap where the smallest is 0.",
+            .x_label = "1 + iteration",
+            .y_label = "σ₁ / σᵣ",
+            .is_log_x = true,
+            .is_log_y = true};
+  for (std::size_t i = 0; i < std::min(seen.size(), kMostRivals); ++i) {
+    const Spectrum& spectrum = *seen[i].record->spectrum;
+    PlotSeries line{.optimizer = seen[i].optimizer, .name = optimizer_text(c, seen[i].optimizer)};
+    for (std::size_t k = 0; k < spectrum.sigma.size(); ++k) {
+      line.x.push_back(1 + Real(spectrum.iterations[k]));
+      line.y.push_back(condition(spectrum.sigma[k]));
+    }
+    plot.series.push_back(std::move(line));
+  }
+  const Real first = condition(seen[0].first()), last = condition(seen[0].last());
+  plot.reading = std::isnan(first) || std::isnan(last)
+                     ? "The smallest singular value is 0 at the start or at the end."
+                     : fmt::format("From {} at the start to {} where {} ended.", figure(first),
+                                   figure(last), optimizer_text(c, seen[0].optimizer));
+  return plot;
+}
+
+bool is_drawable(const Seen& seen) {
+  const auto is_seen = [](Real sigma) { return sigma > 0 && std::isfinite(sigma); };
+  return std::ranges::any_of(seen.first(), is_seen) && std::ranges::any_of(seen.last(), is_seen);
+}
+
+}  // namespace
+
+Section spectra_section(const Comparison& c) {
+  Section section{.id = "spectra",
+                  .title = "The spectrum of J",
+                  .lead = "What a method over the spectrum of J sees, and what steps make of it.",
+                  .otherwise = "No run kept singular values: isoline run --spectrum keeps them."};
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    std::vector<Seen> seen = seen_on(c, p);
+    std::erase_if(seen, [](const Seen& one) { return !is_drawable(one); });
+    if (seen.empty()) continue;
+    section.plots.push_back(values_plot(c, p, seen));
+    section.plots.push_back(conditions_plot(c, p, seen));
+  }
+  return section;
+}
+
+}  // namespace isoline::reports

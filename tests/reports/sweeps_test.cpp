@@ -1,0 +1,148 @@
+// Heat maps of two options, and spectra, from records made by hand.
+#include "reports/read/sweeps.h"
+
+#include <gtest/gtest.h>
+
+#include "core/digest.h"
+#include "reports/sections/sections.h"
+#include "tests/reports/fixture.h"
+
+namespace isoline::reports {
+namespace {
+
+struct Swept {
+  Real kappa = 0.5, rate = 1, loss = 1;
+  Index batch = 32;
+  std::int64_t iterations = 100;
+  std::uint64_t seed = 0;
+  std::string inner = "";
+};
+
+Record swept(const Swept& given) {
+  const std::string name = std::to_string(given.kappa) + " " + std::to_string(given.rate) + " " +
+                           std::to_string(given.batch) + given.inner;
+  Record record = record_of({.problem = "chain[batch=" + std::to_string(given.batch) + "]",
+                             .optimizer = "hig[" + name + "]",
+                             .seed = given.seed});
+  record.request.problem.name = "chain";
+  record.request.problem.options = {{"batch", given.batch}};
+  record.request.optimizer.name = "hig";
+  record.request.optimizer.options = {{"kappa", given.kappa}, {"rate", given.rate}};
+  if (!given.inner.empty()) record.request.optimizer.options.set("network-optimizer", given.inner);
+  record.request.budget.iterations = given.iterations;
+  record.summary.loss = given.loss;
+  record.cell = digest(name + std::to_string(given.iterations) + std::to_string(given.seed));
+  return record;
+}
+
+class Sweeps : public testing::Test {
+ protected:
+  const Comparison& compared(const std::vector<Record>& records) {
+    for (const Record& record : records) folder.add(record);
+    folder.add(plan_of(records));
+    study = read_study({folder.path()});
+    comparison = compare_optimizers(study);
+    return comparison;
+  }
+
+  ResultFolder folder;
+  Study study;
+  Comparison comparison;
+};
+
+TEST_F(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
+  std::vector<Record> records;
+  for (const Real kappa : {0.5, 1.0})
+    for (const Real rate : {0.1, 1.0, 10.0})
+      for (const std::uint64_t seed : {0, 1, 2})
+        records.push_back(swept({.kappa = kappa,
+                                 .rate = rate,
+                                 .loss = kappa * (1 + std::abs(std::log10(rate))) + Real(seed),
+                                 .seed = seed}));
+  records.push_back(swept({.rate = 100, .iterations = 7}));  // of another length
+  const Section section = sweeps_section(compared(records));
+  ASSERT_EQ(section.tables.size(), 1U);
+  const Table& map = section.tables[0];
+  EXPECT_EQ(map.title, "hig on chain: kappa × rate");
+  EXPECT_EQ(map.columns, (std::vector<std::string>{"kappa / rate", "0.1", "1", "10"}));
+  EXPECT_EQ(map.rows[0][2].text, "1.5") << "the median over seeds, of κ = ½ and η = 1";
+  EXPECT_EQ(map.rows[0][2].shade, 0);
+  EXPECT_TRUE(map.rows[0][2].is_best);
+  EXPECT_EQ(map.rows[1][0].text, "1");
+  EXPECT_EQ(map.rows[1][1].text, "3");
+  EXPECT_EQ(map.rows[1][1].shade, 1) << "within a factor of two";
+  EXPECT_EQ(map.reading,
+            "The least median, 1.5, stands at kappa = 0.5 and rate = 1; 6 of 6 settings lie within "
+            "twice of it.");
+  EXPECT_NE(map.caption.find("median over 3 seeds, 100 iterations each"), std::string::npos);
+}
+
+TEST_F(Sweeps, CountWhatDivergedAsInfinite) {
+  std::vector<Record> records;
+  for (const Real kappa : {0.5, 1.0})
+    for (const Real rate : {0.1, 1.0, 10.0})
+      records.push_back(swept({.kappa = kappa,
+                               .rate = rate,
+                               .loss = rate > 1 ? std::numeric_limits<Real>::quiet_NaN() : rate}));
+  const Section section = sweeps_section(compared(records));
+  EXPECT_EQ(section.tables.at(0).rows[0][3].text, "✗");
+  EXPECT_FALSE(section.tables[0].rows[0][3].shade);
+  EXPECT_EQ(section.tables[0].rows[0][1].shade, 0);
+}
+
+TEST_F(Sweeps, OfFewCellsOrOfOneOptionAreNoGrid) {
+  std::vector<Record> records;
+  for (const Real rate : {0.1, 1.0, 10.0, 100.0}) records.push_back(swept({.rate = rate}));
+  records.push_back(swept({.kappa = 1, .rate = 1}));  // 5 of 8 cells
+  EXPECT_TRUE(sweep_grids(compared(records)).empty());
+  EXPECT_TRUE(sweeps_section(comparison).is_empty());
+}
+
+TEST_F(Sweeps, OfBatchesCompareEqualNumbersOfSamples) {
+  std::vector<Record> records;
+  for (const Index batch : {4, 8})
+    for (const Real rate : {0.1, 1.0, 10.0})
+      records.push_back(swept({.rate = rate, .batch = batch, .iterations = 1024 / batch}));
+  const std::vector<SweepGrid> grids = sweep_grids(compared(records));
+  ASSERT_EQ(grids.size(), 1U);
+  EXPECT_EQ(grids[0].samples, 1024);
+  EXPECT_EQ(grids[0].row, "batch");
+  EXPECT_NE(sweeps_section(comparison).tables[0].caption.find("1024 samples each"),
+            std::string::npos);
+}
+
+TEST_F(Sweeps, SeeOptionsOfWhatStandsInside) {
+  std::vector<Record> records;
+  for (const Real kappa : {0.5, 1.0})
+    for (const char* inner : {"adam[rate=1e-4]", "adam[rate=1e-3]", "adam[rate=1e-2]"})
+      records.push_back(swept({.kappa = kappa, .inner = inner}));
+  const std::vector<SweepGrid> grids = sweep_grids(compared(records));
+  ASSERT_EQ(grids.size(), 1U);
+  EXPECT_EQ(grids[0].column, "network-optimizer.rate");
+  EXPECT_EQ(grids[0].columns, (std::vector<Real>{1e-4, 1e-3, 1e-2}));
+}
+
+// --- spectra
+
+TEST_F(Sweeps, SpectraShowWhatTheStartSeesAndWhatStepsMakeOfIt) {
+  Record record = record_of({.problem = "square", .optimizer = "gd"});
+  record.spectrum = {.iterations = {0, 1}, .sigma = {{10, 1, 1e-7}, {20, 4, 2}}};
+  const Section section = spectra_section(compared({record}));
+  ASSERT_EQ(section.plots.size(), 2U);
+  EXPECT_EQ(section.plots[0].reading,
+            "At the start 2 of 3 lie above 1e-6 of the largest; where gd ended, 3.");
+  EXPECT_EQ(section.plots[0].series.size(), 2U);
+  EXPECT_EQ(section.plots[0].series[1].y, (std::vector<Real>{20, 4, 2}));
+  EXPECT_EQ(section.plots[1].reading, "From 1e8 at the start to 10 where gd ended.");
+}
+
+TEST_F(Sweeps, SpectraOfNoNumbersAreNotDrawn) {
+  Record none = record_of({.problem = "square", .optimizer = "gd"});
+  none.spectrum = Spectrum{};
+  Record zero = record_of({.problem = "square", .optimizer = "adam"});
+  zero.spectrum = {.iterations = {0}, .sigma = {{0, 0}}};
+  EXPECT_TRUE(spectra_section(compared({none, zero})).is_empty());
+}
+
+}  // namespace
+}  // namespace isoline::reports
