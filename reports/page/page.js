@@ -94,7 +94,7 @@ ON_UNPACK.push((place) => {
   place.querySelectorAll('svg.dots').forEach((plot) => live(plot, () => closeRows(plot)));
   if (LIVE.has(place)) {
     STALE.add(place);  // what was drawn of it before was nothing
-    refresh(place);
+    soon(place, () => refresh(place));
   }
 });
 

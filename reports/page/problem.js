@@ -100,8 +100,8 @@ function problemDrawer(article, problem) {
   for (const plane of article.querySelectorAll('.plane'))
     draws.push(redrawer(plane, () => drawPlane(plane, state, plane.dataset.space)));
   const light = (index) => draws.forEach((draw) => highlight(draw.chart, index));
-  // The curves at once, the planes after the next frame; on paper there is none.
-  const later = (draw) => (isPrinting ? draw() : requestAnimationFrame(() => setTimeout(draw)));
+  // The curves at once, the planes in frames of their own; on paper there is none.
+  const later = (draw) => (isPrinting ? draw() : soon(draw, draw));
   state.redraw = () => draws.forEach((draw, i) => (i === 0 ? draw() : later(draw)));
   if (hasError)
     curves.append(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, state.vertical, (value) => { state.vertical = value; draws[0](); }));

@@ -18,9 +18,9 @@ function unpack(place) {
 const ON_UNPACK = [];  // what scripts add to what was unpacked
 
 // But what is folded: that waits until it is opened.
-function unpackAll(place) {
+function unpackAll(place, inTime = (packed, work) => work()) {
   for (const packed of place.querySelectorAll('.packed'))
-    if (packed.closest('details:not([open])') === null) unpack(packed);
+    if (packed.closest('details:not([open])') === null) inTime(packed, () => unpack(packed));
 }
 
 // What an address names, though it be packed: the element, or the place that holds it.
@@ -43,11 +43,12 @@ function showOne(chosen) {
   unpack(chosen);
 }
 
-function showTab(tab) {
+// Its parts one after the other where the address names the tab, else at once: it names one of them.
+function showTab(tab, isNamed) {
   for (const other of TABS) other.classList.toggle('open', other === tab);
   for (const link of document.querySelectorAll('.bars nav a'))
     if (link.hash === `#${tab.id}`) link.setAttribute('aria-current', 'page'); else link.removeAttribute('aria-current');
-  unpackAll(tab);
+  unpackAll(tab, isNamed ? soon : undefined);
   for (const place of new Set([...tab.querySelectorAll('.one')].map((one) => one.parentElement)))
     if (place.querySelector(':scope > .chosen') === null && tab.id === 'problems') showOne(place.querySelector(':scope > .one'));
 }
@@ -56,7 +57,7 @@ function showTab(tab) {
 function openAddress() {
   const id = decodeURIComponent(location.hash.slice(1)), place = placeOf(id) ?? document.getElementById(FIRST);
   const tab = place.closest('.tab') ?? document.getElementById(FIRST), one = place.closest('.one');
-  showTab(tab);
+  showTab(tab, place === tab);
   if (one !== null) showOne(one);
   for (let around = place; around !== null; around = around.parentElement)
     if (around.tagName === 'DETAILS') {
@@ -66,8 +67,10 @@ function openAddress() {
     }
   refreshAll();
   document.documentElement.style.scrollPaddingTop = `${document.querySelector('.bars').offsetHeight + 6}px`;
-  if (place === tab) scrollTo({top: 0, behavior: 'instant'});
-  else place.scrollIntoView({behavior: 'instant'});
+  if (place === tab) return scrollTo({top: 0, behavior: 'instant'});
+  const showHead = () => place.scrollIntoView({behavior: 'instant'});
+  showHead();
+  soon(openAddress, showHead);  // once more where drawing what it opened has moved it
 }
 
 let isPrinting = false;

@@ -71,7 +71,31 @@ function readAddress() {
   if (tau > 0) view.target = TARGETS.reduce((best, target) => (Math.abs(target - wanted) < Math.abs(best - wanted) ? target : best));
 }
 
-// What is drawn anew when the view changes: at once where it is seen, else when it comes into sight.
+// One task a frame, in the order of their keys: a press is answered before all that it asks for is
+// drawn.
+const TASKS = new Map();
+let isWorking = false;
+const nextFrame = (work) => requestAnimationFrame(() => setTimeout(work));
+
+function nextTask() {
+  const [[key, task]] = TASKS;
+  TASKS.delete(key);
+  try {
+    task();
+  } finally {
+    isWorking = TASKS.size > 0;
+    if (isWorking) nextFrame(nextTask);
+  }
+}
+
+function soon(key, task) {
+  TASKS.set(key, task);
+  if (isWorking) return;
+  isWorking = true;
+  nextFrame(nextTask);
+}
+
+// What is drawn anew when the view changes: soon where it is seen, else when it comes into sight.
 const LIVE = new Map(), STALE = new Set();
 
 function refresh(element) {
@@ -79,7 +103,7 @@ function refresh(element) {
 }
 
 const SIGHT = new IntersectionObserver(
-    (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => refresh(entry.target)),
+    (entries) => entries.filter((entry) => entry.isIntersecting).forEach(({target}) => soon(target, () => refresh(target))),
     {rootMargin: '300px'});
 
 function live(element, draw) {
