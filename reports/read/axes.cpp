@@ -68,9 +68,12 @@ OptimizerLabels::OptimizerLabels(const Study& study)
   find_meanings(study);
 }
 
-// Where one problem has a method both ways, with different options.
+// Where one problem has a method both ways, with different options: at its defaults, and at the one
+// setting that a table gives it. Several settings of one problem were asked for one by one.
 void OptimizerLabels::find_both_ways(const Study& study) {
   std::set<std::pair<std::string, std::string>> plain;  // problem and name, at the defaults
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> settings;
+  std::set<std::string> swept;  // names
   for (const Record& record : study.runs) {
     const Component& optimizer = record.request.optimizer;
     const auto pair = std::pair(record.request.problem.spec, optimizer.name);
@@ -78,9 +81,13 @@ void OptimizerLabels::find_both_ways(const Study& study) {
       plain.insert(pair);
     else if (!record.request.rates.empty() && !record.request.rates.ends_with("-tuned.json"))
       rated_.insert(pair);
+    if (rated_.contains(pair) && optimizer.spec != optimizer.name) {
+      settings[pair].insert(optimizer.spec);
+      if (settings[pair].size() > 1) swept.insert(optimizer.name);
+    }
   }
   for (const auto& pair : rated_)
-    if (plain.contains(pair)) both_ways_.insert(pair.second);
+    if (plain.contains(pair) && !swept.contains(pair.second)) both_ways_.insert(pair.second);
 }
 
 // Of runs that happened: an inapplicable pair has seen nothing, and says nothing of a method.

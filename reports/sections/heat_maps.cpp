@@ -61,7 +61,7 @@ Medians medians_of(const Comparison& c, const SweepGrid& grid) {
 std::string reading_of(const SweepGrid& grid, const Medians& medians) {
   if (medians.least == kNever) return "No setting ends at a finite value.";
   return fmt::format(
-      "The least median, {}, stands at {} = {} and {} = {}; {} of {} {} within twice of it.",
+      "The least median, {}, stands at {} = {} and {} = {}; {} of {} {} within a factor of two of it.",
       figure(medians.least), grid.row, figure(grid.rows[medians.row]), grid.column,
       figure(grid.columns[medians.column]), medians.near, counted(medians.measured, "setting"),
       medians.near == 1 ? "lies" : "lie");

@@ -46,6 +46,10 @@ Real condition(const std::vector<Real>& sigma) {
   return sigma.back() > 0 ? sigma.front() / sigma.back() : kNone;
 }
 
+std::ptrdiff_t visible(const std::vector<Real>& sigma) {
+  return std::ranges::count_if(sigma, [&](Real one) { return one > kVisible * sigma[0]; });
+}
+
 PlotSeries values(std::string name, const std::vector<Real>& sigma) {
   PlotSeries line{.optimizer = {}, .name = std::move(name)};
   for (std::size_t i = 0; i < sigma.size(); ++i) {
@@ -73,9 +77,6 @@ Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& se
         values(fmt::format("{}, iteration {}", optimizer_text(c, seen[i].optimizer),
                            seen[i].record->spectrum->iterations.back()),
                seen[i].last()));
-  const auto visible = [](const std::vector<Real>& sigma) {
-    return std::ranges::count_if(sigma, [&](Real one) { return one > kVisible * sigma[0]; });
-  };
   plot.reading =
       fmt::format("At the start {} of {} lie above 1e-6 of the largest; where {} ended, {}.",
                   visible(seen[0].first()), seen[0].first().size(),
@@ -112,6 +113,32 @@ Plot conditions_plot(const Comparison& c, std::size_t p, const std::vector<Seen>
   return plot;
 }
 
+// First and last, a row each.
+Table spectra_table(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
+  Table table{.id = fmt::format("spectrum-{}", p),
+              .title = fmt::format("Spectra on {}", shown_spec(c.problems[p].spec)),
+              .reading = "",
+              .caption =
+                  "The largest and the smallest singular value of J over the batch of a "
+                  "step, their ratio, and how many lie above 1e-6 of the largest.",
+              .columns = {"optimizer", "iteration", "σ₁", "σᵣ", "σ₁ / σᵣ", "above 1e-6"}};
+  const auto add = [&](const Seen& one, const std::vector<Real>& sigma, std::int64_t iteration) {
+    const Real ratio = condition(sigma);
+    table.rows.push_back({optimizer_text(c, one.optimizer),
+                          std::to_string(iteration),
+                          {figure(sigma.front()), {{"largest", sigma.front()}}},
+                          {figure(sigma.back()), {{"smallest", sigma.back()}}},
+                          {std::isnan(ratio) ? "inf" : figure(ratio), {{"condition", ratio}}},
+                          fmt::format("{} of {}", visible(sigma), sigma.size())});
+    table.row_topics.push_back({.optimizer = one.optimizer, .problem = p});
+  };
+  for (const Seen& one : seen) {
+    add(one, one.first(), one.record->spectrum->iterations.front());
+    add(one, one.last(), one.record->spectrum->iterations.back());
+  }
+  return table;
+}
+
 bool is_drawable(const Seen& seen) {
   const auto is_seen = [](Real sigma) { return sigma > 0 && std::isfinite(sigma); };
   return std::ranges::any_of(seen.first(), is_seen) && std::ranges::any_of(seen.last(), is_seen);
@@ -130,6 +157,7 @@ Section spectra_section(const Comparison& c) {
     if (seen.empty()) continue;
     section.plots.push_back(values_plot(c, p, seen));
     section.plots.push_back(conditions_plot(c, p, seen));
+    section.tables.push_back(spectra_table(c, p, seen));
   }
   return section;
 }

@@ -53,6 +53,17 @@ TEST(Labels, WhereTheTunedRateIsTheDefaultTheRunStandsInBothRows) {
   EXPECT_EQ(std::ranges::count(csv, '\n'), 4) << "the header and a line a run";
 }
 
+// A sweep is no tuning, though a table is there for options that it leaves open: each setting is a
+// row, and no two share one.
+TEST(Labels, SettingsOfASweepAreRowsOfTheirOwn) {
+  Study study;
+  study.runs = {run_of("p", "hig", "learn.json"), run_of("p", "hig[rate=3]", "learn.json"),
+                run_of("p", "hig[rate=9]", "learn.json"), run_of("q", "hig[rate=3]", "learn.json")};
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(labels_of(c), (std::vector<std::string>{"hig", "hig[rate=3]", "hig[rate=9]"}));
+  for (std::size_t s = 0; s < 3; ++s) EXPECT_EQ(c.cell(0, s).runs.size(), 1U) << s;
+}
+
 TEST(Labels, TellValueAndOriginWhereATableChose) {
   Study study;
   study.runs = {run_of("p", "gd[rate=3.8e-05]", "direct.json"),
