@@ -12,13 +12,19 @@ Rescaling::Rescaling(VectorRef v0, VectorRef v)
 }
 
 void Rescaling::pushforward(VectorRef v0, VectorRef v, VectorRef t0, VectorOut t) const {
-  if (factor == 0) return t.setZero(), void();
+  if (factor == 0) {
+    t.setZero();
+    return;
+  }
   const Real change = factor * (v0.dot(t0) / before - v.dot(t) / after);
   t = factor * t + change * v;
 }
 
 void Rescaling::pullback(VectorRef v0, VectorRef v, VectorOut u, VectorOut u0) const {
-  if (factor == 0) return u.setZero(), void();
+  if (factor == 0) {
+    u.setZero();
+    return;
+  }
   const Real change = factor * u.dot(v);
   u0 += (change / before) * v0;
   u = factor * u - (change / after) * v;

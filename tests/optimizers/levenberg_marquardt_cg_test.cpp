@@ -35,7 +35,7 @@ TEST(LevenbergMarquardtCg, FindsWhatTheDenseMethodFinds) {
   for (const char* spec : {"rosenbrock", "beale", "helical-valley", "wood", "sine[xi=2]",
                            "broyden-tridiagonal[n=20]", "coupled-oscillators[mode=direct]"}) {
     const Problem problem = published(spec);
-    const Budget budget{.iterations = 400};
+    const Budget budget{.iterations = 400, .target = 0};
     const Outcome dense = run(problem, "levenberg-marquardt", budget);
     const Outcome products = run(problem, "levenberg-marquardt-cg", budget);
     const Real dense_loss = dense.trace->last.loss, loss = products.trace->last.loss;
@@ -47,8 +47,9 @@ TEST(LevenbergMarquardtCg, FindsWhatTheDenseMethodFinds) {
 // Where the residual cannot vanish: the same least loss, and the same point.
 TEST(LevenbergMarquardtCg, FindsTheSameMinimumWithResiduals) {
   const Problem problem = published("brown-dennis");
-  const Outcome dense = run(problem, "levenberg-marquardt", {.iterations = 1000});
-  const Outcome products = run(problem, "levenberg-marquardt-cg", {.iterations = 1000});
+  const Outcome dense = run(problem, "levenberg-marquardt", {.iterations = 1000, .target = 0});
+  const Outcome products =
+      run(problem, "levenberg-marquardt-cg", {.iterations = 1000, .target = 0});
   EXPECT_NEAR(products.trace->last.loss, dense.trace->last.loss, 1e-9 * dense.trace->last.loss);
 }
 

@@ -1,76 +1,15 @@
-// The incompressible flow: against values of another implementation, the laws of its operators,
-// exact solutions, and its derivatives against each other and against differences.
+// The incompressible flow: against values of another implementation, the laws of its operators and
+// exact solutions.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "core/errors.h"
-#include "core/random.h"
-#include "problems/physics/neighbours.h"
-#include "problems/physics/rescaling.h"
-#include "problems/physics/simulation.h"
+#include "flow_cases.h"
 
 namespace isoline::problems {
 namespace {
-
-constexpr Real kLength = 128;
-
-using Function = std::function<Real(Real x, Real y)>;
-
-// At (Δx (i + along_x), Δx (j + along_y)), (N²).
-Vector sampled(Index N, Real along_x, Real along_y, const Function& f) {
-  const Real dx = kLength / static_cast<Real>(N);
-  Vector values(N * N);
-  for (Index j = 0; j < N; ++j)
-    for (Index i = 0; i < N; ++i)
-      values[i + N * j] =
-          f(dx * (static_cast<Real>(i) + along_x), dx * (static_cast<Real>(j) + along_y));
-  return values;
-}
-
-// u, v and m where this arrangement has them, (3N²).
-Vector state_of(const FlowOptions& o, const Function& u, const Function& v, const Function& m) {
-  const Real face = o.arrangement == Arrangement::staggered ? 0 : 0.5;
-  Vector state(3 * o.cells());
-  state << sampled(o.N, face, 0.5, u), sampled(o.N, 0.5, face, v), sampled(o.N, 0.5, 0.5, m);
-  return state;
-}
-
-// The flow of the golden values, which has no random numbers in it.
-struct Golden {
-  static constexpr Real k = 2 * std::numbers::pi / kLength;
-  static Real vortex(Real x, Real y) {
-    const Real rx = x - 64, ry = y - 64;
-    return 1.3 * std::exp(-(rx * rx + ry * ry) / 800);
-  }
-  static Real u(Real x, Real y) {
-    return 3 - vortex(x, y) * (y - 64) +
-           0.3 * (std::sin(k * (2 * x + 3 * y)) + 0.5 * std::cos(k * (5 * x - y)));
-  }
-  static Real v(Real x, Real y) {
-    return -2 + vortex(x, y) * (x - 64) +
-           0.3 * (std::cos(k * (3 * x - 2 * y)) + 0.5 * std::sin(k * (x + 4 * y)));
-  }
-  static Real marker(Real x, Real y) {
-    return std::exp(-(x - 50) * (x - 50) / 162 - (y - 70) * (y - 70) / 98);
-  }
-  // Staggered, sampled as the published scripts do: the means on the faces of what the centres
-  // have.
-  static Vector state(const FlowOptions& o) {
-    FlowOptions centres = o;
-    centres.arrangement = Arrangement::collocated;
-    const Vector sampled = state_of(centres, u, v, marker);
-    if (o.arrangement == Arrangement::collocated) return sampled;
-    Vector state = sampled;
-    const Index n = o.cells();
-    weigh(o.N, 0.5, 0.5, Side::left, sampled.head(n), state.head(n));
-    weigh(o.N, 0.5, 0.5, Side::below, sampled.segment(n, n), state.segment(n, n));
-    return state;
-  }
-};
 
 struct Values {
   Real energy, mean_u, mean_v, total, x, y;
@@ -181,11 +120,6 @@ TEST(Flow, AdvectsLikeThePublishedSolver) {
 
 constexpr Arrangement kArrangements[] = {Arrangement::staggered, Arrangement::collocated};
 
-Vector noise_of(const FlowOptions& o, std::string_view purpose) {
-  RandomStream stream(0, "flow", purpose);
-  return stream.normal_vector(3 * o.cells());
-}
-
 TEST(Flow, IsFreeOfDivergenceAfterProjection) {
   for (const Arrangement arrangement : kArrangements) {
     const FlowOptions o{.arrangement = arrangement};
@@ -291,84 +225,6 @@ TEST(Flow, IsRecoveredByItsReversalTheBetterTheShorterTheSteps) {
   EXPECT_LT(finest, 0.05);
   EXPECT_GT(coarse / fine, 1.6);  // the splitting of a step is of first order
   EXPECT_GT(fine / finest, 1.6);
-}
-
-// --- derivatives
-
-struct Trial {
-  FlowOptions options;
-  Index steps = 8;
-  const char* name;
-};
-const Trial kTrials[] = {
-    {.options = {.N = 16}, .name = "staggered"},
-    {.options = {.N = 16, .arrangement = Arrangement::collocated}, .name = "collocated"},
-    {.options = {.N = 16, .viscosity = 3}, .name = "viscous"},
-    {.options = {.N = 12, .rescales = false}, .steps = 5, .name = "not rescaled"}};
-
-// From x to the last state, with its products.
-struct Map {
-  Simulation flow;
-  FlowRun run;
-  Vector marker;
-  Index cells;
-
-  explicit Map(const Trial& trial)
-      : flow(trial.options, trial.steps), cells(trial.options.cells()) {
-    marker = Golden::state(trial.options).tail(cells);
-  }
-  Vector value(VectorRef x) {
-    flow.begin(x, marker, run);
-    flow.forward(run);
-    return run.states.rightCols<1>();
-  }
-  Vector push(VectorRef v) {
-    Vector tangent = Vector::Zero(3 * cells);
-    flow.begin_pushforward(v, tangent.head(2 * cells));
-    flow.pushforward(run, tangent);
-    return tangent;
-  }
-  Vector pull(Vector cotangent) {
-    flow.pullback(run, cotangent);
-    Vector out(2 * cells);
-    flow.begin_pullback(cotangent.head(2 * cells), out);
-    return out;
-  }
-};
-
-Vector smooth_velocity(const FlowOptions& o) {
-  return Golden::state({.N = o.N, .arrangement = Arrangement::collocated}).head(2 * o.cells()) +
-         0.3 * noise_of(o, "start").head(2 * o.cells());
-}
-
-TEST(Flow, HasAPullbackThatIsTheAdjointOfItsPushforward) {
-  for (const Trial& trial : kTrials) {
-    Map map(trial);
-    map.value(smooth_velocity(trial.options));
-    const Vector v = noise_of(trial.options, "tangent").head(2 * map.cells);
-    const Vector u = noise_of(trial.options, "cotangent");
-    const Vector Jv = map.push(v), JTu = map.pull(u);
-    EXPECT_NEAR(u.dot(Jv), v.dot(JTu), 1e-12 * u.norm() * Jv.norm()) << trial.name;
-  }
-}
-
-// The median over directions, for some cross a switch of the limiter, where the flow jumps.
-TEST(Flow, HasAPushforwardThatLeavesARemainderOfSecondOrder) {
-  for (const Trial& trial : kTrials) {
-    Map map(trial);
-    const Vector x = smooth_velocity(trial.options), y = map.value(x);
-    std::vector<Real> slopes;
-    for (int i = 0; i < 15; ++i) {
-      const Vector v =
-          noise_of(trial.options, "direction " + std::to_string(i)).head(2 * map.cells);
-      map.value(x);
-      const Vector Jv = map.push(v);
-      const auto remainder = [&](Real h) { return (map.value(x + h * v) - y - h * Jv).norm(); };
-      slopes.push_back(std::log10(remainder(1e-5) / remainder(1e-6)));
-    }
-    std::nth_element(slopes.begin(), slopes.begin() + 7, slopes.end());
-    EXPECT_NEAR(slopes[7], 2, 0.05) << trial.name;
-  }
 }
 
 TEST(Flow, RefusesWhatCannotBeSimulated) {
