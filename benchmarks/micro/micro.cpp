@@ -12,6 +12,7 @@ int main(int count, char** arguments) {
   isoline::benchmarks::micro::register_training();
   isoline::benchmarks::micro::register_libraries();
   isoline::benchmarks::micro::register_transforms();
+  isoline::benchmarks::micro::register_fluid();
   isoline::benchmarks::micro::register_networks();
   isoline::benchmarks::micro::register_isolation();
   isoline::benchmarks::micro::register_unet();

@@ -48,6 +48,7 @@ void register_steps();
 void register_training();
 void register_libraries();
 void register_transforms();
+void register_fluid();
 void register_networks();
 void register_isolation();
 void register_unet();

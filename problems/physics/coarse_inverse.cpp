@@ -1,0 +1,73 @@
+// Gauss-Newton over a few coarse modes.
+#include "problems/physics/coarse_inverse.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/decompose.h"
+
+namespace isoline::problems {
+
+// The curl of ψ = cos n·φ is (−n_y sin n·φ, n_x sin n·φ) but for a sign, and of sin likewise.
+CoarseInverse::CoarseInverse(Index N) : cells_(N * N), modes_(Matrix::Zero(2 * N * N, kModes)) {
+  modes_.col(0).head(cells_).setOnes();
+  modes_.col(1).tail(cells_).setOnes();
+  constexpr Index kNumbers[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+  for (Index mode = 0; mode < 4; ++mode)
+    for (Index p = 0; p < cells_; ++p) {
+      const Real nx = static_cast<Real>(kNumbers[mode][0]);
+      const Real ny = static_cast<Real>(kNumbers[mode][1]);
+      const Real x = static_cast<Real>(p % N) + 0.5, y = static_cast<Real>(p / N) + 0.5;
+      const Real angle = 2 * std::numbers::pi * (nx * x + ny * y) / static_cast<Real>(N);
+      for (const Index phase : {0, 1}) {
+        const Real wave = phase == 0 ? std::sin(angle) : std::cos(angle);
+        modes_(p, 2 + 2 * mode + phase) = -ny * wave;
+        modes_(cells_ + p, 2 + 2 * mode + phase) = nx * wave;
+      }
+    }
+  moved_.resize(cells_, kModes);
+  tangent_.resize(3 * cells_);
+}
+
+Real CoarseInverse::misfit(Simulation& flow, LowPass& low_pass, VectorRef x, VectorRef first,
+                           VectorRef y) {
+  flow.begin(x, first, run_);
+  flow.forward(run_);
+  residual_ = run_.states.rightCols<1>().tail(cells_);
+  low_pass.apply(residual_, residual_);
+  residual_ = y - residual_;
+  return residual_.squaredNorm();
+}
+
+bool CoarseInverse::step(Simulation& flow, LowPass& low_pass, VectorRef first, VectorRef y,
+                         VectorOut x) {
+  const Real before = misfit(flow, low_pass, x, first, y);
+  if (!std::isfinite(before)) return false;
+  for (Index i = 0; i < kModes; ++i) {
+    flow.begin_pushforward(modes_.col(i), tangent_.head(2 * cells_));
+    tangent_.tail(cells_).setZero();
+    flow.pushforward(run_, tangent_);
+    low_pass.apply(tangent_.tail(cells_), moved_.col(i));
+  }
+  Vector along;
+  constexpr Real kCutoff = 1e-3;  // of the largest pivot: what moves y less is left alone
+  if (!least_squares(moved_, residual_, kCutoff, along)) return false;
+  constexpr int kHalvings = 6;
+  for (int halving = 0; halving < kHalvings; ++halving, along /= 2) {
+    trial_ = x + modes_ * along;
+    if (!(misfit(flow, low_pass, trial_, first, y) < before)) continue;
+    x = trial_;
+    return true;
+  }
+  return false;
+}
+
+bool CoarseInverse::invert(Simulation& flow, LowPass& low_pass, VectorRef x0, VectorRef first,
+                           VectorRef y, VectorOut x) {
+  x = x0;
+  Index taken = 0;
+  while (taken < kSteps && step(flow, low_pass, first, y, x)) ++taken;
+  return taken > 0;
+}
+
+}  // namespace isoline::problems

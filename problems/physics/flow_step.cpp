@@ -1,0 +1,166 @@
+// The step, its pushforward and its pullback.
+#include "problems/physics/flow_step.h"
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+#include "problems/physics/rescaling.h"
+#include "problems/physics/viscosity.h"
+
+namespace isoline::problems {
+namespace {
+
+enum Quantity : Index { kU, kV, kMarker };
+
+// One of the quantities of a state, or one component of a velocity.
+Eigen::Ref<const Vector> part(VectorRef all, Index which, Index cells) {
+  return all.segment(which * cells, cells);
+}
+VectorOut part_of(VectorOut all, Index which, Index cells) {
+  return all.segment(which * cells, cells);
+}
+
+}  // namespace
+
+void check(const FlowOptions& o) {
+  require(o.N >= 4 && o.N % 2 == 0, [&] {
+    return fmt::format("the flow needs an even number of cells a side, at least 4, got {}", o.N);
+  });
+  require(o.dt > 0, [&] { return fmt::format("the time step must be above 0, got {}", o.dt); });
+  require(o.viscosity >= 0,
+          [&] { return fmt::format("the viscosity must be at least 0, got {}", o.viscosity); });
+  const Real most = kMostViscous * o.dx() * o.dx() / o.dt;
+  require(o.viscosity <= most, [&] {
+    return fmt::format(
+        "a viscosity of {} is too large for its explicit step: with a time step of {} and cells of "
+        "{} it is stable up to Δx²/(4Δt) = {:.4g}",
+        o.viscosity, o.dt, o.dx(), most);
+  });
+}
+
+FlowStep::FlowStep(const FlowOptions& options)
+    : options_(options),
+      cells_(options.cells()),
+      advection_(options.N),
+      projection_(options.N, options.arrangement),
+      before_(3 * cells_) {
+  check(options);
+  dx_ = dy_ = vdx_ = vdy_ = scratch_ = Vector::Zero(cells_);
+}
+
+// Means over four faces are means in one direction of means in the other.
+void FlowStep::displace(Index which, VectorRef velocity, Vector& dx, Vector& dy) {
+  const VectorRef u = velocity.head(cells_), v = velocity.tail(cells_);
+  const Index N = options_.N;
+  const Real unit = options_.dt / options_.dx(), half = unit / 2;  // cells a step
+  if (options_.arrangement == Arrangement::collocated) {
+    dx = unit * u;
+    dy = unit * v;
+  } else if (which == kU) {
+    dx = unit * u;
+    weigh(N, 0.5, 0.5, Side::above, v, scratch_);
+    weigh(N, half, half, Side::left, scratch_, dy);
+  } else if (which == kV) {
+    weigh(N, 0.5, 0.5, Side::right, u, scratch_);
+    weigh(N, half, half, Side::below, scratch_, dx);
+    dy = unit * v;
+  } else {
+    weigh(N, half, half, Side::right, u, dx);
+    weigh(N, half, half, Side::above, v, dy);
+  }
+}
+
+void FlowStep::add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut velocity) {
+  VectorOut u = velocity.head(cells_), v = velocity.tail(cells_);
+  const Index N = options_.N;
+  const Real unit = options_.dt / options_.dx(), half = unit / 2;
+  if (options_.arrangement == Arrangement::collocated) {
+    u += unit * dx;
+    v += unit * dy;
+  } else if (which == kU) {
+    u += unit * dx;
+    weigh(N, half, half, Side::right, dy, scratch_);
+    add_weighed(N, 0.5, 0.5, Side::below, scratch_, v);
+  } else if (which == kV) {
+    weigh(N, half, half, Side::above, dx, scratch_);
+    add_weighed(N, 0.5, 0.5, Side::left, scratch_, u);
+    v += unit * dy;
+  } else {
+    add_weighed(N, half, half, Side::left, dx, u);
+    add_weighed(N, half, half, Side::below, dy, v);
+  }
+}
+
+void FlowStep::prepare(Index which, VectorRef state, VectorRef velocity) {
+  displace(which, velocity, dx_, dy_);
+  advection_.prepare(state.segment(which * cells_, cells_), dx_, dy_);
+}
+
+void FlowStep::forward(VectorRef state, VectorOut next, VectorOut projected) {
+  const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
+  for (const Index which : {kU, kV}) {
+    prepare(which, state, state.head(2 * cells_));
+    advection_.value(projected.segment(which * cells_, cells_));
+  }
+  projection_.apply(projected.head(cells_), projected.tail(cells_));
+  next.head(2 * cells_) = projected;
+  for (const Index which : {kU, kV}) {
+    VectorOut component = part_of(next, which, cells_);
+    if (options_.rescales)
+      Rescaling(state.segment(which * cells_, cells_), component).apply(component);
+    if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
+  }
+  prepare(kMarker, state, next.head(2 * cells_));
+  advection_.value(next.tail(cells_));
+}
+
+void FlowStep::pushforward(VectorRef state, VectorRef next, VectorRef projected, VectorRef tangent,
+                           VectorOut out) {
+  const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
+  for (const Index which : {kU, kV}) {
+    prepare(which, state, state.head(2 * cells_));
+    displace(which, tangent.head(2 * cells_), vdx_, vdy_);
+    advection_.pushforward(tangent.segment(which * cells_, cells_), vdx_, vdy_,
+                           out.segment(which * cells_, cells_));
+  }
+  projection_.apply(out.head(cells_), out.segment(cells_, cells_));
+  for (const Index which : {kU, kV}) {
+    const auto own = [&](VectorRef all) { return part(all, which, cells_); };
+    VectorOut component = part_of(out, which, cells_);
+    if (options_.rescales)
+      Rescaling(own(state), own(projected))
+          .pushforward(own(state), own(projected), own(tangent), component);
+    if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
+  }
+  prepare(kMarker, state, next.head(2 * cells_));
+  displace(kMarker, out.head(2 * cells_), vdx_, vdy_);
+  advection_.pushforward(tangent.tail(cells_), vdx_, vdy_, out.tail(cells_));
+}
+
+void FlowStep::pullback(VectorRef state, VectorRef next, VectorRef projected, VectorOut cotangent) {
+  const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
+  before_.setZero();
+  const auto add_pulled = [&](Index which, VectorRef velocity, VectorOut of_velocity) {
+    prepare(which, state, velocity);
+    vdx_.setZero();
+    vdy_.setZero();
+    advection_.pullback(cotangent.segment(which * cells_, cells_),
+                        before_.segment(which * cells_, cells_), vdx_, vdy_);
+    add_displaced(which, vdx_, vdy_, of_velocity);
+  };
+  add_pulled(kMarker, next.head(2 * cells_), cotangent.head(2 * cells_));
+  for (const Index which : {kU, kV}) {
+    const auto own = [&](VectorRef all) { return part(all, which, cells_); };
+    VectorOut component = part_of(cotangent, which, cells_);
+    if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
+    if (options_.rescales)
+      Rescaling(own(state), own(projected))
+          .pullback(own(state), own(projected), component, part_of(before_, which, cells_));
+  }
+  projection_.apply(cotangent.head(cells_), cotangent.segment(cells_, cells_));
+  for (const Index which : {kU, kV})
+    add_pulled(which, state.head(2 * cells_), before_.head(2 * cells_));
+  cotangent = before_;
+}
+
+}  // namespace isoline::problems
