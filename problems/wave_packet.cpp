@@ -5,7 +5,8 @@
 // A period more or less between the packet sought and the one tried leaves a minimum of its own, so
 // that most searches end in one that is not x*. Holl, Koltun, Thuerey (2022) fit wave packets in
 // their appendix, which was not at hand: formula, ranges and noise here are ours. The local inverse
-// is a few steps of Levenberg and Marquardt's toward y from x₀, an estimate.
+// is five steps of Levenberg's and Marquardt's toward y from x₀, an estimate.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -92,8 +93,8 @@ class WavePacket final : public DensePhysics {
     return fit(y, x0, kSteps, x);
   }
 
-  // At most so many steps of the least squares ‖P(x) − y‖² from x0, each damped until it descends;
-  // whether x is finite.
+  // So many tries of a step of the least squares ‖P(x) − y‖² from x0, at most 1 long, damped the
+  // more where it doesn't descend; whether x is finite.
   bool fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const;
 
  private:
@@ -113,7 +114,7 @@ bool WavePacket::fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const {
     A.diagonal() *= 1 + damping;
     step.noalias() = J.transpose() * r;
     if (!solve_positive_definite(A, step)) break;
-    moved = x + step;
+    moved = x + step / std::max(1.0, step.norm());
     value(moved, left);
     left = y - left;
     const bool descends = left.squaredNorm() < r.squaredNorm();
