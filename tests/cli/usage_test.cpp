@@ -77,8 +77,9 @@ const std::vector<Mistake> kMistakes = {
     {"report . --by tim", "did you mean 'time'"},
     {"infer absent.json --input x.csv --output y.csv", "isoline: absent.json: no such file"},
     {"train rosenbrock --out net.json",
-     "rosenbrock cannot be learned; these can: coupled-oscillators, exponential, "
-     "heat, hig-toy, linear-chain, navier-stokes, poisson, poisson-hig, quantum-dipole, sine"},
+     "rosenbrock cannot be learned; these can: burgers, coupled-oscillators, exponential, "
+     "heat, hig-toy, linear-chain, navier-stokes, poisson, poisson-hig, quantum-dipole, sine, "
+     "wave-packet"},
     {"run --problem 'rosenbrock[mode=learn]'", "rosenbrock cannot be learned; these can: "},
     {"claims sip-bettr-in-x", "did you mean 'sip-better-in-x-worse-in-loss'"},
     {"claims zzzz", "unknown claim 'zzzz'; `isoline claims --list --all` lists them"},

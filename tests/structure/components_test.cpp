@@ -89,7 +89,7 @@ const std::string kProblems =
     "scaling square exponential sine poisson heat rosenbrock powell-singular beale "
     "helical-valley brown-badly-scaled box3d wood brown-dennis broyden-tridiagonal "
     "variably-dimensioned hig-toy linear-chain coupled-oscillators quantum-dipole poisson-hig "
-    "navier-stokes";
+    "burgers wave-packet navier-stokes";
 const std::string kOptimizers =
     "gd momentum nesterov adagrad adadelta rmsprop adam adamw newton saddle-free-newton "
     "gauss-newton levenberg-marquardt inverse-gradient sip sip-theorem-3 sip-newton hig supervised "

@@ -1,0 +1,100 @@
+// Viscous flow on a ring backwards: the state u(0) sought from u(T) under Burgers' equation. It is
+// the first nonlinear inverse problem of Thuerey et al., Physics-based Deep Learning; the initial
+// states and sizes here are ours, and burgers_flow.h has the physics.
+#include <cmath>
+#include <numbers>
+
+#include "problems/burgers_flow.h"
+#include "problems/learning.h"
+
+namespace isoline::problems {
+namespace {
+
+struct Options {
+  Index N = 64, steps = 0;
+  Real viscosity = 0.005, time = 0.1;
+  Learning learning{.network = "mlp[layers=128-128]", .batch = 64};
+};
+void fields(Options& o, auto& field) {
+  field("N", o.N, between(4, 4096), "cells of the ring");
+  field("steps", o.steps, between(0, 1e6),
+        "time steps; 0: as many as T N/steps ≤ ½ and ν T N²/steps ≤ 0.4 ask for");
+  field("viscosity", o.viscosity, between(0, 10), "viscosity ν");
+  field("time", o.time, between(1e-6, 10), "time T between the two states");
+  fields(o.learning, field);
+}
+
+std::unique_ptr<BurgersFlow> flow_of(const Options& o) {
+  return std::make_unique<BurgersFlow>(o.N, o.steps, o.viscosity, o.time);
+}
+
+// x*: four waves of random phase, the n-th of the size 1/n, the largest speed 1. (N)
+Vector random_state(Index N, RandomStream& stream) {
+  constexpr int kWaves = 4;
+  const Vector coefficients = stream.normal_vector(2 * kWaves);
+  Vector state = Vector::Zero(N);
+  for (int n = 1; n <= kWaves; ++n)
+    for (Index j = 0; j < N; ++j) {
+      const Real angle = 2 * std::numbers::pi * n * static_cast<Real>(j) / static_cast<Real>(N);
+      state[j] +=
+          (coefficients[2 * n - 2] * std::cos(angle) + coefficients[2 * n - 1] * std::sin(angle)) /
+          n;
+    }
+  return state / state.cwiseAbs().maxCoeff();
+}
+
+Field field_of(Index N) {
+  return {.rows = 1, .columns = N, .x = {"speed before"}, .y = {"speed after"}};
+}
+
+ProblemParts learn_burgers(const Options& o, const Draw& draw) {
+  const auto physics = std::shared_ptr<const BurgersFlow>(flow_of(o));
+  const auto sample = [physics](RandomStream& stream, Index b, Batch& batch) {
+    batch.truth.col(b) = random_state(physics->inputs(), stream);
+    physics->evolve(batch.truth.col(b), batch.target.col(b));
+    batch.input.col(b) = batch.target.col(b);
+  };
+  const auto mean_distance = [](BatchRef x, const Batch& batch) {
+    return (x - batch.truth).colwise().norm().mean();
+  };
+  return learn(o.learning, {.inputs = o.N, .outputs = o.N}, draw,
+               {.physics = flow_of(o),
+                .x_error = mean_distance,
+                .samples = {.draw = sample},
+                .field = field_of(o.N)});
+}
+
+ProblemParts make_burgers(const Options& o, const Draw& draw) {
+  if (o.learning.is_on()) return learn_burgers(o, draw);
+  RandomStream stream = draw.stream("target");
+  auto physics = flow_of(o);
+  const Matrix truth = random_state(o.N, stream);
+  Matrix target(o.N, 1);
+  physics->evolve(truth.col(0), target.col(0));
+  return {.physics = std::move(physics),
+          .start = draw.start(Vector::Zero(o.N)),
+          .target = target,
+          .minimum = 0,
+          .truth = truth,
+          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
+          .field = field_of(o.N)};
+}
+
+}  // namespace
+
+void register_burgers(ProblemRegistry& registry) {
+  registry.add(problem_entry(
+      {.name = "burgers",
+       .title = "Burgers’ equation backwards",
+       .group = Group::physics,
+       .formula = "u̇ = −u ∂u + ν ∂²u,  x = u(0),  P(x) = u(T),  L = ½‖P(x) − y*‖²",
+       .source = "Thuerey et al., Physics-based Deep Learning, chapters on Burgers’ equation",
+       .note =
+           "The sought x* is a sum of four waves of our own streams, for seed 0 too, its largest speed 1; by the time T its slopes have steepened and viscosity has smoothed them. P is one to one, but of the finest waves of x it leaves less than a thousandth: seeds from 1 on start with noise of 0.1 a cell, of which the data tell little. The local inverse simulates backward without viscosity.",
+       .aim = Aim::x,
+       .panels = {{.title = "Learning curves", .kind = "curve"},
+                  {.title = "One sample of the validation", .kind = "pictures"}}},
+      make_burgers));
+}
+
+}  // namespace isoline::problems
