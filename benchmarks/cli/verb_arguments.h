@@ -44,11 +44,14 @@ class VerbArguments {
 };
 
 void declare(VerbArguments& verb, RunArguments& given);
+void declare(VerbArguments& verb, PlanArguments& given);
 void declare(VerbArguments& verb, ReportArguments& given);
 void declare(VerbArguments& verb, CompareArguments& given);
 void declare(VerbArguments& verb, BaselineArguments& given);
 void declare(VerbArguments& verb, ReplayArguments& given);
 void declare(VerbArguments& verb, MergeArguments& given);
+void declare(VerbArguments& verb, SubmitArguments& given);
+void declare(VerbArguments& verb, StatusArguments& given);
 void declare(VerbArguments& verb, BestArguments& given);
 void declare(VerbArguments& verb, ClaimArguments& given);
 void declare(VerbArguments& verb, ListArguments& given);
