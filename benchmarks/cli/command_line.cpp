@@ -74,6 +74,10 @@ class ParsedArgument final : public Argument {
     option_.delimiter(',')->allow_extra_args(false);
     return *this;
   }
+  const Argument& one_each() const override {
+    option_.allow_extra_args(false);
+    return *this;
+  }
   const Argument& joined() const override {
     option_.join(',');
     return *this;

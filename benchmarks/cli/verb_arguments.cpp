@@ -147,7 +147,8 @@ void declare(VerbArguments& verb, SubmitArguments& given) {
             "(default: the partition's)");
   verb.time("--least", given.least_seconds, "Least predicted time of a task (default: 5m)");
   verb.text("--partition", given.partition, "Partition (default: the cluster's)");
-  verb.texts("--sbatch", given.options, "Further options of sbatch: --sbatch=--account=physics");
+  verb.texts("--sbatch", given.options, "A further option of sbatch: --sbatch=--account=physics")
+      .one_each();
   verb.flag("--yes", given.is_agreed, "Submit the two jobs; else they are printed");
 }
 

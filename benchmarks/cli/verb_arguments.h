@@ -19,7 +19,8 @@ class Argument {
   virtual const Argument& shown(const std::string& standard) const = 0;
   virtual const Argument& one_of(const std::vector<std::string>& names) const = 0;
   virtual const Argument& between_commas() const = 0;
-  virtual const Argument& joined() const = 0;  // by commas, where it is given more than once
+  virtual const Argument& one_each() const = 0;  // value, each time that it is given
+  virtual const Argument& joined() const = 0;    // by commas, where it is given more than once
   virtual const Argument& needs(const Argument& other) const = 0;
   virtual const Argument& excludes(const Argument& other) const = 0;
 };
