@@ -74,6 +74,10 @@ class ParsedArgument final : public Argument {
     option_.delimiter(',')->allow_extra_args(false);
     return *this;
   }
+  const Argument& one_each() const override {
+    option_.allow_extra_args(false);
+    return *this;
+  }
   const Argument& joined() const override {
     option_.join(',');
     return *this;
@@ -170,6 +174,7 @@ class CommandLine {
   // `runs`: or only reads.
   CommandLine(const std::string& program, Session& session, bool runs);
   int read(int count, char** arguments);  // and runs; the exit code
+  const RunArguments& run() const { return *run_; }
 
  private:
   template <class Arguments>
@@ -196,6 +201,7 @@ class CommandLine {
   Session& session_;
   const bool runs_;
   CLI::App app_;
+  const RunArguments* run_ = nullptr;
   std::string helped_;  // the verb that help is wanted of; empty: of the program
   int exit_code_ = kGood;
 };
@@ -213,7 +219,10 @@ CommandLine::CommandLine(const std::string& program, Session& session, bool runs
 }
 
 void CommandLine::add_verbs_on_results() {
-  add("run", "Run a suite or a matrix of your own; what is done already is not repeated", run_verb);
+  run_ = &add("run", "Run a suite or a matrix of your own; what is done already is not repeated",
+              run_verb);
+  add("plan", "Tell what a run would do, how long it may take, and how it divides into shards",
+      plan_verb);
   const std::string about = "Write " + format_names();
   add("report", about.c_str(), report_verb);
   add("compare", "Compare two results and list regressions", compare_verb);
@@ -221,6 +230,8 @@ void CommandLine::add_verbs_on_results() {
   add("replay", "Run the cell of a record again, and check the two for equality bit for bit",
       replay_verb);
   add("merge", "Unite result folders into a new one", merge_verb);
+  add("submit", "Hand a run to a cluster's scheduler, as two jobs", submit_verb);
+  add("status", "Tell how far a run is, while it goes on", status_verb);
   add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
   add("claims", "Judge what papers claim by runs; what is missing is run first", claims_verb);
 }
@@ -312,6 +323,17 @@ int parse_and_run(const std::string& program, int count, char** arguments, Sessi
 void parse_only(const std::string& program, int count, char** arguments) {
   Session none("", {});
   CommandLine(program, none, false).read(count, arguments);
+}
+
+RunArguments read_run_arguments(const std::string& program, const std::vector<std::string>& words) {
+  std::vector<std::string> all = {program, "run"};
+  all.insert(all.end(), words.begin(), words.end());
+  std::vector<char*> arguments;
+  for (std::string& word : all) arguments.push_back(word.data());
+  Session none("", {});
+  CommandLine line(program, none, false);
+  line.read(static_cast<int>(arguments.size()), arguments.data());
+  return line.run();
 }
 
 }  // namespace isoline::benchmarks

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace isoline::benchmarks {
 
 class Session;
+struct RunArguments;
 
 // Runs the verb that the arguments name and returns its exit code; says what is wrong with them
 // where they name none. `program` is what the user called.
@@ -13,5 +15,8 @@ int parse_and_run(const std::string& program, int count, char** arguments, Sessi
 
 // The same without running it: UsageError where the arguments are wrong.
 void parse_only(const std::string& program, int count, char** arguments);
+
+// What would stand after `isoline run`, read as it reads it.
+RunArguments read_run_arguments(const std::string& program, const std::vector<std::string>& words);
 
 }  // namespace isoline::benchmarks

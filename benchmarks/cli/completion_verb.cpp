@@ -34,7 +34,7 @@ _isoline() {
   case $word in
     -*) list=$("$program" "$verb" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u) ;;
     *) case $verb in
-         run) list=$("$program" list suites --names 2>/dev/null) ;;
+         run|plan|submit) list=$("$program" list suites --names 2>/dev/null) ;;
          describe) list=$("$program" list all --names 2>/dev/null) ;;
          check) list=$("$program" list problems --names 2>/dev/null) ;;
          claims) list=$("$program" claims --list --all 2>/dev/null | grep -oE '^  [a-z0-9-]+') ;;

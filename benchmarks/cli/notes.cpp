@@ -17,11 +17,22 @@ constexpr const char* kRun =
     "  isoline run --problem 'sine[xi=1|32],heat' --optimizer 'adam[rate=1e-3],ceres-lm'\n"
     "  isoline run quick --optimizer adam --dry-run     what of it would be run, and how long\n"
     "  isoline run quick --retry failed,crashed     what went wrong, once more\n"
+    "  isoline run quick --shard 3/16               a part of it; `isoline merge` unites them\n"
     "  isoline run --problem square --optimizer gd --seeds =3 --in-process     for a debugger";
 constexpr const char* kRunNotes =
     "The same command goes on where it was stopped. A cell that crashes costs no other one: each has "
     "a\nprocess of its own, but with --in-process.\n"
     "Exit codes: 0 good, 2 cells failed or records vanished, 130 interrupted.";
+
+constexpr const char* kPlan =
+    "  isoline plan quick                           cells, what of them is done, predicted time\n"
+    "  isoline plan quick --shards 16 --from results/before     sixteen parts of the same time\n"
+    "  isoline plan quick --shards 16 --json        for the matrix of a workflow";
+constexpr const char* kPlanNotes =
+    "A cell is predicted by what it, or its like with other seeds, took in the records below the\n"
+    "result folder and those of --from; else by declared prices times a measured forward solve.\n"
+    "With --shards the predictions are written to predicted.json, once: `isoline run --shard` divides\n"
+    "the plan by it alone, so that every task finds the same parts whenever it begins.";
 
 constexpr const char* kReport =
     "  isoline report results/quick\n"
@@ -69,6 +80,20 @@ constexpr const char* kMergeNotes =
     "error, OUT/conflicts.json lists it, and the exit code is 2; all else is written. To\n"
     "resolve a conflict remove the wrong record, or --force its run, and merge again.";
 
+constexpr const char* kSubmit =
+    "  isoline submit --slurm --array 16 --time 2h -- quick --seeds 20      prints two jobs\n"
+    "  isoline submit --slurm --partition long --yes -- sip-paper           submits them";
+constexpr const char* kSubmitNotes =
+    "The first job is an array with a task a shard, the second merges and reports when all have ended.\n"
+    "The program, the kernels of its libraries and the predictions that divide the plan are kept in\n"
+    "the result folder, which all nodes must see. A task that the scheduler stops keeps the state of\n"
+    "its cells, goes back into the queue and goes on.\n"
+    "Exit codes: 0 good, 1 wrong usage, 2 the scheduler refused.";
+
+constexpr const char* kStatusNotes =
+    "It reads the records alone, with the plan and the predictions beside them, and starts nothing.\n"
+    "Exit codes: 0 good so far, 2 cells failed.";
+
 constexpr const char* kBestNotes =
     "Runs measure their targets from the best loss known where a problem declares none. The table\n"
     "is built into the program, and is part of the build that a record names.";
@@ -95,6 +120,7 @@ constexpr const char* kTuneNotes =
 const std::map<std::string_view, Notes>& notes() {
   static const std::map<std::string_view, Notes> all = {
       {"run", {kRun, kRunNotes}},
+      {"plan", {kPlan, kPlanNotes}},
       {"report", {kReport, kReportNotes}},
       {"compare", {kCompare, kCompareNotes}},
       {"baseline", {kBaseline, kBaselineNotes}},
@@ -102,6 +128,9 @@ const std::map<std::string_view, Notes>& notes() {
        {"  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json",
         kReplayNotes}},
       {"merge", {"  isoline merge results/a results/b --out results/both", kMergeNotes}},
+      {"submit", {kSubmit, kSubmitNotes}},
+      {"status",
+       {"  isoline status results/quick\n  isoline status results/quick --json", kStatusNotes}},
       {"best", {"  isoline best results/quick --out benchmarks/best.json", kBestNotes}},
       {"claims", {kClaims, kClaimsNotes}},
       {"list", {"  isoline list\n  isoline list optimizers --names"}},

@@ -6,7 +6,7 @@
 namespace isoline::benchmarks {
 namespace {
 
-constexpr WholeLaw kJobs{1, 1024}, kThreads{1, 256};
+constexpr WholeLaw kJobs{1, 1024}, kThreads{1, 256}, kShards{1, 100'000};
 
 void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("SUITE", given.suite,
@@ -27,7 +27,7 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
 }
 
-void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
+void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
   verb.text("--out", given.out,
             "Result folder (default: results/SUITE; for a matrix of your own or a part of a suite, "
             "a name made of its cells, the same for the same plan)");
@@ -36,6 +36,9 @@ void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
   verb.texts("--retry", given.retry,
              "Repeat cells that ended with such a status: failed,crashed,timeout,memory")
       .between_commas();
+}
+
+void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
   verb.flag("--no-report", given.no_report, "Write no report");
   verb.flag("--keep-output", given.keeps_output,
             "Keep in each record what its cell wrote to the terminal, up to 64 KiB");
@@ -55,7 +58,11 @@ void declare(VerbArguments& verb, RunArguments& given) {
   verb.flag("--exclusive", given.exclusive, "One cell at a time, for tables of wall time");
   verb.whole("--repeat", given.repeat, "Timings wanted of each cell", {1, 1000});
   verb.memory("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)");
+  declare_what_is_done(verb, given);
   declare_what_is_kept(verb, given);
+  verb.text("--shard", given.shard,
+            "Run the third of sixteen parts, 3/16, into shards/3-of-16 of the result folder; auto: "
+            "the part of this task of a SLURM array, or what ISOLINE_SHARD says");
   const Argument& dry = verb.flag("--dry-run", given.is_dry,
                                   "Print the plan: cells, cached, inapplicable, predicted time");
   verb.flag("--all", given.lists_all, "With --dry-run: list every cell, not the first 20")
@@ -64,6 +71,20 @@ void declare(VerbArguments& verb, RunArguments& given) {
             "Run the cells in this process, for a debugger: no isolation, no limits, no records")
       .excludes(dry);
   verb.flag("--quiet", given.quiet, "Print failures only");
+}
+
+void declare(VerbArguments& verb, PlanArguments& given) {
+  declare_cells(verb, given.run);
+  verb.whole("--jobs", given.run.jobs, "Cells at a time (default: one a core)", kJobs);
+  declare_what_is_done(verb, given.run);
+  verb.whole("--shards", given.shards,
+             "Divide the plan into so many parts of about the same time, and keep the predictions "
+             "that they go by in predicted.json of the result folder",
+             kShards);
+  verb.texts("--from", given.earlier, "Earlier result folders, whose times predict these")
+      .between_commas();
+  verb.flag("--all", given.run.lists_all, "List every shard, not the first 20");
+  verb.flag("--json", given.as_json, "Print JSON");
 }
 
 void declare(VerbArguments& verb, ReportArguments& given) {
@@ -117,6 +138,26 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
 void declare(VerbArguments& verb, MergeArguments& given) {
   verb.texts("DIR", given.folders, "Result folders of `isoline run`").required();
   verb.text("--out", given.out, "The new result folder").required();
+}
+
+void declare(VerbArguments& verb, SubmitArguments& given) {
+  verb.texts("RUN", given.run, "After --, what would stand after `isoline run`");
+  verb.flag("--slurm", given.is_slurm, "By SLURM, which this machine can reach");
+  verb.whole("--array", given.tasks,
+             "Most tasks; fewer where SLURM's MaxArraySize or --least has it", kShards);
+  verb.time("--time", given.seconds,
+            "Most time of a task: 2h; one that is not done by then goes on in the next "
+            "(default: the partition's)");
+  verb.time("--least", given.least_seconds, "Least predicted time of a task (default: 5m)");
+  verb.text("--partition", given.partition, "Partition (default: the cluster's)");
+  verb.texts("--sbatch", given.options, "A further option of sbatch: --sbatch=--account=physics")
+      .one_each();
+  verb.flag("--yes", given.is_agreed, "Submit the two jobs; else they are printed");
+}
+
+void declare(VerbArguments& verb, StatusArguments& given) {
+  verb.text("DIR", given.folder, "Result folder, of a run or of one in shards").required();
+  verb.flag("--json", given.as_json, "Print JSON");
 }
 
 void declare(VerbArguments& verb, BestArguments& given) {

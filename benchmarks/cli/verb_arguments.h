@@ -19,7 +19,8 @@ class Argument {
   virtual const Argument& shown(const std::string& standard) const = 0;
   virtual const Argument& one_of(const std::vector<std::string>& names) const = 0;
   virtual const Argument& between_commas() const = 0;
-  virtual const Argument& joined() const = 0;  // by commas, where it is given more than once
+  virtual const Argument& one_each() const = 0;  // value, each time that it is given
+  virtual const Argument& joined() const = 0;    // by commas, where it is given more than once
   virtual const Argument& needs(const Argument& other) const = 0;
   virtual const Argument& excludes(const Argument& other) const = 0;
 };
@@ -44,11 +45,14 @@ class VerbArguments {
 };
 
 void declare(VerbArguments& verb, RunArguments& given);
+void declare(VerbArguments& verb, PlanArguments& given);
 void declare(VerbArguments& verb, ReportArguments& given);
 void declare(VerbArguments& verb, CompareArguments& given);
 void declare(VerbArguments& verb, BaselineArguments& given);
 void declare(VerbArguments& verb, ReplayArguments& given);
 void declare(VerbArguments& verb, MergeArguments& given);
+void declare(VerbArguments& verb, SubmitArguments& given);
+void declare(VerbArguments& verb, StatusArguments& given);
 void declare(VerbArguments& verb, BestArguments& given);
 void declare(VerbArguments& verb, ClaimArguments& given);
 void declare(VerbArguments& verb, ListArguments& given);

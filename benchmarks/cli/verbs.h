@@ -14,6 +14,7 @@ class Session;
 
 struct RunArguments {
   std::string suite, problem, optimizer, seeds, out, rates = "builtin";
+  std::string shard;                                        // "3/16", "auto"; empty: the whole
   std::int64_t iterations = 0, work = 0, memory_bytes = 0;  // 0: as the suite or the runner has it
   double seconds = 0, target = -1;                          // 0, −1: as the suite has it
   std::vector<std::string> retry;                           // statuses
@@ -25,6 +26,14 @@ struct RunArguments {
   bool in_process = false;
 };
 int run_verb(const RunArguments& given, Session& session);
+
+struct PlanArguments {
+  RunArguments run;
+  std::vector<std::string> earlier;  // result folders
+  int shards = 0;                    // 0: the whole
+  bool as_json = false;
+};
+int plan_verb(const PlanArguments& given, Session& session);
 
 struct ReportArguments {
   std::vector<std::string> folders;
@@ -62,6 +71,22 @@ struct MergeArguments {
   std::string out;
 };
 int merge_verb(const MergeArguments& given, Session& session);
+
+struct SubmitArguments {
+  std::vector<std::string> run;      // what stands after `isoline run`
+  std::vector<std::string> options;  // of sbatch
+  std::string partition;
+  double seconds = 0, least_seconds = 300;  // 0: the partition's limit
+  int tasks = 16;
+  bool is_slurm = false, is_agreed = false;
+};
+int submit_verb(const SubmitArguments& given, Session& session);
+
+struct StatusArguments {
+  std::string folder;
+  bool as_json = false;
+};
+int status_verb(const StatusArguments& given, Session& session);
 
 struct BestArguments {
   std::vector<std::string> folders;

@@ -24,4 +24,8 @@ class Holds {
   int descriptor_;
 };
 
+// How many cells of a result folder runs of other processes are doing just now, as far as its file
+// system tells; 0 where there is nothing to look at.
+std::size_t held_cells(const std::filesystem::path& folder);
+
 }  // namespace isoline::benchmarks

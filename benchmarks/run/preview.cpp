@@ -145,8 +145,8 @@ double estimate(const Catalog& catalog, const Request& request, const Probe& pro
 // The cells that a folder has records of, found by one look at it.
 class Kept {
  public:
-  Kept(const std::filesystem::path& folder, const PreviewOptions& options)
-      : folder_(folder), options_(options), earlier_(folder) {}
+  Kept(std::filesystem::path folder, const PreviewOptions& options)
+      : folder_(std::move(folder)), options_(options), earlier_(folder_) {}
   bool has(const Request& request) const {
     if (options_.force || !earlier_.has(request)) return false;
     std::optional<Record> record = Store::find_in(folder_, request);
@@ -155,19 +155,45 @@ class Kept {
   }
 
  private:
-  const std::filesystem::path& folder_;
+  std::filesystem::path folder_;
   const PreviewOptions& options_;
   RecordsOfAnyBuild earlier_;
 };
 
+// Of each request, whether one of the folders has it.
+std::vector<char> cached_in(const std::vector<std::filesystem::path>& folders,
+                            const std::vector<Request>& requests, const PreviewOptions& options) {
+  std::vector<char> is_cached(requests.size());
+  for (const std::filesystem::path& folder : folders) {
+    const Kept kept(folder, options);
+    share(requests.size(), [&](std::size_t i) {
+      if (is_cached[i] == 0) is_cached[i] = kept.has(requests[i]);
+    });
+  }
+  return is_cached;
+}
+
 }  // namespace
 
+void PreviewCounts::add(const PreviewedCell& cell) {
+  ++cells;
+  cached += cell.is_cached;
+  inapplicable += !cell.is_cached && !cell.why_inapplicable.empty();
+  missing += cell.is_missing();
+  if (cell.is_missing()) seconds += cell.seconds;
+}
+
+PreviewCounts counts_of(const std::vector<PreviewedCell>& cells) {
+  PreviewCounts counts;
+  for (const PreviewedCell& cell : cells) counts.add(cell);
+  return counts;
+}
+
 Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
-                const std::filesystem::path& folder, const PreviewOptions& options) {
+                const std::vector<std::filesystem::path>& folders, const EarlierTimes& earlier,
+                const PreviewOptions& options) {
   const Probes probes(catalog, requests);
-  const Kept kept(folder, options);
-  std::vector<char> is_cached(requests.size());
-  share(requests.size(), [&](std::size_t i) { is_cached[i] = kept.has(requests[i]); });
+  const std::vector<char> is_cached = cached_in(folders, requests, options);
   Preview all{.cells = {}, .likened = probes.unknown()};
   all.cells.reserve(requests.size());
   for (std::size_t i = 0; i < requests.size(); ++i) {
@@ -176,8 +202,10 @@ Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
     const auto reason = probed.reasons.find(request.optimizer.spec);
     PreviewedCell cell{.request = &request, .is_cached = is_cached[i] != 0};
     if (reason != probed.reasons.end()) cell.why_inapplicable = reason->second;
-    if (!cell.is_cached && cell.why_inapplicable.empty())
-      cell.seconds = estimate(catalog, request, probed);
+    const std::optional<double> took = earlier.of(request);
+    all.timed += took.has_value();
+    if (cell.why_inapplicable.empty())
+      cell.seconds = took ? *took + kProcessSeconds : estimate(catalog, request, probed);
     all.cells.push_back(std::move(cell));
   }
   return all;

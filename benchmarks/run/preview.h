@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/glance.h"
 #include "benchmarks/run/store.h"
 
 namespace isoline::benchmarks {
@@ -15,13 +16,25 @@ struct PreviewedCell {
   const Request* request;
   bool is_cached = false;
   std::string why_inapplicable;  // empty: it can run
-  double seconds = 0;            // estimate, where it would run
+  double seconds = 0;            // what running it is predicted to take, where it can
+
+  bool is_missing() const { return !is_cached && why_inapplicable.empty(); }
 };
 
 struct Preview {
   std::vector<PreviewedCell> cells;  // one a request, in order
   std::size_t likened = 0;           // settings of problems that were taken to be like another one
+  std::size_t timed = 0;             // cells predicted by what earlier runs took
 };
+
+// The counts of a plan, or of a part of it.
+struct PreviewCounts {
+  std::size_t cells = 0, cached = 0, inapplicable = 0, missing = 0;
+  double seconds = 0;  // of those that are missing, one at a time
+
+  void add(const PreviewedCell& cell);
+};
+PreviewCounts counts_of(const std::vector<PreviewedCell>& cells);
 
 // Which records count as done.
 struct PreviewOptions {
@@ -30,9 +43,12 @@ struct PreviewOptions {
   std::set<Status> retry = {};  // but those that ended so
 };
 
-// Looks into result folders without touching them. Problems are made in processes of their own; of
-// a sweep over more settings than can be made in a second, the rest are taken to be like the first.
+// Looks into result folders without touching them: a cell is cached where one of them has it. Its
+// time is what it, or its like with other seeds, took in earlier runs; else its problem's declared
+// prices times a measured forward solve. Problems are made in processes of their own; of a sweep
+// over more settings than can be made in a second, the rest are taken to be like the first.
 Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
-                const std::filesystem::path& folder, const PreviewOptions& options = {});
+                const std::vector<std::filesystem::path>& folders, const EarlierTimes& earlier = {},
+                const PreviewOptions& options = {});
 
 }  // namespace isoline::benchmarks

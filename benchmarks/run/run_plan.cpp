@@ -11,17 +11,9 @@
 #include "benchmarks/run/used_rates.h"
 #include "core/clock.h"
 #include "core/digest.h"
-#include "core/records/plan.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
-  std::vector<PlannedCell> cells;
-  for (const Request& request : requests)
-    cells.push_back({request.cell, request.problem.spec, request.optimizer.spec, request.seed});
-  return cells;
-}
 
 // The distinct names in order, "-a-b"; or how many there are, "-17-problems".
 std::string names_of(const std::vector<Request>& requests, Component Request::*component,
@@ -40,23 +32,36 @@ std::string names_of(const std::vector<Request>& requests, Component Request::*c
 
 }  // namespace
 
-Outcome run_plan(const Catalog& catalog, const std::string& name,
+std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests) {
+  std::vector<PlannedCell> cells;
+  for (const Request& request : requests)
+    cells.push_back({request.cell, request.problem.spec, request.optimizer.spec, request.seed});
+  return cells;
+}
+
+Outcome run_plan(const Catalog& catalog, const WholePlan& whole,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
-                 const RunOptions& options, const Rates& rates) {
+                 const RunOptions& options) {
   const std::int64_t begun = monotonic_nanoseconds();
   require_sound(catalog, requests);
   Store store(folder);
-  store.plan(name, planned_cells(requests));
-  write_used_rates(rates, requests, store);
+  store.plan(whole.name, whole.cells);
+  write_used_rates(whole.rates, requests, store);
   write_sheets(catalog, requests, store);
   Outcome outcome = run_all(catalog, requests, store, options);
   if (!outcome.missing.empty()) {
     store.make_folders();
-    store.plan(name, planned_cells(requests));
+    store.plan(whole.name, whole.cells);
   }
   outcome.remarks = store.remarks();
   outcome.seconds = 1e-9 * static_cast<double>(monotonic_nanoseconds() - begun);
   return outcome;
+}
+
+Outcome run_plan(const Catalog& catalog, const std::string& name,
+                 const std::vector<Request>& requests, const std::filesystem::path& folder,
+                 const RunOptions& options, const Rates& rates) {
+  return run_plan(catalog, {name, planned_cells(requests), rates}, requests, folder, options);
 }
 
 std::string folder_name_of(const std::vector<Request>& requests, const std::string& title) {

@@ -7,6 +7,7 @@
 
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/run/runner.h"
+#include "core/records/plan.h"
 
 namespace isoline::benchmarks {
 
@@ -17,6 +18,18 @@ namespace isoline::benchmarks {
 Outcome run_plan(const Catalog& catalog, const std::string& name,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
                  const RunOptions& options, const Rates& rates = {});
+
+// The same of a part: what is stored as planned is the whole.
+struct WholePlan {
+  std::string name;
+  std::vector<PlannedCell> cells;
+  Rates rates = {};
+};
+Outcome run_plan(const Catalog& catalog, const WholePlan& whole,
+                 const std::vector<Request>& requests, const std::filesystem::path& folder,
+                 const RunOptions& options);
+
+std::vector<PlannedCell> planned_cells(const std::vector<Request>& requests);
 
 // A folder name that says what is planned and differs where the cells do:
 // "square-rosenbrock-gd-1a2b3c4d". `title` opens it where there is one.

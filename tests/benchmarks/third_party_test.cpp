@@ -96,7 +96,7 @@ TEST(ThirdParty, ComponentsArePreviewed) {
   const Catalog catalog = extended_catalog();
   const std::vector<Request> requests = expand(catalog, everything_with_them(), {});
   const TemporaryFolder folder;
-  for (const PreviewedCell& cell : preview(catalog, requests, folder.path()).cells)
+  for (const PreviewedCell& cell : preview(catalog, requests, {folder.path()}).cells)
     EXPECT_EQ(cell.seconds > 0, cell.why_inapplicable.empty()) << cell.request->optimizer.spec;
 }
 

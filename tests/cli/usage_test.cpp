@@ -13,9 +13,10 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   const Finished program = shell("./isoline --help");
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
-  for (const std::string verb : {"run", "report", "compare", "baseline", "merge", "best", "claims",
-                                 "list", "describe", "check", "audit", "validate", "replay", "tune",
-                                 "train", "infer", "completion", "help", "version"}) {
+  for (const std::string verb :
+       {"run",  "plan",   "report", "compare",    "baseline", "merge",  "submit",   "status",
+        "best", "claims", "list",   "describe",   "check",    "audit",  "validate", "replay",
+        "tune", "train",  "infer",  "completion", "help",     "version"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
@@ -30,7 +31,8 @@ TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   const std::string completion = Shell()("./isoline completion bash").out;
   EXPECT_TRUE(
       contains(completion,
-               "\"run report compare baseline replay merge best claims list describe check audit "
+               "\"run plan report compare baseline replay merge submit status best claims list "
+               "describe check audit "
                "validate tune train infer completion help version  --help --version\""))
       << completion;
 }
@@ -84,6 +86,14 @@ const std::vector<Mistake> kMistakes = {
     {"claims sip-bettr-in-x", "did you mean 'sip-better-in-x-worse-in-loss'"},
     {"claims zzzz", "unknown claim 'zzzz'; `isoline claims --list --all` lists them"},
     {"run quick --in-process --dry-run", "--dry-run"},
+    {"run quick --shard 5/4", "--shard must be I/N with 1 ≤ I ≤ N"},
+    {"run quick --shard auto", "neither ISOLINE_SHARD nor SLURM_ARRAY_TASK_ID is set here"},
+    {"plan quick --shards 0", "--shards"},
+    {"status absent", "absent: no result folder"},
+    {"submit -- quick", "--slurm is the one there is"},
+    {"submit --slurm -- quick --shard 1/2", "leave it out after --"},
+    {"submit --slurm -- quick --dry-run", "no --dry-run"},
+    {"submit --slurm -- --problm sine", "unknown option --problm; did you mean --problem?"},
     {"run quik", "did you mean 'quick'"},
     {"run --problem rosenbrok", "did you mean 'rosenbrock'"},
     {"run --optimizer ceres-ml", "did you mean 'ceres-lm'"},

@@ -28,6 +28,8 @@ const std::map<std::string, Set> kAllowed = {
     {"benchmarks/audit",
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
     {"benchmarks/merge", {"core", "core/records"}},
+    {"benchmarks/shard",
+     {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
     {"reports/statistics", {"core"}},
     {"reports/read", {"core", "core/records", "reports/statistics"}},
     {"reports/sections", {"core", "core/records", "reports/read", "reports/statistics"}},

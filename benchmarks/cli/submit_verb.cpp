@@ -1,0 +1,179 @@
+// isoline submit --slurm: a run in shards, handed to a cluster's scheduler as two jobs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "benchmarks/cli/command_line.h"
+#include "benchmarks/cli/session.h"
+#include "benchmarks/cli/shard_plan.h"
+#include "benchmarks/cli/verbs.h"
+#include "benchmarks/run/progress.h"
+#include "benchmarks/shard/slurm.h"
+#include "benchmarks/shard/split.h"
+#include "core/digest.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/text.h"
+#include "core/threads.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::counted;
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  std::string text;  // of standard output; standard error is the caller's
+  bool is_good = false;
+};
+
+Answer answer_of(const std::string& command) {
+  FILE* pipe = popen(command.c_str(), "r");
+  require(pipe != nullptr, [&] { return "cannot start a shell for: " + command; });
+  Answer answer;
+  for (int letter; (letter = std::fgetc(pipe)) != EOF;) answer.text += static_cast<char>(letter);
+  answer.is_good = pclose(pipe) == 0;
+  return answer;
+}
+
+std::size_t array_size_here() {
+  const auto told = most_array_size(answer_of("scontrol show config 2>/dev/null").text);
+  if (told) return *told;
+  const std::size_t standard = ShardLimits().array_size;
+  say(stderr, fmt::format("scontrol tells no MaxArraySize here; SLURM's default, {}, is taken\n",
+                          standard));
+  return standard;
+}
+
+// This very program, under a name of its own: a later build leaves it alone.
+fs::path kept_program(const fs::path& folder) {
+  const std::string bytes = read_text("/proc/self/exe");
+  const fs::path program = folder / "program" / ("isoline-" + digest(bytes));
+  if (is_there(program)) return program;
+  write_text(program, bytes);
+  fs::permissions(program, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec |
+                               fs::perms::others_read | fs::perms::others_exec);
+  return program;
+}
+
+// One choice for all tasks, whatever processors they come to.
+std::vector<std::pair<std::string, std::string>> fixed_kernels() {
+  std::vector<std::pair<std::string, std::string>> all{
+      {"OPENBLAS_CORETYPE", library_kernel().name}};
+  if (const std::string isa = of_this_process("ONEDNN_MAX_CPU_ISA"); !isa.empty())
+    all.emplace_back("ONEDNN_MAX_CPU_ISA", isa);
+  return all;
+}
+
+// A folder that is not there yet: merged, merged-2, …
+fs::path free_folder(const fs::path& whole) {
+  fs::path folder = whole / "merged";
+  for (int i = 2; is_there(folder); ++i) folder = whole / fmt::format("merged-{}", i);
+  return folder;
+}
+
+// The words of the run, with what a task must have besides.
+std::vector<std::string> run_words(const SubmitArguments& given, const RunArguments& run,
+                                   const fs::path& folder) {
+  std::vector<std::string> words = given.run;
+  if (run.out.empty()) words.insert(words.end(), {"--out", folder.string()});
+  if (run.jobs == 0) words.insert(words.end(), {"--jobs", "1"});
+  if (!run.quiet) words.emplace_back("--quiet");
+  return words;
+}
+
+Submission submission_of(const SubmitArguments& given, const RunArguments& run,
+                         const Undertaking& all, std::size_t shards) {
+  const fs::path folder = fs::absolute(all.folder).lexically_normal();
+  for (const char* part : {"logs", "program", "shards"}) {
+    std::error_code error;
+    fs::create_directories(folder / part, error);
+    require(!error, [&] {
+      return fmt::format("cannot create {}: {}", (folder / part).string(), error.message());
+    });
+  }
+  Submission all_of_it{.name = all.name,
+                       .program = kept_program(folder),
+                       .folder = folder,
+                       .merged = free_folder(folder),
+                       .run = run_words(given, run, folder),
+                       .environment = fixed_kernels(),
+                       .shards = shards,
+                       .processors = std::max(1, run.jobs) * std::max(1, run.threads),
+                       .seconds = given.seconds,
+                       .options = {}};
+  if (!given.partition.empty()) all_of_it.options.push_back("--partition=" + given.partition);
+  std::ranges::copy(given.options, std::back_inserter(all_of_it.options));
+  return all_of_it;
+}
+
+// The number of a job, of "123" or "123;cluster"; empty where there is none.
+std::string job_from(const Answer& answer) {
+  if (!answer.is_good) return "";
+  return answer.text.substr(0, answer.text.find_first_not_of("0123456789"));
+}
+
+int submit(const Submission& submission) {
+  const std::string array = job_from(answer_of(array_command(submission)));
+  if (array.empty()) {
+    say(stderr, "sbatch refused the array, and nothing was submitted\n");
+    return kWorse;
+  }
+  setenv("array", array.c_str(), 1);
+  const std::string merge = job_from(answer_of(merge_command(submission)));
+  if (merge.empty()) {
+    say(stderr, fmt::format("sbatch took the array, job {}, and refused the merge: `isoline merge` "
+                            "does it by hand\n",
+                            array));
+    return kWorse;
+  }
+  const std::string folder = submission.folder.string();
+  say(stdout,
+      fmt::format("submitted: job {} ({}), then job {}, which merges and reports into {}\n", array,
+                  counted(submission.shards, "task"), merge, submission.merged.string()));
+  say(stdout, fmt::format("`isoline status {}` tells how far they are\n", folder));
+  return kGood;
+}
+
+void warn_of_build() {
+  if (library_kernel().chosen_by == "portable") return;
+  say(stderr,
+      "this program was compiled for this machine's processor: on a node with another it may not "
+      "start; the preset `portable` runs on all of them\n");
+}
+
+}  // namespace
+
+int submit_verb(const SubmitArguments& given, Session& session) {
+  require(given.is_slurm, "name the scheduler: --slurm is the one there is");
+  const RunArguments run = read_run_arguments("isoline submit --", given.run);
+  require(run.shard.empty(), "--shard is each task's own: leave it out after --");
+  require(!run.is_dry && !run.in_process, "a task writes records: no --dry-run, no --in-process");
+  const Undertaking all = undertaking_of(run, session.catalog());
+  Preview shown = foreseen(all, run, {}, result_folders(all.folder), session);
+  keep_predictions(all.folder, shown);
+  const int jobs = std::max(1, run.jobs);
+  double seconds = 0;
+  for (const PreviewedCell& cell : shown.cells) seconds += cell.seconds / jobs;
+  const std::size_t shards = shards_within({.wanted = static_cast<std::size_t>(given.tasks),
+                                            .array_size = array_size_here(),
+                                            .least_seconds = given.least_seconds},
+                                           seconds);
+  const Submission submission = submission_of(given, run, all, shards);
+  warn_of_build();
+  say(stderr,
+      fmt::format("{}, all of them about {}: {} of about {} each\n",
+                  counted(all.requests.size(), "cell"), duration_text(seconds),
+                  counted(shards, "task"), duration_text(seconds / static_cast<double>(shards))));
+  if (given.is_agreed) return submit(submission);
+  say(stdout,
+      fmt::format("array=$({})\n{}\n", array_command(submission), merge_command(submission)));
+  say(stderr, "nothing was submitted; --yes submits these two jobs\n");
+  return kGood;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,115 @@
+// Plans, records, locks and predictions, counted.
+#include "benchmarks/shard/census.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <unordered_map>
+
+#include "benchmarks/run/glance.h"
+#include "benchmarks/run/hold.h"
+#include "benchmarks/shard/predicted.h"
+#include "benchmarks/shard/split.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/records/plan.h"
+
+namespace isoline::benchmarks {
+namespace fs = std::filesystem;
+
+namespace {
+
+// What is known of a planned cell.
+struct Known {
+  double weight = 1;  // predicted seconds; 1 each where nothing was predicted
+  std::optional<Glance> latest;
+};
+using Cells = std::unordered_map<std::string, Known>;
+
+void add_planned(const fs::path& folder, Cells& cells) {
+  const fs::path file = folder / "plan.json";
+  if (!is_there(file)) return;
+  try {
+    for (const PlannedCell& one : plan_from_text(read_text(file), file.string()).cells)
+      cells.try_emplace(one.cell);
+  } catch (const UsageError&) {
+    return;  // damaged: its run sets it aside, and its records are counted
+  }
+}
+
+// True where there are predictions.
+bool add_predicted(const fs::path& whole, Cells& cells) {
+  const auto predicted = read_predicted(whole);
+  if (!predicted) return false;
+  for (const PredictedCell& one : *predicted) cells[one.cell].weight = one.seconds;
+  return true;
+}
+
+void add_records(const std::vector<fs::path>& folders, Cells& cells, const Listener& listener) {
+  for (Glance& seen : glances_at(folders, listener)) {
+    if (seen.status == Status::interrupted) continue;
+    Known& cell = cells[seen.cell];
+    if (!cell.latest || cell.latest->started < seen.started) cell.latest = std::move(seen);
+  }
+}
+
+// Seconds that the rest takes at the pace of the last hour; none where nothing ended in it.
+std::optional<double> remaining(const Cells& cells, double left, std::int64_t now) {
+  constexpr std::int64_t kWindow = 3600;
+  double done = 0;
+  std::int64_t first = now;
+  for (const auto& [cell, known] : cells) {
+    if (!known.latest) continue;
+    const auto begun = seconds_of(known.latest->started);
+    if (!begun || *begun < now - kWindow || *begun > now) continue;
+    first = std::min(first, *begun);
+    done += known.weight;
+  }
+  if (!(done > 0)) return std::nullopt;
+  return left * static_cast<double>(std::max<std::int64_t>(1, now - first)) / done;
+}
+
+}  // namespace
+
+Census census_of(const fs::path& whole, std::int64_t now, const Listener& listener) {
+  const std::vector<fs::path> folders = result_folders(whole);
+  Cells cells;
+  const bool is_predicted = add_predicted(whole, cells);
+  require(is_predicted || !folders.empty(),
+          [&] { return fmt::format("{}: no result folder, and no plan of one", whole.string()); });
+  if (!is_predicted)  // else they name the same cells
+    for (const fs::path& folder : folders) add_planned(folder, cells);
+  add_records(folders, cells, listener);
+  Census census{.planned = cells.size()};
+  for (const fs::path& folder : folders) census.running += held_cells(folder);
+  double left = 0;
+  for (const auto& [cell, known] : cells) {
+    census.done += known.latest.has_value();
+    census.failed += known.latest && is_failure(known.latest->status);
+    if (!known.latest) left += known.weight;
+  }
+  const std::size_t missing = census.planned - census.done;
+  census.running = std::min(census.running, missing);
+  census.left = missing - census.running;
+  if (is_predicted) census.left_seconds = left;
+  if (missing > 0) census.remaining_seconds = remaining(cells, left, now);
+  return census;
+}
+
+std::optional<std::int64_t> seconds_of(const std::string& instant) {
+  std::tm parts{};
+  const char* end = strptime(instant.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  if (end == nullptr || *end != '\0') return std::nullopt;
+  return timegm(&parts);
+}
+
+std::string instant_of(std::int64_t seconds) {
+  const std::time_t time = seconds;
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
+                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,33 @@
+// How far a plan is, told from what stands in its result folders, while runs go on in them or not.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/threads.h"
+
+namespace isoline::benchmarks {
+
+struct Census {
+  std::size_t planned = 0;
+  std::size_t done = 0;                // with a record that stays: failed ones too
+  std::size_t failed = 0;              // of them
+  std::size_t running = 0;             // held by a run just now, as far as the file system tells
+  std::size_t left = 0;                // neither done nor running
+  std::optional<double> left_seconds;  // predicted of all that are not done, one at a time
+  std::optional<double> remaining_seconds;  // until the end, at the pace of the last hour
+};
+
+// Of the result folder, and of the shards below it. `now` in seconds since 1970. UsageError where
+// there is neither.
+Census census_of(const std::filesystem::path& whole, std::int64_t now,
+                 const Listener& listener = {});
+
+// "2026-01-31T12:00:00Z" in seconds since 1970, and back; none where it is no such text.
+std::optional<std::int64_t> seconds_of(const std::string& instant);
+std::string instant_of(std::int64_t seconds);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,43 @@
+// A plan divided into shards of about the same time, and which of them a command line asks for.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/records/request.h"
+
+namespace isoline::benchmarks {
+
+struct Shard {
+  std::size_t index = 1, count = 1;  // the third of sixteen is 3, 16
+
+  std::string text() const;  // "3/16"
+  // Where the records of this shard go, below the folder of the whole: "shards/3-of-16".
+  std::filesystem::path folder(const std::filesystem::path& whole) const;
+};
+
+using Environment = std::function<std::string(const char* variable)>;  // empty: not set
+std::string of_this_process(const char* variable);
+
+// "3/16"; or "auto": what ISOLINE_SHARD says, which reads so too, else the place of this task in
+// SLURM's array. UsageError, which says what was given, where there is neither.
+Shard shard_of(const std::string& asked, const Environment& environment = of_this_process);
+
+// Of each cell its shard, from 0. The heaviest first, each to the shard that has least (Graham,
+// SIAM J. Appl. Math. 17, 1969: the longest processing time first, at most 4/3 of the optimum);
+// equal ones in the order of their digests. It depends on nothing else, so that every task finds
+// the same split.
+std::vector<std::size_t> split(const std::vector<Request>& requests,
+                               const std::vector<double>& weights, std::size_t shards);
+
+// The requests of one shard, in their order.
+std::vector<Request> part_of(std::vector<Request> requests, const std::vector<std::size_t>& shards,
+                             const Shard& wanted);
+
+// The result folders below the folder of a whole that a run in shards has made, in order; and the
+// folder itself, first, where it holds records of its own.
+std::vector<std::filesystem::path> result_folders(const std::filesystem::path& whole);
+
+}  // namespace isoline::benchmarks
