@@ -33,7 +33,7 @@ using problems::register_problems;
 namespace {
 
 // FFTW allocates inside of a transform what we cannot give it.
-bool transforms(const std::string& problem) { return problem == "poisson" || problem == "heat"; }
+bool transforms(const std::string& problem) { return problem == "heat"; }
 
 std::int64_t allocations_of_steps(const Problem& problem, const std::string& spec) {
   const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
