@@ -12,7 +12,7 @@ namespace {
 // Plans are estimated, not timed: a timed choice would change the bits from run to run.
 constexpr unsigned kFlags = FFTW_ESTIMATE | FFTW_PRESERVE_INPUT;
 
-fftw_complex* data(Eigen::MatrixXcd& spectrum) {
+fftw_complex* entries(auto& spectrum) {
   return reinterpret_cast<fftw_complex*>(spectrum.data());  // the layout FFTW documents
 }
 
@@ -53,36 +53,35 @@ void DestroyPlan::operator()(fftw_plan_s* plan) const { fftw_destroy_plan(plan);
 RealFourier2d::RealFourier2d(Index rows, Index columns)
     : spectrum_(rows / 2 + 1, columns), grid_(rows * columns) {
   const int slow = static_cast<int>(columns), fast = static_cast<int>(rows);
-  forward_.reset(fftw_plan_dft_r2c_2d(slow, fast, grid_.data(), data(spectrum_), kFlags));
-  inverse_.reset(fftw_plan_dft_c2r_2d(slow, fast, data(spectrum_), grid_.data(), FFTW_ESTIMATE));
+  forward_.reset(fftw_plan_dft_r2c_2d(slow, fast, grid_.data(), entries(spectrum_), kFlags));
+  inverse_.reset(fftw_plan_dft_c2r_2d(slow, fast, entries(spectrum_), grid_.data(), FFTW_ESTIMATE));
 }
 
 void RealFourier2d::forward(VectorRef grid) {
-  fftw_execute_dft_r2c(forward_.get(), readable(grid, grid_), data(spectrum_));
+  fftw_execute_dft_r2c(forward_.get(), readable(grid, grid_), entries(spectrum_));
 }
 
 void RealFourier2d::inverse(VectorOut grid) {
   write(grid, grid_,
-        [this](Real* out) { fftw_execute_dft_c2r(inverse_.get(), data(spectrum_), out); });
+        [this](Real* out) { fftw_execute_dft_c2r(inverse_.get(), entries(spectrum_), out); });
 }
 
-SineTransform2d::SineTransform2d(Index rows, Index columns)
-    : spectrum_(rows, columns), grid_(rows * columns) {
-  const auto plan = [&](Real* in, Real* out) {
-    return fftw_plan_r2r_2d(static_cast<int>(columns), static_cast<int>(rows), in, out,
-                            FFTW_RODFT00, FFTW_RODFT00, kFlags);
-  };
-  forward_.reset(plan(grid_.data(), spectrum_.data()));
-  inverse_.reset(plan(spectrum_.data(), grid_.data()));
+SineTransform::SineTransform(Index rows) : odd_(2 * (rows + 1)), half_(rows + 2) {
+  const int length = static_cast<int>(odd_.size());
+  plan_.reset(fftw_plan_dft_r2c_1d(length, odd_.data(), entries(half_), kFlags));
+  odd_.setZero();  // two of its entries stay so: FFTW preserves them
 }
 
-void SineTransform2d::forward(VectorRef grid) {
-  fftw_execute_r2r(forward_.get(), readable(grid, grid_), spectrum_.data());
-}
-
-void SineTransform2d::inverse(VectorOut grid) {
-  write(grid, grid_,
-        [this](Real* out) { fftw_execute_r2r(inverse_.get(), spectrum_.data(), out); });
+void SineTransform::columns(BatchRef grid, BatchOut spectrum) {
+  const Index rows = half_.size() - 2;
+  require(grid.rows() == rows && spectrum.rows() == rows && spectrum.cols() == grid.cols(),
+          "the grid does not fit the transform");
+  for (Index j = 0; j < grid.cols(); ++j) {
+    odd_.segment(1, rows) = grid.col(j);
+    odd_.tail(rows) = -grid.col(j).reverse();
+    fftw_execute(plan_.get());
+    spectrum.col(j) = -half_.segment(1, rows).imag();
+  }
 }
 
 }  // namespace isoline

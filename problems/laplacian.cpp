@@ -1,4 +1,4 @@
-// The five-point Laplacian by its stencil, its inverse by the sine transform.
+// The five-point Laplacian by its stencil, its inverse by sine transform and elimination.
 #include "problems/laplacian.h"
 
 #include <cmath>
@@ -6,13 +6,13 @@
 
 namespace isoline::problems {
 
-Laplacian::Laplacian(Index N) : N_(N), sine_(N, N), gain_(N, N) {
-  const auto s2 = [N](Index p) {
+Laplacian::Laplacian(Index N) : N_(N), sine_(N), pivots_(N, N) {
+  for (Index p = 0; p < N; ++p) {
     const Real angle = std::numbers::pi * static_cast<Real>(p + 1) / static_cast<Real>(N + 1);
-    return std::pow(std::sin(angle / 2), 2);
-  };
-  for (Index q = 0; q < N; ++q)
-    for (Index p = 0; p < N; ++p) gain_(p, q) = -1 / (4 * (s2(p) + s2(q)) * sine_.round_trip());
+    const Real diagonal = 2 + 4 * std::pow(std::sin(angle / 2), 2);
+    Real above = 0;
+    for (Index j = 0; j < N; ++j) above = pivots_(p, j) = 1 / (diagonal - above);
+  }
 }
 
 void Laplacian::apply(BatchRef y, BatchOut x) const {
@@ -28,10 +28,16 @@ void Laplacian::apply(BatchRef y, BatchOut x) const {
 }
 
 void Laplacian::solve(BatchRef x, BatchOut y) const {
+  const Real scale = -1 / sine_.round_trip();
   for (Index b = 0; b < x.cols(); ++b) {
-    sine_.forward(x.col(b));
-    sine_.spectrum().array() *= gain_.array();
-    sine_.inverse(y.col(b));
+    const Eigen::Map<const Matrix> X(x.col(b).data(), N_, N_);
+    Eigen::Map<Matrix> Y(y.col(b).data(), N_, N_);
+    sine_.columns(X, Y);
+    Y.col(0) = scale * Y.col(0).cwiseProduct(pivots_.col(0));
+    for (Index j = 1; j < N_; ++j)
+      Y.col(j) = (scale * Y.col(j) + Y.col(j - 1)).cwiseProduct(pivots_.col(j));
+    for (Index j = N_ - 2; j >= 0; --j) Y.col(j) += Y.col(j + 1).cwiseProduct(pivots_.col(j));
+    sine_.columns(Y, Y);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/decompose.h"
 #include "make.h"
+#include "problems/laplacian.h"
 #include "problems/random_fields.h"
 
 namespace isoline::problems {
@@ -51,6 +52,32 @@ TEST(Poisson, SolvesTheFivePointStencil) {
   Vector y;
   ASSERT_TRUE(solve_square(laplacian, x, y));
   EXPECT_LE((forward(problem, x) - y).norm(), 1e-13 * y.norm());  // cond is 19
+}
+
+// ∇²P(x) = x by the stencil, to some hundreds of roundings of the largest y or x.
+TEST(Poisson, SolvesWhatItsStencilSays) {
+  for (const Index N : {2, 9, 64, 512}) {
+    const Problem problem = make("poisson[N=" + std::to_string(N) + "]");
+    const Vector x = RandomStream(2, "poisson", "test").normal_vector(N * N);
+    const Vector y = forward(problem, x);
+    Vector again = -4 * y;
+    for (Index cell = 0; cell < N * N; ++cell) {
+      const Index i = cell % N;
+      if (i > 0) again[cell] += y[cell - 1];
+      if (i < N - 1) again[cell] += y[cell + 1];
+      if (cell >= N) again[cell] += y[cell - N];
+      if (cell < N * N - N) again[cell] += y[cell + N];
+    }
+    EXPECT_LT((again - x).cwiseAbs().maxCoeff(), 1e-13 * x.cwiseAbs().maxCoeff()) << N;
+  }
+}
+
+// 81 numbers a sample: each begins elsewhere between two vector registers.
+TEST(Poisson, GivesASampleTheSameBitsInAnyColumn) {
+  const Matrix x = RandomStream(3, "poisson", "test").normal_vector(81).replicate(1, 5);
+  Matrix y(81, 5);
+  Laplacian(9).solve(x, y);
+  for (Index b = 1; b < 5; ++b) EXPECT_EQ(y.col(b), y.col(0)) << b;
 }
 
 // (sin(64π/130)/sin(π/130))² = 1711.66, the condition of P on 64×64 cells.
