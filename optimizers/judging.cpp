@@ -1,10 +1,8 @@
 // The meter as the harness has it: a run begun, traced, judged and ended.
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "core/errors.h"
-#include "core/frames.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
@@ -16,18 +14,11 @@ constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 constexpr Real kDivergence = 1e12, kStallDecrease = 1e-12;
 constexpr std::int64_t kStallIterations = 100;
 
-std::span<const Real> first_sample(const Matrix& all) {
-  if (all.size() == 0) return {};
-  return {all.data(), static_cast<std::size_t>(all.rows())};
-}
-
 }  // namespace
 
 Status Meter::begin(VectorRef theta) {
   prepare();
-  if (const auto& field = problem_.field())
-    open_frames(trace_.frames, field->rows, field->columns, first_sample(judging().target),
-                first_sample(judging().truth));
+  open_pictures();
   previous_ = theta;
   measure(theta);
   trace_.start_loss = judged_.loss;

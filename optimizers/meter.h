@@ -116,6 +116,7 @@ class Meter {
   void reach(Real loss);          // records the targets that `loss` meets
   void measure(VectorRef theta);  // fills trace_.last, off the clock
   Real judged_gradient_norm();
+  void open_pictures();  // y* and x*, of problems on a grid
   void keep_point();
   bool is_spectrum_due(bool is_last) const;
   void keep_spectrum(bool is_last);

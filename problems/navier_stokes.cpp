@@ -108,10 +108,14 @@ class Generator {
 // What all instances have in common.
 ProblemParts parts_of(const Options& o) {
   const auto measure = std::make_shared<FlowDistance>(o.flow(Arrangement::staggered), o.truth());
-  ProblemParts parts{.physics = physics_of(o),
-                     .x_error = [measure](BatchRef x, const Batch& batch) {
-                       return measure->mean(x, batch.truth);
-                     }};
+  ProblemParts parts{
+      .physics = physics_of(o),
+      .x_error = [measure](BatchRef x,
+                           const Batch& batch) { return measure->mean(x, batch.truth); },
+      .field = Field{.rows = o.N,
+                     .columns = o.N,
+                     .x = {"vorticity before", "velocity/cell"},
+                     .y = {"marker after, low-pass"}}};
   if (o.loss == "amplitude") parts.loss = std::make_unique<Amplitudes>(o.N);
   return parts;
 }
@@ -186,7 +190,8 @@ void register_navier_stokes(ProblemRegistry& registry) {
            "uses how the data were made, a privilege; inverse=coarse does not.",
        .aim = Aim::x,
        .in_all = false,
-       .panels = {{.title = "Fig. 7b: learning curves", .kind = "curve"}}},
+       .panels = {{.title = "Fig. 7b: learning curves", .kind = "curve"},
+                  {.title = "Fig. 7a: one sample of the validation", .kind = "pictures"}}},
       make_navier_stokes));
 }
 

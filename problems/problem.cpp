@@ -25,7 +25,10 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   require(parts_.network->parameters() == unknowns(), "the start does not fit the network");
   if (!parts_.field) return;
   const Index cells = parts_.field->rows * parts_.field->columns;
-  require(inputs() == cells && outputs() == cells, "x and y do not fit the grid of the field");
+  // Of two numbers a cell, a velocity, the curl is shown.
+  const bool has_curl = inputs() == 2 * cells;
+  require((inputs() == cells || has_curl) && outputs() == cells,
+          "x and y do not fit the grid of the field");
 }
 
 Real Problem::x_error(BatchRef x, const Batch& batch) const {

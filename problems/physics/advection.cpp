@@ -45,149 +45,161 @@ void spread(Real u, Real a, Real b, Real* q, Index stride) {
 Advection::Advection(Index N)
     : N_(N),
       stride_(N + 2),
-      back_(sized(N)),
-      ahead_(sized(N)),
-      q_(stride_ * stride_),
-      places_(Vector::LinSpaced(N, 0, static_cast<Real>(N - 1))) {
-  s_ = tangent_ = moved_ = Vector::Zero(stride_ * stride_);
-}
+      back_{Eigen::VectorXi(N), Vector(N), Vector(N)},
+      ahead_(back_),
+      cell_(N * N),
+      q_(Vector::Zero(stride_ * stride_)),
+      s_(q_),
+      tangent_(q_),
+      moved_(q_) {}
 
-// By periods into [0, N]. Of a displacement that is no number the node lies in the grid, and the
-// distance from it is none either.
-void Advection::trace(VectorRef dx, VectorRef dy, Real sign, Trace& out) const {
-  const Real N = static_cast<Real>(N_), inverse = 1 / N;
-  const int stride = static_cast<int>(stride_);
-  for (Index j = 0; j < N_; ++j) {
-    VectorOut x = out.a.segment(N_ * j, N_), y = out.b.segment(N_ * j, N_);
-    x = places_ + sign * dx.segment(N_ * j, N_);
-    y = Vector::Constant(N_, places_[j]) + sign * dy.segment(N_ * j, N_);
-    x.array() -= N * (x.array() * inverse).floor();
-    y.array() -= N * (y.array() * inverse).floor();
-    Real* __restrict a = x.data(), * __restrict b = y.data();
-    int* __restrict node = out.node.data() + N_ * j;
-    for (Index i = 0; i < N_; ++i) {
-      const Real from_x = a[i] > 0 ? a[i] : 0, from_y = b[i] > 0 ? b[i] : 0;
-      const int nx = static_cast<int>(from_x < N ? from_x : N);
-      const int ny = static_cast<int>(from_y < N ? from_y : N);
-      a[i] -= nx;
-      b[i] -= ny;
-      node[i] = nx + stride * ny;
-    }
+// By periods into [0, N]: adding kRounder and taking it away rounds to a whole number, in a loop
+// that vectorizes. Of a displacement that is no number the node lies in the grid, and the distance
+// from it is none either.
+void Advection::trace(Index j, VectorRef dx, VectorRef dy, Real sign, Row& out) const {
+  constexpr Real kRounder = 6755399441055744;  // 1.5 · 2⁵²
+  const Real N = static_cast<Real>(N_), inverse = 1 / N, row = static_cast<Real>(j);
+  const int stride = static_cast<int>(stride_), cells = static_cast<int>(N_);
+  const Real* __restrict x = dx.data() + N_ * j, * __restrict y = dy.data() + N_ * j;
+  Real* __restrict a = out.a.data(), * __restrict b = out.b.data();
+  int* __restrict node = out.node.data();
+  for (int i = 0; i < cells; ++i) {
+    const Real to_x = static_cast<Real>(i) + sign * x[i], to_y = row + sign * y[i];
+    const Real in_x = to_x - N * ((to_x * inverse - 0.5 + kRounder) - kRounder);
+    const Real in_y = to_y - N * ((to_y * inverse - 0.5 + kRounder) - kRounder);
+    const Real from_x = in_x > 0 ? in_x : 0, from_y = in_y > 0 ? in_y : 0;
+    const int nx = static_cast<int>(from_x < N ? from_x : N);
+    const int ny = static_cast<int>(from_y < N ? from_y : N);
+    a[i] = in_x - nx;
+    b[i] = in_y - ny;
+    node[i] = nx + stride * ny;
   }
 }
 
-void Advection::pad(VectorRef q, Vector& padded) const {
+void Advection::pad(VectorRef q, VectorOut padded) const {
   for (Index j = 0; j < N_; ++j) padded.segment(stride_ * j, N_) = q.segment(N_ * j, N_);
   wrap(padded);
 }
 
-void Advection::wrap(Vector& padded) const {
+void Advection::wrap(VectorOut padded) const {
   for (Index j = 0; j < N_; ++j)
     padded.segment<2>(stride_ * j + N_) = padded.segment<2>(stride_ * j);
   padded.tail(2 * stride_) = padded.head(2 * stride_);
 }
 
-void Advection::fold(Vector& padded) const {
+void Advection::fold(VectorOut padded) const {
   padded.head(2 * stride_) += padded.tail(2 * stride_);
   for (Index j = 0; j < N_; ++j)
     padded.segment<2>(stride_ * j) += padded.segment<2>(stride_ * j + N_);
 }
 
-void Advection::unpad(Vector& padded, VectorOut q) const {
+void Advection::unpad(VectorOut padded, VectorOut q) const {
   fold(padded);
   for (Index j = 0; j < N_; ++j) q.segment(N_ * j, N_) += padded.segment(stride_ * j, N_);
 }
 
-void Advection::prepare(VectorRef q, VectorRef dx, VectorRef dy) {
-  trace(dx, dy, -1, back_);
-  trace(dx, dy, 1, ahead_);
+void Advection::interpolate(VectorRef q, VectorRef dx, VectorRef dy) {
   pad(q, q_);
   for (Index j = 0; j < N_; ++j) {
-    const int* node = back_.node.data() + N_ * j;
-    const Real *a = back_.a.data() + N_ * j, *b = back_.b.data() + N_ * j, *from = q_.data();
+    trace(j, dx, dy, -1, back_);
+    cell_.segment(N_ * j, N_) = back_.node;
+    const Real* from = q_.data();
     Real* to = s_.data() + stride_ * j;
-    for (Index i = 0; i < N_; ++i) to[i] = Nodes(from + node[i], stride_).mean(a[i], b[i]);
+    for (Index i = 0; i < N_; ++i)
+      to[i] = Nodes(from + back_.node[i], stride_).mean(back_.a[i], back_.b[i]);
   }
   wrap(s_);
 }
 
-void Advection::value(VectorOut out) const {
+void Advection::value(VectorRef q, VectorRef dx, VectorRef dy, VectorOut out) {
+  interpolate(q, dx, dy);
   for (Index j = 0; j < N_; ++j) {
-    const int *back = back_.node.data() + N_ * j, *ahead = ahead_.node.data() + N_ * j;
-    const Real *a = ahead_.a.data() + N_ * j, *b = ahead_.b.data() + N_ * j;
-    const Real *q = q_.data(), *s = s_.data();
-    const Real *own_q = q + stride_ * j, *own_s = s + stride_ * j;
+    trace(j, dx, dy, 1, ahead_);
+    const Real *own_q = q_.data() + stride_ * j, *own_s = s_.data() + stride_ * j;
+    const int* cell = cell_.data() + N_ * j;
     Real* to = out.data() + N_ * j;
     for (Index i = 0; i < N_; ++i) {
-      const Real returned = Nodes(s + ahead[i], stride_).mean(a[i], b[i]);
-      const Real r = own_s[i] + 0.5 * (own_q[i] - returned);
-      const Nodes nodes(q + back[i], stride_);
+      const Nodes found(s_.data() + ahead_.node[i], stride_);
+      const Real r = own_s[i] + 0.5 * (own_q[i] - found.mean(ahead_.a[i], ahead_.b[i]));
+      const Nodes nodes(q_.data() + cell[i], stride_);
       const Real least = nodes.least(), most = nodes.most();
       to[i] = r < least ? least : (r > most ? most : r);
     }
   }
 }
 
-void Advection::pushforward(VectorRef vq, VectorRef vdx, VectorRef vdy, VectorOut out) {
+void Advection::pushforward(VectorRef q, VectorRef dx, VectorRef dy, VectorRef vq, VectorRef vdx,
+                            VectorRef vdy, VectorOut out) {
+  interpolate(q, dx, dy);
   pad(vq, tangent_);
-  for (Index j = 0, p = 0; j < N_; ++j)
+  for (Index j = 0, p = 0; j < N_; ++j) {
+    trace(j, dx, dy, -1, back_);
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Nodes nodes(q_.data() + back_.node[p], stride_);
-      const Nodes moving(tangent_.data() + back_.node[p], stride_);
-      moved_[stride_ * j + i] = moving.mean(back_.a[p], back_.b[p]) -
-                                nodes.slope_x(back_.b[p]) * vdx[p] -
-                                nodes.slope_y(back_.a[p]) * vdy[p];
+      const Nodes nodes(q_.data() + back_.node[i], stride_);
+      const Nodes moving(tangent_.data() + back_.node[i], stride_);
+      moved_[stride_ * j + i] = moving.mean(back_.a[i], back_.b[i]) -
+                                nodes.slope_x(back_.b[i]) * vdx[p] -
+                                nodes.slope_y(back_.a[i]) * vdy[p];
     }
+  }
   wrap(moved_);
-  for (Index j = 0, p = 0; j < N_; ++j)
+  for (Index j = 0, p = 0; j < N_; ++j) {
+    trace(j, dx, dy, 1, ahead_);
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Real a = ahead_.a[p], b = ahead_.b[p];
-      const Index own = stride_ * j + i, back = back_.node[p];
-      const Nodes found(s_.data() + ahead_.node[p], stride_), nodes(q_.data() + back, stride_);
+      const Real a = ahead_.a[i], b = ahead_.b[i];
+      const Index own = stride_ * j + i, back = cell_[p];
+      const Nodes found(s_.data() + ahead_.node[i], stride_), nodes(q_.data() + back, stride_);
       const Real r = s_[own] + 0.5 * (q_[own] - found.mean(a, b));
       if (r < nodes.least() || r > nodes.most()) {
         const Real held = r < nodes.least() ? nodes.least() : nodes.most();
         out[p] = tangent_[back + nodes.place(held, stride_)];
         continue;
       }
-      const Real returned = Nodes(moved_.data() + ahead_.node[p], stride_).mean(a, b) +
+      const Real returned = Nodes(moved_.data() + ahead_.node[i], stride_).mean(a, b) +
                             found.slope_x(b) * vdx[p] + found.slope_y(a) * vdy[p];
       out[p] = moved_[own] + 0.5 * (vq[p] - returned);
     }
+  }
 }
 
-void Advection::pullback(VectorRef u, VectorOut q, VectorOut dx, VectorOut dy) {
-  Vector &of_q = tangent_, &of_s = moved_;
-  of_q.setZero();
-  of_s.setZero();
-  for (Index j = 0, p = 0; j < N_; ++j)
+void Advection::pullback(VectorRef q, VectorRef dx, VectorRef dy, VectorRef u, VectorOut of_q,
+                         VectorOut of_dx, VectorOut of_dy) {
+  interpolate(q, dx, dy);
+  VectorOut into_q = tangent_, into_s = moved_;
+  into_q.setZero();
+  into_s.setZero();
+  for (Index j = 0, p = 0; j < N_; ++j) {
+    trace(j, dx, dy, 1, ahead_);
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Real a = ahead_.a[p], b = ahead_.b[p];
-      const Index own = stride_ * j + i, back = back_.node[p], ahead = ahead_.node[p];
+      const Real a = ahead_.a[i], b = ahead_.b[i];
+      const Index own = stride_ * j + i, back = cell_[p], ahead = ahead_.node[i];
       const Nodes found(s_.data() + ahead, stride_), nodes(q_.data() + back, stride_);
       const Real r = s_[own] + 0.5 * (q_[own] - found.mean(a, b));
       if (r < nodes.least() || r > nodes.most()) {
         const Real held = r < nodes.least() ? nodes.least() : nodes.most();
-        of_q[back + nodes.place(held, stride_)] += u[p];
+        into_q[back + nodes.place(held, stride_)] += u[p];
         continue;
       }
-      of_s[own] += u[p];
-      of_q[own] += 0.5 * u[p];
+      into_s[own] += u[p];
+      into_q[own] += 0.5 * u[p];
       const Real returned = -0.5 * u[p];
-      spread(returned, a, b, of_s.data() + ahead, stride_);
-      dx[p] += returned * found.slope_x(b);
-      dy[p] += returned * found.slope_y(a);
+      spread(returned, a, b, into_s.data() + ahead, stride_);
+      of_dx[p] += returned * found.slope_x(b);
+      of_dy[p] += returned * found.slope_y(a);
     }
-  fold(of_s);
-  for (Index j = 0, p = 0; j < N_; ++j)
+  }
+  fold(into_s);
+  for (Index j = 0, p = 0; j < N_; ++j) {
+    trace(j, dx, dy, -1, back_);
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Nodes nodes(q_.data() + back_.node[p], stride_);
-      const Real a = back_.a[p], b = back_.b[p], passed = of_s[stride_ * j + i];
-      spread(passed, a, b, of_q.data() + back_.node[p], stride_);
-      dx[p] -= passed * nodes.slope_x(b);
-      dy[p] -= passed * nodes.slope_y(a);
+      const Nodes nodes(q_.data() + back_.node[i], stride_);
+      const Real a = back_.a[i], b = back_.b[i], passed = into_s[stride_ * j + i];
+      spread(passed, a, b, into_q.data() + back_.node[i], stride_);
+      of_dx[p] -= passed * nodes.slope_x(b);
+      of_dy[p] -= passed * nodes.slope_y(a);
     }
-  unpad(of_q, q);
+  }
+  unpad(into_q, of_q);
 }
 
 }  // namespace isoline::problems

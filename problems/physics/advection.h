@@ -19,29 +19,32 @@ class Advection {
  public:
   explicit Advection(Index N);
 
-  // All (N²). What follows is taken at this q and d.
-  void prepare(VectorRef q, VectorRef dx, VectorRef dy);
-  void value(VectorOut out) const;  // q'
-  void pushforward(VectorRef vq, VectorRef vdx, VectorRef vdy, VectorOut out);
+  // All (N²).
+  void value(VectorRef q, VectorRef dx, VectorRef dy, VectorOut out);  // q'
+  void pushforward(VectorRef q, VectorRef dx, VectorRef dy, VectorRef vq, VectorRef vdx,
+                   VectorRef vdy, VectorOut out);
   // Adds to the cotangents of q, dx, dy those of a cotangent u of q'.
-  void pullback(VectorRef u, VectorOut q, VectorOut dx, VectorOut dy);
+  void pullback(VectorRef q, VectorRef dx, VectorRef dy, VectorRef u, VectorOut of_q,
+                VectorOut of_dx, VectorOut of_dy);
 
  private:
-  struct Trace {
-    Eigen::VectorXi node;  // (N²) lower left of the four around a point, in a padded grid
-    Vector a, b;           // (N²) how far it lies from there in x and in y, in [0, 1)
+  // Where the points of one row of the lattice come from, or go to. Row by row all that is needed
+  // at once stays in the first cache.
+  struct Row {
+    Eigen::VectorXi node;  // (N) lower left of the four around a point, in a padded grid
+    Vector a, b;           // (N) how far it lies from there in x and in y, in [0, 1)
   };
-  static Trace sized(Index N) { return {Eigen::VectorXi(N * N), Vector(N * N), Vector(N * N)}; }
-  void trace(VectorRef dx, VectorRef dy, Real sign, Trace& out) const;
-  void pad(VectorRef q, Vector& padded) const;
-  void wrap(Vector& padded) const;                // fills the last two rows and columns
-  void unpad(Vector& padded, VectorOut q) const;  // the transpose of pad, added to q
-  void fold(Vector& padded) const;                // the transpose of wrap
+  void trace(Index j, VectorRef dx, VectorRef dy, Real sign, Row& out) const;
+  void interpolate(VectorRef q, VectorRef dx, VectorRef dy);  // s
+  void pad(VectorRef q, VectorOut padded) const;
+  void wrap(VectorOut padded) const;                // fills the last two rows and columns
+  void unpad(VectorOut padded, VectorOut q) const;  // the transpose of pad, added to q
+  void fold(VectorOut padded) const;                // the transpose of wrap
 
   Index N_, stride_;                // N, N + 2
-  Trace back_, ahead_;              // of p − d and p + d
+  Row back_, ahead_;                // of p − d and p + d
+  Eigen::VectorXi cell_;            // (N²) the nodes of p − d, all rows
   Vector q_, s_, tangent_, moved_;  // ((N + 2)²) padded: no neighbour needs a modulus
-  Vector places_;                   // (N) 0 … N − 1
 };
 
 }  // namespace isoline::problems

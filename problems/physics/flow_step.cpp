@@ -91,16 +91,11 @@ void FlowStep::add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut 
   }
 }
 
-void FlowStep::prepare(Index which, VectorRef state, VectorRef velocity) {
-  displace(which, velocity, dx_, dy_);
-  advection_.prepare(state.segment(which * cells_, cells_), dx_, dy_);
-}
-
 void FlowStep::forward(VectorRef state, VectorOut next, VectorOut projected) {
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   for (const Index which : {kU, kV}) {
-    prepare(which, state, state.head(2 * cells_));
-    advection_.value(projected.segment(which * cells_, cells_));
+    displace(which, state.head(2 * cells_), dx_, dy_);
+    advection_.value(part(state, which, cells_), dx_, dy_, part_of(projected, which, cells_));
   }
   projection_.apply(projected.head(cells_), projected.tail(cells_));
   next.head(2 * cells_) = projected;
@@ -110,18 +105,18 @@ void FlowStep::forward(VectorRef state, VectorOut next, VectorOut projected) {
       Rescaling(state.segment(which * cells_, cells_), component).apply(component);
     if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
   }
-  prepare(kMarker, state, next.head(2 * cells_));
-  advection_.value(next.tail(cells_));
+  displace(kMarker, next.head(2 * cells_), dx_, dy_);
+  advection_.value(state.tail(cells_), dx_, dy_, next.tail(cells_));
 }
 
 void FlowStep::pushforward(VectorRef state, VectorRef next, VectorRef projected, VectorRef tangent,
                            VectorOut out) {
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   for (const Index which : {kU, kV}) {
-    prepare(which, state, state.head(2 * cells_));
+    displace(which, state.head(2 * cells_), dx_, dy_);
     displace(which, tangent.head(2 * cells_), vdx_, vdy_);
-    advection_.pushforward(tangent.segment(which * cells_, cells_), vdx_, vdy_,
-                           out.segment(which * cells_, cells_));
+    advection_.pushforward(part(state, which, cells_), dx_, dy_, part(tangent, which, cells_), vdx_,
+                           vdy_, part_of(out, which, cells_));
   }
   projection_.apply(out.head(cells_), out.segment(cells_, cells_));
   for (const Index which : {kU, kV}) {
@@ -132,20 +127,21 @@ void FlowStep::pushforward(VectorRef state, VectorRef next, VectorRef projected,
           .pushforward(own(state), own(projected), own(tangent), component);
     if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
   }
-  prepare(kMarker, state, next.head(2 * cells_));
+  displace(kMarker, next.head(2 * cells_), dx_, dy_);
   displace(kMarker, out.head(2 * cells_), vdx_, vdy_);
-  advection_.pushforward(tangent.tail(cells_), vdx_, vdy_, out.tail(cells_));
+  advection_.pushforward(state.tail(cells_), dx_, dy_, tangent.tail(cells_), vdx_, vdy_,
+                         out.tail(cells_));
 }
 
 void FlowStep::pullback(VectorRef state, VectorRef next, VectorRef projected, VectorOut cotangent) {
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   before_.setZero();
   const auto add_pulled = [&](Index which, VectorRef velocity, VectorOut of_velocity) {
-    prepare(which, state, velocity);
+    displace(which, velocity, dx_, dy_);
     vdx_.setZero();
     vdy_.setZero();
-    advection_.pullback(cotangent.segment(which * cells_, cells_),
-                        before_.segment(which * cells_, cells_), vdx_, vdy_);
+    advection_.pullback(part(state, which, cells_), dx_, dy_, part(cotangent, which, cells_),
+                        part_of(before_, which, cells_), vdx_, vdy_);
     add_displaced(which, vdx_, vdy_, of_velocity);
   };
   add_pulled(kMarker, next.head(2 * cells_), cotangent.head(2 * cells_));

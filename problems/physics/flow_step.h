@@ -47,7 +47,6 @@ class FlowStep {
   // The displacements of one of the three quantities, from the velocity (2N²), and the transpose.
   void displace(Index which, VectorRef velocity, Vector& dx, Vector& dy);
   void add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut velocity);
-  void prepare(Index which, VectorRef state, VectorRef velocity);
 
   FlowOptions options_;
   Index cells_;  // N²
