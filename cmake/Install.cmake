@@ -10,7 +10,7 @@ foreach(library IN LISTS libraries)
 endforeach()
 set_target_properties(isoline_cli PROPERTIES EXPORT_NAME cli)  # its headers are benchmarks'
 install(TARGETS isoline_cli EXPORT IsolineTargets)
-install(TARGETS isoline)
+include(cmake/Package.cmake)
 
 set(package lib/cmake/Isoline)
 install(EXPORT IsolineTargets NAMESPACE Isoline:: DESTINATION ${package})

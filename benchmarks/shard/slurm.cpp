@@ -12,7 +12,6 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr int kGraceSeconds = 120;  // before a task is killed: time to write checkpoints
-constexpr int kMostRestarts = 3;    // of a task that was killed without being asked to stop first
 
 std::string command_of(const std::vector<std::string>& words) {
   std::string text;
@@ -28,29 +27,29 @@ std::string exports_of(const Submission& given) {
   return text + "\n";
 }
 
-// The signal of --signal=B: comes to this shell alone, which passes it on and waits until the run
-// has kept its state. What ended by a signal goes back into the queue: without end where the
-// scheduler asked for it, a few times where something else killed it.
+// Around the run of a shard. The signal of --signal=B: comes to this shell alone, which passes it
+// on and waits until the run has kept its state. What a signal ended goes back into the queue:
+// without end where the scheduler asked for it, three times where something else killed it, and
+// never where its user has cancelled it, since its state is another then.
+constexpr const char* kBefore = R"(stopped= run=
+trap 'stopped=yes; kill -TERM $run' TERM
+)";
+constexpr const char* kAfter = R"( &
+run=$!
+wait $run
+code=$?
+while kill -0 $run 2>/dev/null; do wait $run; code=$?; done
+id=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
+if [ $code -gt 128 ] && { [ $stopped ] || [ ${SLURM_RESTART_COUNT:-0} -lt 3 ]; }; then
+  case $(scontrol show job $id) in *JobState=RUNNING*) scontrol requeue $id ;; esac
+fi
+exit $code
+)";
+
 std::string task_script(const Submission& given) {
-  const std::string run = command_of({given.program.string(), "run"}) + " " +
-                          command_of(given.run) +
-                          fmt::format(" --shard \"$SLURM_ARRAY_TASK_ID\"/{}", given.shards);
-  return exports_of(given) +
-         "stopped= run=\n"
-         "trap 'stopped=yes; kill -TERM $run' TERM\n" +
-         run +
-         " &\n"
-         "run=$!\n"
-         "wait $run\n"
-         "code=$?\n"
-         "while kill -0 $run 2>/dev/null; do wait $run; code=$?; done\n" +
-         fmt::format(
-             "if [ $code -gt 128 ] && "
-             "{{ [ $stopped ] || [ ${{SLURM_RESTART_COUNT:-0}} -lt {} ]; }}; then\n",
-             kMostRestarts) +
-         "  scontrol requeue ${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
-         "fi\n"
-         "exit $code\n";
+  const std::string run = command_of({given.program.string(), "run"}) + " " + command_of(given.run);
+  return exports_of(given) + kBefore + run +
+         fmt::format(" --shard \"$SLURM_ARRAY_TASK_ID\"/{}", given.shards) + kAfter;
 }
 
 std::string merge_script(const Submission& given) {

@@ -33,7 +33,9 @@ class Submit : public testing::Test {
   Submit() {
     const std::string note = "#!/bin/sh\nprintf '%s\\n' \"$(basename $0)\" \"$@\" >> called\n";
     write_text(shell.folder() / "bin-sbatch", note + "echo 4711\n");
-    write_text(shell.folder() / "bin-scontrol", note + "echo 'MaxArraySize            = 4'\n");
+    write_text(
+        shell.folder() / "bin-scontrol",
+        note + "echo 'MaxArraySize            = 4'\necho '   JobState=RUNNING Reason=None'\n");
     EXPECT_EQ(shell("mkdir bin; for p in sbatch scontrol; do mv bin-$p bin/$p; chmod +x bin/$p; "
                     "done")
                   .exit_code,

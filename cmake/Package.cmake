@@ -1,0 +1,37 @@
+# In the portable build `cpack` makes a Debian package of the program alone, which runs where nothing
+# compiles: it depends on the libraries that the program links, as the program itself lists them.
+install(TARGETS isoline COMPONENT program)
+if(NOT ISOLINE_PORTABLE)  # a program for this machine's processor is for no other one
+  return()
+endif()
+
+set(notice ${PROJECT_BINARY_DIR}/copyright)
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE license)
+file(CONFIGURE OUTPUT ${notice} @ONLY CONTENT "This package holds the program isoline.
+
+The program links FFTW (GNU General Public License, version 2 or later) and oneDNN (Apache License
+2.0). It is therefore, as a whole, under the GNU General Public License, version 3 or later, whose
+text is /usr/share/common-licenses/GPL-3 on a Debian system. The sources of Isoline alone are under
+the MIT license:
+
+@license@")
+install(FILES ${notice} DESTINATION share/doc/isoline COMPONENT program)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME isoline)
+set(CPACK_PACKAGE_CONTACT "the Isoline project <isoline@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL program)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"Every problem of a registry is run against every optimizer of a registry, each
+run in a process of its own, one JSON record a run, and a report is made of the
+records. The program is, as a whole, under the GNU General Public License, since
+it links FFTW.")
+include(CPack)

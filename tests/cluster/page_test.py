@@ -1,0 +1,92 @@
+"""The page "On a cluster" does what it says: its commands on a real SLURM, its examples for other
+schedulers as far as they run without them. Skipped (77) where SLURM is not installed."""
+
+import glob
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import slurm
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "on-a-cluster.md"
+
+# What GNU parallel does here: the command once an argument, in its place.
+PARALLEL = """#!/bin/sh
+command=
+while [ "$1" != ::: ]; do command="$command $1"; shift; done
+shift
+for each; do eval "$(echo "$command" | sed "s/{}/$each/")" || exit; done
+"""
+
+
+def block(fence):
+    """The lines of the one block with this fence, comments left out."""
+    found = re.findall(rf"^```{fence}\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.M | re.S)
+    assert len(found) == 1, f"{len(found)} blocks {fence}"
+    return [line for line in found[0].splitlines() if not line.startswith("#")]
+
+
+class Page(unittest.TestCase):
+    def setUp(self):
+        self.folder = self.enterContext(tempfile.TemporaryDirectory())
+        os.mkdir(f"{self.folder}/bin")
+        os.symlink(sys.argv[1], f"{self.folder}/isoline")
+        os.symlink(sys.argv[1], f"{self.folder}/bin/isoline")
+        self.environment = dict(os.environ, PATH=f"{self.folder}/bin:{os.environ['PATH']}")
+
+    def run_line(self, line, **variables):
+        run = subprocess.run(line, shell=True, cwd=self.folder, capture_output=True, text=True,
+                             env=self.environment | variables, check=False)
+        self.assertEqual(run.returncode, 0, f"{line}\n{run.stdout}{run.stderr}")
+        return run.stdout
+
+    def assert_is_the_whole(self, merged):
+        self.run_line("isoline run notebook --out whole --no-report --quiet")
+        self.assertIn("Comparison: equal", self.run_line(f"isoline compare whole {merged}"))
+        self.assertTrue(os.path.exists(f"{self.folder}/{merged}/report/index.html"))
+
+    def test_ten_commands_lead_from_the_plan_to_the_report(self):
+        commands = block("shell")
+        self.assertEqual(len(commands), 10)
+        with slurm.Slurm() as cluster:
+            self.environment |= cluster.environment | {"PATH": self.environment["PATH"]}
+            for command in commands:
+                self.assertNotEqual(self.run_line(command), "", command)
+        status = json.loads(self.run_line("isoline status results/notebook --json"))
+        self.assertEqual((status["done"], status["left"]), (status["planned"], 0))
+        self.assert_is_the_whole("results/notebook/merged")
+
+    def test_gnu_parallel_does_the_shards(self):
+        path = pathlib.Path(self.folder) / "bin" / "parallel"
+        path.write_text(PARALLEL, encoding="utf-8")
+        path.chmod(0o755)
+        for line in block("shell parallel"):
+            self.run_line(line)
+        self.assert_is_the_whole("results/notebook/merged")
+
+    def test_a_workflow_does_the_shards(self):
+        lines = block("yaml")
+        self.assertLessEqual(len(lines), 12)
+        plan, run, merge = re.findall(r"run: '(.*?)'\}", "\n".join(lines))
+        self.run_line(plan, GITHUB_OUTPUT="output")
+        written = pathlib.Path(self.folder, "output").read_text(encoding="utf-8")
+        name, _, matrix = written.partition("=")
+        self.assertEqual(name, "plan")
+        for job in json.loads(matrix)["shards"]:
+            self.run_line(run.replace("${{ matrix.shard }}", job["shard"]))
+        self.run_line(merge, GITHUB_STEP_SUMMARY="summary")
+        self.assertGreater(os.path.getsize(f"{self.folder}/summary"), 0)
+        self.assertEqual(len(glob.glob(f"{self.folder}/results/notebook/shards/*")), 4)
+        self.assert_is_the_whole("merged")
+
+
+if __name__ == "__main__":
+    if missing := slurm.what_is_missing():
+        print(f"skipped: {missing}")
+        sys.exit(77)
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)
