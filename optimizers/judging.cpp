@@ -3,9 +3,9 @@
 #include <cmath>
 #include <span>
 
-#include "core/curl.h"
 #include "core/errors.h"
 #include "core/frames.h"
+#include "core/picture.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
@@ -29,28 +29,13 @@ std::int64_t next_kept_after(std::int64_t iteration) {
   return next;
 }
 
-std::span<const Real> first_sample(const Matrix& all) {
-  if (all.size() == 0) return {};
-  return {all.data(), static_cast<std::size_t>(all.rows())};
-}
-
-// What is shown of x: itself, or its curl where it is a velocity, two numbers a cell.
-std::span<const Real> picture(const Matrix& x, const Field& field, Vector& shown) {
-  const bool is_velocity = x.rows() == 2 * field.rows * field.columns;
-  if (!is_velocity) return first_sample(x);
-  shown = curl(x.col(0), field.rows, field.columns);
-  return {shown.data(), static_cast<std::size_t>(shown.size())};
-}
-
 }  // namespace
 
 Status Meter::begin(VectorRef theta) {
   prepare();
-  if (const auto& field = problem_.field()) {
-    Vector shown;
-    open_frames(trace_.frames, field->rows, field->columns, first_sample(judging().target),
-                picture(judging().truth, *field, shown));
-  }
+  if (const auto& field = problem_.field())
+    open_frames(trace_.frames, field->rows, field->columns,
+                Picture(judging().target, field).cells(), Picture(judging().truth, field).cells());
   previous_ = theta;
   measure(theta);
   trace_.start_loss = judged_.loss;
@@ -228,10 +213,7 @@ void Meter::keep_point() {
     std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
-  if (const auto& field = problem_.field()) {
-    Vector shown;
-    keep_frame(trace_.frames, iteration_, picture(judged_.x(), *field, shown));
-  }
+  keep_frame(trace_.frames, iteration_, Picture(judged_.x(), problem_.field()).cells());
   trace_.points = index + 1;
   trace_.best_loss = best_loss_;
   next_kept_ = next_kept_after(iteration_);
