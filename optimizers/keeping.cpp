@@ -2,11 +2,10 @@
 // and samples of what was learned.
 #include <algorithm>
 #include <cmath>
-#include <span>
 
-#include "core/curl.h"
 #include "core/decompose.h"
 #include "core/frames.h"
+#include "core/picture.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
@@ -33,27 +32,13 @@ std::int64_t next_kept_after(std::int64_t iteration) {
   return next;
 }
 
-std::span<const Real> first_sample(const Matrix& all) {
-  if (all.size() == 0) return {};
-  return {all.data(), static_cast<std::size_t>(all.rows())};
-}
-
-// What is shown of x: itself, or its curl where it is a velocity, two numbers a cell.
-std::span<const Real> picture(const Matrix& x, const Field& field, Vector& shown) {
-  const bool is_velocity = x.rows() == 2 * field.rows * field.columns;
-  if (!is_velocity) return first_sample(x);
-  shown = curl(x.col(0), field.rows, field.columns);
-  return {shown.data(), static_cast<std::size_t>(shown.size())};
-}
-
 }  // namespace
 
 void Meter::open_pictures() {
   const auto& field = problem_.field();
   if (!field) return;
-  Vector shown;
-  open_frames(trace_.frames, field->rows, field->columns, first_sample(judging().target),
-              picture(judging().truth, *field, shown));
+  const Picture target(judging().target, field), truth(judging().truth, field);
+  open_frames(trace_.frames, field->rows, field->columns, target.cells(), truth.cells());
 }
 
 void Meter::keep_point() {
@@ -64,10 +49,8 @@ void Meter::keep_point() {
     std::copy_n(judged_.x().data(), judged_.x().size(), trace_.path_x[index]);
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
-  if (const auto& field = problem_.field()) {
-    Vector shown;
-    keep_frame(trace_.frames, iteration_, picture(judged_.x(), *field, shown));
-  }
+  if (problem_.field())
+    keep_frame(trace_.frames, iteration_, Picture(judged_.x(), problem_.field()).cells());
   trace_.points = index + 1;
   trace_.best_loss = best_loss_;
   next_kept_ = next_kept_after(iteration_);

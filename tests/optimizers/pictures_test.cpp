@@ -1,7 +1,7 @@
 // What is kept for pictures of a run.
 #include <gtest/gtest.h>
 
-#include "core/curl.h"
+#include "core/picture.h"
 #include "run.h"
 
 namespace isoline::optimizers {

@@ -22,6 +22,7 @@ std::vector<std::string> specs() {
                                   "exponential[n=7]",
                                   "poisson[N=9]",
                                   "heat[N=9]",
+                                  "navier-stokes[N=8,loss=amplitude]",
                                   "box3d[m=3]",
                                   "brown-dennis[m=4]",
                                   "broyden-tridiagonal[n=3]",

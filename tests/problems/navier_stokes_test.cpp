@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 #include "core/threads.h"
@@ -161,7 +162,21 @@ TEST(NavierStokes, GivesTheSameBitsOnTwoThreads) {
   EXPECT_EQ(results(1), results(2));
 }
 
-// --- what it refuses
+// --- what it refuses, and what blows up
+
+// Velocities that overflow leave no number, and no point outside of the grid is read.
+TEST(NavierStokes, HasNoLossWhereTheFlowBlowsUp) {
+  const Problem problem = make("navier-stokes[N=16]");
+  Point at;
+  for (const Real speed : {1e160, 1e300, std::numeric_limits<Real>::infinity(), std::nan("")}) {
+    Vector x = problem.start();
+    x[7] = speed;
+    problem.forward(x, at);
+    EXPECT_FALSE(std::isfinite(at.loss)) << speed;
+  }
+  problem.forward(1e6 * problem.start(), at);
+  EXPECT_TRUE(std::isfinite(at.loss));
+}
 
 std::string refusal(const std::string& spec) {
   try {

@@ -1,5 +1,5 @@
-// The curl of a velocity, against its formula.
-#include "core/curl.h"
+// What is shown of a sample: itself, or the curl of a velocity, against its formula.
+#include "core/picture.h"
 
 #include <gtest/gtest.h>
 

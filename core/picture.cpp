@@ -1,5 +1,5 @@
-// Central differences, by periods.
-#include "core/curl.h"
+// Samples as they are, and curls by central differences.
+#include "core/picture.h"
 
 namespace isoline {
 
@@ -16,6 +16,14 @@ Vector curl(VectorRef velocity, Index rows, Index columns) {
     }
   }
   return out;
+}
+
+Picture::Picture(const Matrix& batch, const std::optional<Field>& field) {
+  if (batch.size() == 0) return;
+  const bool is_velocity = field && batch.rows() == 2 * field->rows * field->columns;
+  if (is_velocity) curl_ = curl(batch.col(0), field->rows, field->columns);
+  const Real* first = is_velocity ? curl_.data() : batch.data();
+  cells_ = {first, static_cast<std::size_t>(is_velocity ? curl_.size() : batch.rows())};
 }
 
 }  // namespace isoline
