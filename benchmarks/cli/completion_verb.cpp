@@ -18,7 +18,7 @@ _isoline() {
   case $before in
     --problem) list=$("$program" list problems --names 2>/dev/null) ;;
     --optimizer) list=$("$program" list optimizers --names 2>/dev/null) ;;
-    --out) COMPREPLY=($(compgen -d -- "$word")); return ;;
+    --out|--from) COMPREPLY=($(compgen -d -- "$word")); return ;;
     --retry) list="@STATUSES@" ;;
     --rates) COMPREPLY=($(compgen -W "builtin none" -- "$word") $(compgen -f -- "$word")); return ;;
   esac

@@ -69,8 +69,7 @@ int plan_verb(const PlanArguments& given, Session& session) {
   const Undertaking all = undertaking_of(given.run, session.catalog());
   const int jobs = given.run.jobs > 0 ? given.run.jobs : one_a_core();
   const auto count = static_cast<std::size_t>(given.shards);
-  const auto folders =
-      count > 0 ? shard_folders(all.folder, count) : std::vector<fs::path>{all.folder};
+  const auto folders = count > 0 ? result_folders(all.folder) : std::vector<fs::path>{all.folder};
   Preview shown = foreseen(all, given.run, given.earlier, folders, session);
   const ShardPlan plan = count > 0 ? shards_of(all, count, shown) : ShardPlan();
   if (given.as_json) {

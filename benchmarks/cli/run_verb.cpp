@@ -14,6 +14,7 @@
 #include "benchmarks/run/in_process.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/soundness.h"
+#include "benchmarks/shard/adopted.h"
 #include "benchmarks/shard/predicted.h"
 #include "benchmarks/shard/split.h"
 #include "core/text.h"
@@ -97,6 +98,7 @@ int run_verb(const RunArguments& given, Session& session) {
   const Catalog& catalog = session.catalog();
   Undertaking all = undertaking_of(given, catalog);
   const std::vector<PlannedCell> planned = planned_cells(all.requests);
+  const fs::path whole = all.folder;
   if (!given.shard.empty()) keep_shard(shard_of(given.shard), all);
   RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                      .force = given.force,
@@ -117,6 +119,7 @@ int run_verb(const RunArguments& given, Session& session) {
     return kGood;
   }
   if (given.in_process) return run_here(catalog, all.requests);
+  if (!given.shard.empty() && !given.force) adopt_records(all.requests, whole, all.folder);
   const Outcome outcome =
       run_plan(catalog, {all.name, planned, all.rates}, all.requests, all.folder, options);
   print_outcome(outcome, all.folder, given.quiet);

@@ -32,13 +32,4 @@ ShardPlan shards_of(const Undertaking& all, std::size_t count, Preview& shown) {
   return plan;
 }
 
-std::vector<fs::path> shard_folders(const fs::path& whole, std::size_t count) {
-  std::vector<fs::path> folders;
-  std::error_code unknown;
-  for (std::size_t i = 1; i <= count; ++i)
-    if (fs::path folder = Shard{i, count}.folder(whole); fs::is_directory(folder, unknown))
-      folders.push_back(std::move(folder));
-  return folders;
-}
-
 }  // namespace isoline::benchmarks

@@ -26,8 +26,4 @@ struct ShardPlan {
 // Writes the folder's predictions where it has none, and divides the cells.
 ShardPlan shards_of(const Undertaking& all, std::size_t count, Preview& shown);
 
-// The folders of the shards, where cells that are done stand.
-std::vector<std::filesystem::path> shard_folders(const std::filesystem::path& whole,
-                                                 std::size_t count);
-
 }  // namespace isoline::benchmarks

@@ -100,6 +100,22 @@ TEST(Shards, ThatAreMissingAreMissedByTheUnion) {
   EXPECT_TRUE(contains(again.out, " 0 run, ")) << again.out;
 }
 
+// What is done is not done again when the plan is divided anew.
+TEST(Shards, TakeOverWhatOtherDivisionsHaveDone) {
+  const Shell shell;
+  const std::string run = "./isoline run " + kMatrix + "--out out ";
+  for (const char* shard : {"--shard 1/3 --quiet", "--shard 2/3 --quiet", "--shard 3/3 --quiet"})
+    ASSERT_EQ(shell(run + shard).exit_code, 0);
+  EXPECT_EQ(plan_of(shell, "--shards 2 --out out").at("cached"), 24);
+  for (const char* shard : {"--shard 1/2", "--shard 2/2"}) {
+    const Finished again = shell(run + shard);
+    EXPECT_TRUE(contains(again.out, " 0 run, 12 reused")) << again.out;
+  }
+  EXPECT_EQ(shell("./isoline merge out/shards/* --out merged").exit_code, 0);
+  EXPECT_EQ(count_records(shell.folder() / "merged"), 24U);
+  EXPECT_TRUE(contains(shell(run + "--shard 1/2 --force").out, " 12 run, 0 reused"));
+}
+
 TEST(Shards, OfAPlanThatIsNotThePredictedOneAreRefused) {
   const Shell shell;
   plan_of(shell, "--shards 3 --out out");

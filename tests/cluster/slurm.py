@@ -144,5 +144,5 @@ class Slurm:
         lines = self.tell("squeue", "-h", "-r", "-o", "%i %T").splitlines()
         return [line.split()[0] for line in lines if state is None or line.split()[1] == state]
 
-    def wait_until_empty(self, seconds=240):
+    def wait_until_empty(self, seconds=600):
         self.wait_for(lambda: not self.jobs(), "the queue to be empty", seconds)
