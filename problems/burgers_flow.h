@@ -9,7 +9,7 @@
 //
 // The local inverse is by a reverse simulation R, the same steps backward without viscosity, which
 // run backward would amplify the finest waves without bound. R gives back where things were, and
-// not what viscosity took; it is an estimate, and corrects x₀ by as much as it differs, x̃ = x₀ +
+// not what viscosity took; it is approximate, and corrects x₀ by as much as it differs, x̃ = x₀ +
 // R(y) − R(P(x₀)), so that x̃ = x₀ where y is reached.
 #pragma once
 
@@ -30,7 +30,7 @@ class BurgersFlow final : public Physics {
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override;
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override;
 
-  Inverse inverse_kind() const override { return Inverse::estimate; }
+  Inverse inverse_kind() const override { return Inverse::approximate; }
   Index inverse_price() const override { return 3; }  // P(x₀) and two reverse simulations
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const override;
 

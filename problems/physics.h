@@ -12,9 +12,10 @@ namespace isoline::problems {
 // How far a local inverse can be trusted.
 enum class Inverse {
   none,
-  exact,     // P(P⁻¹(y; x₀)) = y
-  damped,    // exact where the data carry evidence, held back elsewhere
-  estimate,  // an informed guess
+  exact,        // P(P⁻¹(y; x₀)) = y
+  damped,       // exact where the data carry evidence, held back elsewhere
+  estimate,     // an informed guess, by how the data were made
+  approximate,  // found from P itself, within an error: reversed steps, a few steps of a search
 };
 
 class Physics {

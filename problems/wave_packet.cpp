@@ -5,7 +5,7 @@
 // A period more or less between the packet sought and the one tried leaves a minimum of its own, so
 // that most searches end in one that is not x*. Holl, Koltun, Thuerey (2022) fit wave packets in
 // their appendix, which was not at hand: formula, ranges and noise here are ours. The local inverse
-// is five steps of Levenberg's and Marquardt's toward y from x₀, an estimate.
+// is five steps of Levenberg's and Marquardt's toward y from x₀, approximate.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -87,7 +87,7 @@ class WavePacket final : public DensePhysics {
     H.triangularView<Eigen::StrictlyUpper>() = H.transpose();
   }
 
-  Inverse inverse_kind() const override { return Inverse::estimate; }
+  Inverse inverse_kind() const override { return Inverse::approximate; }
   Index inverse_price() const override { return 5 * kSteps; }  // a forward and a Jacobian each
   bool invert(VectorRef y, VectorRef x0, VectorOut x) const override {
     return fit(y, x0, kSteps, x);

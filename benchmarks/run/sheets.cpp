@@ -16,7 +16,7 @@ namespace {
 constexpr Index kGrid = 81;                // points a side of a landscape
 constexpr Index kSmall = 16;               // largest target and truth that a sheet shows
 constexpr Index kMostEntries = 256 * 256;  // of a Jacobian that is factorized: 20 ms
-constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate"};
+constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate", "approximate"};
 
 std::vector<std::string> names_of(OracleSet oracles) {
   std::vector<std::string> names;
@@ -116,7 +116,8 @@ class Witness final : public problems::Physics {
 std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
                                              const Component& component) {
   std::vector<std::string> all;
-  for (const Inverse kind : {Inverse::exact, Inverse::damped, Inverse::estimate}) {
+  for (const Inverse kind :
+       {Inverse::exact, Inverse::damped, Inverse::estimate, Inverse::approximate}) {
     const Problem problem({.physics = std::make_unique<Witness>(kind),
                            .start = Vector::Ones(1),
                            .target = Matrix::Zero(1, 1)});

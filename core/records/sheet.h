@@ -56,7 +56,7 @@ struct Sheet {
   std::string mathematics;              // of an optimizer: what its step is, whoever wrote it
   std::string group;                    // of a problem: toy, physics, classical
   std::string tunable;                  // of an optimizer: the option that tuning chooses, if any
-  std::string inverse;                  // of a problem: none, exact, damped or estimate
+  std::string inverse;                  // of a problem: none, exact, damped, estimate, approximate
   Index unknowns = 0, residuals = 0;    // of a problem
   std::optional<Aim> aim;               // of a problem: what its user wants
   // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the standard

@@ -35,7 +35,7 @@ class FlowPhysics final : public Physics {
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override;
 
   Inverse inverse_kind() const override {
-    return back_ == Back::coarse ? Inverse::damped : Inverse::estimate;
+    return back_ == Back::coarse ? Inverse::approximate : Inverse::estimate;
   }
   Index inverse_price() const override;
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const override;

@@ -255,8 +255,7 @@ TEST(Completion, IsValidBashAndCompletesNames) {
         .out;
   };
   EXPECT_EQ(complete("run --problem rosen"), "rosenbrock\n");
-  EXPECT_EQ(complete("run --optimizer levenberg"),
-            "levenberg-marquardt levenberg-marquardt-cg\n");
+  EXPECT_EQ(complete("run --optimizer levenberg"), "levenberg-marquardt levenberg-marquardt-cg\n");
   EXPECT_EQ(complete("run --optimizer gd,gauss"), "gd,gauss-newton\n");
   EXPECT_EQ(complete("run note"), "notebook\n");
   EXPECT_EQ(complete("describe saddle"), "saddle-free-newton\n");
