@@ -4,6 +4,7 @@
 #include <lapacke.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace isoline {
 namespace {
@@ -11,6 +12,11 @@ namespace {
 lapack_int as_int(Index n) { return static_cast<lapack_int>(n); }
 
 constexpr lapack_int kBlock = 64;  // columns of a QR that are applied at once
+
+// A product that LAPACK refuses is not a number: it must not pass for the factor left out.
+void keep(lapack_int info, Vector& product) {
+  if (info != 0) product.setConstant(std::numeric_limits<Real>::quiet_NaN());
+}
 
 }  // namespace
 
@@ -47,7 +53,7 @@ bool FactoredSvd::factor(const Matrix& A) {
   qr_ = A;
   for (Vector* vector : {&tau_x_, &tau_y_, &sigma_, &above_}) vector->setZero(n);
   const lapack_int block = std::min(n, kBlock);
-  blocks_.resize(block, n);
+  blocks_.setZero(block, n);  // LAPACK leaves parts of it, and refuses what is not a number there
   if (LAPACKE_dgeqrt(LAPACK_COL_MAJOR, m, n, block, qr_.data(), m, blocks_.data(), block) != 0)
     return false;
   bidiagonal_ = qr_.topRows(n).triangularView<Eigen::Upper>();
@@ -64,10 +70,12 @@ void FactoredSvd::to_left(const Vector& x, Vector& out) {
   const lapack_int m = as_int(qr_.rows()), n = as_int(qr_.cols());
   const lapack_int block = as_int(blocks_.rows());
   column_ = x;
-  LAPACKE_dgemqrt(LAPACK_COL_MAJOR, 'L', 'T', m, 1, n, block, qr_.data(), m, blocks_.data(), block,
-                  column_.data(), m);
-  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'T', n, 1, n, bidiagonal_.data(), n, tau_x_.data(),
-                 column_.data(), m);
+  keep(LAPACKE_dgemqrt(LAPACK_COL_MAJOR, 'L', 'T', m, 1, n, block, qr_.data(), m, blocks_.data(),
+                       block, column_.data(), m),
+       column_);
+  keep(LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'T', n, 1, n, bidiagonal_.data(), n,
+                      tau_x_.data(), column_.data(), m),
+       column_);
   out.noalias() = C_.transpose() * column_.head(n);
 }
 
@@ -76,25 +84,29 @@ void FactoredSvd::from_left(const Vector& along, Vector& out) {
   const lapack_int block = as_int(blocks_.rows());
   out.setZero(m);
   out.head(n).noalias() = C_ * along;
-  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'N', n, 1, n, bidiagonal_.data(), n, tau_x_.data(),
-                 out.data(), m);
-  LAPACKE_dgemqrt(LAPACK_COL_MAJOR, 'L', 'N', m, 1, n, block, qr_.data(), m, blocks_.data(), block,
-                  out.data(), m);
+  keep(LAPACKE_dormbr(LAPACK_COL_MAJOR, 'Q', 'L', 'N', n, 1, n, bidiagonal_.data(), n,
+                      tau_x_.data(), out.data(), m),
+       out);
+  keep(LAPACKE_dgemqrt(LAPACK_COL_MAJOR, 'L', 'N', m, 1, n, block, qr_.data(), m, blocks_.data(),
+                       block, out.data(), m),
+       out);
 }
 
 void FactoredSvd::to_right(const Vector& x, Vector& out) {
   const lapack_int n = as_int(qr_.cols());
   column_ = x;
-  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'P', 'L', 'T', n, 1, n, bidiagonal_.data(), n, tau_y_.data(),
-                 column_.data(), n);
+  keep(LAPACKE_dormbr(LAPACK_COL_MAJOR, 'P', 'L', 'T', n, 1, n, bidiagonal_.data(), n,
+                      tau_y_.data(), column_.data(), n),
+       column_);
   out.noalias() = Dt_ * column_;
 }
 
 void FactoredSvd::from_right(const Vector& along, Vector& out) {
   const lapack_int n = as_int(qr_.cols());
   out.noalias() = Dt_.transpose() * along;
-  LAPACKE_dormbr(LAPACK_COL_MAJOR, 'P', 'L', 'N', n, 1, n, bidiagonal_.data(), n, tau_y_.data(),
-                 out.data(), n);
+  keep(LAPACKE_dormbr(LAPACK_COL_MAJOR, 'P', 'L', 'N', n, 1, n, bidiagonal_.data(), n,
+                      tau_y_.data(), out.data(), n),
+       out);
 }
 
 bool symmetric_eigen(const Matrix& A, SymmetricEigen& out) {

@@ -47,8 +47,10 @@ const std::vector<std::string> kRegular = {"sine",
 
 TEST(HalfInverse, KappaOneIsGaussNewton) {
   expect_same_path(easy(), "hig[kappa=1,cutoff=0,rate=0.3]", "gauss-newton[rate=0.3]");
-  for (const std::string& name : kRegular)
+  for (const std::string& name : kRegular) {
+    SCOPED_TRACE(name);
     expect_same_path(published(name), "hig[kappa=1,cutoff=0,rate=0.3]", "gauss-newton[rate=0.3]");
+  }
   // A loss without ½ doubles g, on which the family acts, and leaves r, on which Gauss-Newton does.
   expect_same_path(published("square"), "hig[kappa=1,cutoff=0,rate=0.15]",
                    "gauss-newton[rate=0.3]");
