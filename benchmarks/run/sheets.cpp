@@ -117,7 +117,7 @@ std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
                                              const Component& component) {
   std::vector<std::string> all;
   for (const Inverse kind :
-       {Inverse::exact, Inverse::damped, Inverse::estimate, Inverse::approximate}) {
+       {Inverse::exact, Inverse::damped, Inverse::approximate, Inverse::estimate}) {
     const Problem problem({.physics = std::make_unique<Witness>(kind),
                            .start = Vector::Ones(1),
                            .target = Matrix::Zero(1, 1)});

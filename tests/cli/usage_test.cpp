@@ -217,6 +217,7 @@ TEST(Describe, TellsEveryPrivilegeThatAMethodCanHave) {
   const Shell shell;
   EXPECT_TRUE(contains(shell("./isoline describe sip").out,
                        "Privileges  exact inverse of the physics; damped inverse of the physics; "
+                       "approximate inverse of the physics; "
                        "estimate by how the data were made\n"));
   EXPECT_TRUE(contains(shell("./isoline describe 'sip[inverse=newton]'").out,
                        "Privileges  exact Hessian\n"));
