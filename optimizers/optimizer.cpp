@@ -21,8 +21,7 @@ std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse) {
   if (granted.contains(Oracle::inverse)) {
     if (inverse == Inverse::exact) words.emplace_back("exact inverse of the physics");
     if (inverse == Inverse::damped) words.emplace_back("damped inverse of the physics");
-    if (inverse == Inverse::approximate)
-      words.emplace_back("approximate inverse of the physics");
+    if (inverse == Inverse::approximate) words.emplace_back("approximate inverse of the physics");
     if (inverse == Inverse::estimate) words.emplace_back("estimate by how the data were made");
   }
   if (granted.contains(Oracle::truth)) words.emplace_back("ground truth");
