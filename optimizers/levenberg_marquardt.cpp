@@ -4,10 +4,8 @@
 // samples at every step J and r are those of the step's own. With damping=fixed, the rule of
 // mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean
 // diagonal of K, and every step is taken.
-#include <algorithm>
-#include <cmath>
-
 #include "optimizers/damped_least_squares.h"
+#include "optimizers/nielsen_damping.h"
 #include "optimizers/optimizer.h"
 #include "optimizers/spectral_step.h"
 
@@ -21,8 +19,8 @@ struct LevenbergMarquardt {
   struct State {
     DampedLeastSquares squares;
     SpectralStep spectral;
-    Vector scale;                  // (n) D
-    Real damping = 0, growth = 2;  // μ, and its factor at the next rejection
+    Vector scale;  // (n) D
+    NielsenDamping damping;
     bool has_point = false;
     Linearization at, trial;
     Vector step, candidate;  // (n)
@@ -31,13 +29,15 @@ struct LevenbergMarquardt {
   static void persist(State& s, Archive& archive) {
     s.squares.persist(archive);
     s.spectral.persist(archive);
-    archive(s.scale, s.damping, s.growth, s.has_point);
+    archive(s.scale);
+    s.damping.persist(archive);
+    archive(s.has_point);
   }
 
   State init(Meter&, const Vector& theta) const {
     State s;
     s.scale = Vector::Zero(theta.size());
-    s.damping = initial_damping;
+    s.damping.mu = initial_damping;
     s.spectral = SpectralStep(spectral_way(way));
     return s;
   }
@@ -51,22 +51,19 @@ struct LevenbergMarquardt {
       f.linearize(theta, s.at);
       accept(f, s);
     }
-    if (!s.squares.solve(s.damping, least_squares_way(), s.step, s.Jd)) return Status::stalled;
+    if (!s.squares.solve(s.damping.mu, least_squares_way(), s.step, s.Jd)) return Status::stalled;
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     f.linearize(s.candidate, s.trial);
     const Real gain = gain_ratio(f, s);
     if (!(gain > 0)) {
       f.reject_step();
-      s.damping *= s.growth;
-      s.growth *= 2;
-      return std::isfinite(s.damping) ? Status::running : Status::converged;
+      return s.damping.reject();
     }
     theta = s.candidate;
     std::swap(s.at, s.trial);
     if (!f.has_fresh_batches()) accept(f, s);
-    s.damping *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
-    s.growth = 2;
+    s.damping.accept(gain);
     return Status::running;
   }
 
@@ -91,7 +88,7 @@ struct LevenbergMarquardt {
   Real gain_ratio(Meter& f, const State& s) const {
     const Real after = 0.5 * (s.trial.y() - f.target()).squaredNorm();
     const Real predicted =
-        0.5 * s.Jd.squaredNorm() + s.damping * s.scale.cwiseProduct(s.step).squaredNorm();
+        0.5 * s.Jd.squaredNorm() + s.damping.mu * s.scale.cwiseProduct(s.step).squaredNorm();
     return (s.squares.misfit() - after) / predicted;
   }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "optimizers/nielsen_damping.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
@@ -19,8 +20,8 @@ struct LevenbergMarquardtCg {
   Index cg_iterations = 100;
 
   struct State {
-    Real damping = 0, growth = 2;  // μ, and its factor at the next rejection
-    Real first_slope = 0;          // ‖g₀‖
+    NielsenDamping damping;
+    Real first_slope = 0;  // ‖g₀‖
     Linearization at;
     Matrix residual;        // (m, B) −r
     Vector gradient;        // (n) −g = −Jᵀr
@@ -28,7 +29,10 @@ struct LevenbergMarquardtCg {
     Vector step, slope, p;  // (n) d, −g − (JᵀJ + μ) d, direction
     Vector candidate;       // (n)
   };
-  static void persist(State& s, Archive& archive) { archive(s.damping, s.growth, s.first_slope); }
+  static void persist(State& s, Archive& archive) {
+    s.damping.persist(archive);
+    archive(s.first_slope);
+  }
   State init(Meter&, const Vector&) const { return {}; }
 
   Status step(Meter& f, Vector& theta, State& s) const {
@@ -37,20 +41,17 @@ struct LevenbergMarquardtCg {
     s.gradient.resize(theta.size());
     s.at.pullback(s.residual, s.gradient);
     if (s.gradient.isZero(0)) return Status::converged;
-    if (s.damping == 0) set_damping(s);
+    if (s.damping.mu == 0) set_damping(s);
     if (!conjugate_gradients(f, s)) return Status::stalled;
     s.candidate = theta + s.step;
     if (s.candidate == theta && !f.has_fresh_batches()) return Status::converged;
     const Real gain = (s.at.loss() - f.loss(s.candidate)) / predicted_decrease(s);
     if (!(gain > 0)) {
       f.reject_step();
-      s.damping *= s.growth;
-      s.growth *= 2;
-      return std::isfinite(s.damping) ? Status::running : Status::converged;
+      return s.damping.reject();
     }
     theta = s.candidate;
-    s.damping *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
-    s.growth = 2;
+    s.damping.accept(gain);
     return Status::running;
   }
 
@@ -59,7 +60,7 @@ struct LevenbergMarquardtCg {
     s.first_slope = s.gradient.norm();
     s.moved.resizeLike(s.residual);
     s.at.pushforward(s.gradient, s.moved);
-    s.damping = kInitial * s.moved.squaredNorm() / s.gradient.squaredNorm();
+    s.damping.mu = kInitial * s.moved.squaredNorm() / s.gradient.squaredNorm();
   }
 
   bool conjugate_gradients(Meter& f, State& s) const {
@@ -72,12 +73,12 @@ struct LevenbergMarquardtCg {
     const Real enough = forcing * forcing * slope;
     for (Index i = 0; i < cg_iterations && slope > enough && !f.is_spent(); ++i) {
       s.at.pushforward(s.p, s.moved);
-      const Real alpha = slope / (s.moved.squaredNorm() + s.damping * s.p.squaredNorm());
+      const Real alpha = slope / (s.moved.squaredNorm() + s.damping.mu * s.p.squaredNorm());
       if (!(alpha > 0 && std::isfinite(alpha))) return i > 0;
       s.step += alpha * s.p;
       s.left -= alpha * s.moved;
       s.at.pullback(s.left, s.slope);
-      s.slope -= s.damping * s.step;
+      s.slope -= s.damping.mu * s.step;
       const Real before = std::exchange(slope, s.slope.squaredNorm());
       s.p = s.slope + slope / before * s.p;
     }
@@ -88,7 +89,7 @@ struct LevenbergMarquardtCg {
   // ½ dᵀ(−g) + ½ dᵀ(−g − (JᵀJ + μ) d) + ½μ‖d‖².
   static Real predicted_decrease(const State& s) {
     const Real of_squares =
-        0.5 * (s.step.dot(s.gradient) + s.step.dot(s.slope) + s.damping * s.step.squaredNorm());
+        0.5 * (s.step.dot(s.gradient) + s.step.dot(s.slope) + s.damping.mu * s.step.squaredNorm());
     return of_squares * s.at.loss() / (0.5 * s.residual.squaredNorm());
   }
 };
