@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "problems/burgers_flow.h"
+#include "problems/exact_data.h"
 #include "problems/learning.h"
 
 namespace isoline::problems {
@@ -67,17 +68,7 @@ ProblemParts learn_burgers(const Options& o, const Draw& draw) {
 ProblemParts make_burgers(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_burgers(o, draw);
   RandomStream stream = draw.stream("target");
-  auto physics = flow_of(o);
-  const Matrix truth = random_state(o.N, stream);
-  Matrix target(o.N, 1);
-  physics->evolve(truth.col(0), target.col(0));
-  return {.physics = std::move(physics),
-          .start = draw.start(Vector::Zero(o.N)),
-          .target = target,
-          .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
-          .field = field_of(o.N)};
+  return from_exact_data(flow_of(o), random_state(o.N, stream), field_of(o.N), draw);
 }
 
 }  // namespace

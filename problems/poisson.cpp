@@ -1,6 +1,7 @@
 // P = ∇⁻²: y solves ∇²y = x on N×N cells of width 1, with the five-point Laplacian and a value 0
 // one width beyond the first and last cell. Holl, Koltun, Thuerey (2022), Fig. 6a, as a direct
 // problem. The authors solve by conjugate gradients to 1e-5; the sine transform is exact.
+#include "problems/exact_data.h"
 #include "problems/laplacian.h"
 #include "problems/learning.h"
 #include "problems/random_fields.h"
@@ -64,17 +65,8 @@ ProblemParts learn_poisson(const Options& o, const Draw& draw) {
 ProblemParts make_poisson(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_poisson(o, draw);
   RandomStream stream = draw.stream("target");
-  auto physics = std::make_unique<Poisson>(o.N);
-  const Matrix truth = smooth_noise(o.N, 10, 1, stream);
-  Matrix target(truth.rows(), 1);
-  physics->solve(truth, target);
-  return {.physics = std::move(physics),
-          .start = draw.start(Vector::Zero(truth.rows())),
-          .target = target,
-          .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
-          .field = field_of(o.N)};
+  return from_exact_data(std::make_unique<Poisson>(o.N), smooth_noise(o.N, 10, 1, stream),
+                         field_of(o.N), draw);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // value 0 one width beyond the first and last cell, and its inverse the solve. x* is PhiFlow's
 // noise of smoothness 1: white noise over |k|², without its mean, of standard deviation 1. The
 // scripts sum the loss over the batch, here it is the mean: their step 0.01 at B = 64 is 0.64 here.
+#include "problems/exact_data.h"
 #include "problems/laplacian.h"
 #include "problems/learning.h"
 #include "problems/random_fields.h"
@@ -86,17 +87,8 @@ ProblemParts learn_poisson_hig(const Options& o, const Draw& draw) {
 ProblemParts make_poisson_hig(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_poisson_hig(o, draw);
   RandomStream stream = draw.stream("target");
-  auto physics = std::make_unique<PoissonHig>(o.N);
-  const Matrix truth = noise(o.N, stream);
-  Matrix target(truth.rows(), 1);
-  physics->apply(truth, target);
-  return {.physics = std::move(physics),
-          .start = draw.start(Vector::Zero(truth.rows())),
-          .target = target,
-          .minimum = 0,
-          .truth = truth,
-          .x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); },
-          .field = field_of(o.N)};
+  return from_exact_data(std::make_unique<PoissonHig>(o.N), noise(o.N, stream), field_of(o.N),
+                         draw);
 }
 
 }  // namespace
