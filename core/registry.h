@@ -11,7 +11,8 @@
 
 namespace isoline {
 
-// Entry has a member `name`, and may have `file`: the one that registers it.
+// Entry has a member `name`, and may have `file`: the one that registers it; and `needs_argument`:
+// how to name one, where its name alone means nothing.
 template <class Entry>
 class Registry {
  public:
@@ -32,6 +33,13 @@ class Registry {
   std::vector<std::string> names() const {
     std::vector<std::string> all;
     for (const auto& [name, entry] : entries_) all.push_back(name);
+    return all;
+  }
+  // Those that can be made by their name alone.
+  Registry ready() const {
+    Registry all(kind_);
+    for (const auto& [name, entry] : entries_)
+      if (entry.needs_argument.empty()) all.entries_.emplace(name, entry);
     return all;
   }
   auto begin() const { return entries_.begin(); }

@@ -1,7 +1,9 @@
-// Quoting by single quotes, within which a shell reads every letter but one as itself.
+// Quoting by single quotes, within which a shell reads every letter but one as itself; and back.
 #include "core/shell.h"
 
 #include <algorithm>
+
+#include "core/errors.h"
 
 namespace isoline {
 namespace {
@@ -11,6 +13,54 @@ bool is_literal(char letter) {
   return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
          (letter >= '0' && letter <= '9') || kSafe.find(letter) != std::string_view::npos;
 }
+
+// Reads words letter by letter.
+class WordReader {
+ public:
+  explicit WordReader(std::string_view command) : rest_(command) {}
+
+  // Whether there was another.
+  bool read(std::string& word) {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(kSpace), rest_.size()));
+    word.clear();
+    const bool is_there = !rest_.empty();
+    while (!rest_.empty() && kSpace.find(rest_.front()) == std::string_view::npos)
+      if (const char letter = take(); letter == '\'')
+        read_single(word);
+      else if (letter == '"')
+        read_double(word);
+      else if (letter == '\\')
+        word += take();
+      else
+        word += letter;
+    return is_there;
+  }
+
+ private:
+  static constexpr std::string_view kSpace = " \t\r\n";
+
+  char take() {
+    require(!rest_.empty(), "a command ends within a quote or behind a backslash");
+    const char letter = rest_.front();
+    rest_.remove_prefix(1);
+    return letter;
+  }
+  void read_single(std::string& word) {
+    for (char letter = take(); letter != '\''; letter = take()) word += letter;
+  }
+  // A backslash is itself here, unless it stands before what would else mean something.
+  void read_double(std::string& word) {
+    for (char letter = take(); letter != '"'; letter = take()) {
+      if (letter == '\\') {
+        letter = take();
+        if (letter != '"' && letter != '\\' && letter != '$' && letter != '`') word += '\\';
+      }
+      word += letter;
+    }
+  }
+
+  std::string_view rest_;
+};
 
 }  // namespace
 
@@ -32,6 +82,14 @@ std::string shell_command(std::span<const char* const> words) {
     command += shell_word(word);
   }
   return command;
+}
+
+std::vector<std::string> shell_words(std::string_view command) {
+  WordReader reader(command);
+  std::vector<std::string> words;
+  for (std::string word; reader.read(word);) words.push_back(word);
+  require(!words.empty(), "a command has at least one word");
+  return words;
 }
 
 }  // namespace isoline

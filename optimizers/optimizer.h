@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 
+#include "core/foreign/foreign.h"
 #include "core/options.h"
 #include "core/registry.h"
 #include "optimizers/meter.h"
@@ -58,9 +59,17 @@ bool persist_state(typename M::State& state, Archive& archive) {
   return std::is_empty_v<typename M::State>;
 }
 
-enum class Family { first_order, curvature, inversion, ceres, nlopt, nlopt_derivative_free };
-inline constexpr std::array<std::string_view, 6> kFamilyNames = {
-    "first-order", "curvature", "inversion", "ceres", "nlopt", "nlopt-derivative-free"};
+enum class Family {
+  first_order,
+  curvature,
+  inversion,
+  ceres,
+  nlopt,
+  nlopt_derivative_free,
+  foreign
+};
+inline constexpr std::array<std::string_view, 7> kFamilyNames = {
+    "first-order", "curvature", "inversion", "ceres", "nlopt", "nlopt-derivative-free", "foreign"};
 inline std::string_view name_of(Family family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }
@@ -118,6 +127,10 @@ struct OptimizerEntry {
   // Whether `*` of a suite means it: not where an argument is required, nor what is a variant of
   // another for one experiment.
   bool in_all = true;
+  // As a problem's: how to name one where the name alone means nothing, and who computes it where
+  // that is another program.
+  std::string needs_argument = {};
+  std::function<Foreign(const OptionValues& complete_options)> introduce = {};
   std::string file = {};  // that registers it, as the registry saw it
   // All it needs, where that depends on the options or the problem; `needs` is then the least.
   std::function<OracleSet(const OptionValues& options, const Problem&)> needs_for = {};

@@ -9,6 +9,7 @@
 
 #include "core/aim.h"
 #include "core/field.h"
+#include "core/foreign/foreign.h"
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/random.h"
@@ -209,8 +210,13 @@ struct ProblemEntry {
   // Whether `*` of a suite means it: not where a forward solve takes over a millisecond or an
   // argument is required.
   bool in_all = true;
+  // Where its name alone means nothing, how to name one: "process[command=…]". Then in_all is false.
+  std::string needs_argument = {};
   std::string file = {};           // that registers it, as the registry saw it
   std::vector<Panel> panels = {};  // figures to draw of its runs
+  // Who computes it, where that is another program: asked of every component that is named, so it
+  // should remember. UsageError where an argument is missing or the other does not answer.
+  std::function<Foreign(const OptionValues& complete_options)> introduce = {};
   std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};
 };
 using ProblemRegistry = Registry<ProblemEntry>;

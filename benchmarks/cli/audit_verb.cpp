@@ -21,7 +21,7 @@ int audit_verb(const AuditArguments& given, Session& session) {
   const Catalog& catalog = session.catalog();
   for (const std::string& name : given.names) catalog.optimizers.at(name);  // or says which exist
   const std::vector<AuditedOptimizer> all =
-      audit_all(catalog, given.names.empty() ? catalog.optimizers.names() : given.names);
+      audit_all(catalog, given.names.empty() ? catalog.optimizers.ready().names() : given.names);
   if (!given.out.empty()) {
     std::filesystem::create_directories(given.out);
     write_audit(all, std::filesystem::path(given.out) / "audit.json");

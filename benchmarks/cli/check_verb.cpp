@@ -50,7 +50,7 @@ Json isolated_findings(const Catalog& catalog, const Component& component, std::
 std::vector<Component> chosen(const Catalog& catalog, const std::string& text) {
   std::vector<Component> components;
   if (text.empty()) {
-    for (const std::string& name : catalog.problems.names())
+    for (const std::string& name : catalog.problems.ready().names())
       components.push_back(complete_problem(catalog, name, OptionValues()));
   } else {
     for (const Spec& spec : parse_specs(text))

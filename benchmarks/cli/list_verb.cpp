@@ -17,17 +17,23 @@ namespace isoline::benchmarks {
 using networks::network_registry;
 namespace {
 
+template <class Entry>
+const std::string& name_to_give(const Entry& entry) {
+  return entry.needs_argument.empty() ? entry.name : entry.needs_argument;
+}
+
 Json listing(Session& session, const std::string& kind) {
   Json all = Json::object();
   if (kind == "all" || kind == "problems")
     for (const auto& [name, entry] : session.catalog().problems)
-      all["problems"].push_back({{"name", name}, {"title", entry.title}, {"source", entry.source}});
+      all["problems"].push_back(
+          {{"name", name_to_give(entry)}, {"title", entry.title}, {"source", entry.source}});
   if (kind == "all" || kind == "networks")
     for (const auto& [name, entry] : network_registry())
       all["networks"].push_back({{"name", name}, {"title", entry.title}, {"source", entry.source}});
   if (kind == "all" || kind == "optimizers")
     for (const auto& [name, entry] : session.catalog().optimizers)
-      all["optimizers"].push_back({{"name", name},
+      all["optimizers"].push_back({{"name", name_to_give(entry)},
                                    {"title", entry.title},
                                    {"family", name_of(entry.family)},
                                    {"source", entry.source}});

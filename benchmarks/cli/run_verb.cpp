@@ -64,7 +64,8 @@ void keep_shard(const Shard& shard, Undertaking& all) {
 std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const Study& study) {
   std::set<std::string> names;
   for (const Record& record : study.runs)
-    if (const std::string& name = record.request.optimizer.name; catalog.optimizers.contains(name))
+    if (const std::string& name = record.request.optimizer.name;
+        catalog.optimizers.contains(name) && catalog.optimizers.at(name).needs_argument.empty())
       names.insert(name);
   return audit_all(catalog, {names.begin(), names.end()});
 }

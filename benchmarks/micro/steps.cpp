@@ -51,7 +51,7 @@ bool is_written_here(Family family) {
 void register_steps() {
   for (const std::string problem_spec : kProblems) {
     const Problem problem = make_problem(problem_spec);
-    for (const auto& [name, entry] : catalog().optimizers) {
+    for (const auto& [name, entry] : catalog().optimizers.ready()) {
       const OptionValues options = complete_optimizer(catalog(), name, OptionValues()).options;
       if (!is_written_here(entry.family)) continue;
       if (!why_inapplicable(entry, options, problem).empty()) continue;

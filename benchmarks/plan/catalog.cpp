@@ -28,6 +28,11 @@ std::string asked_spec(const OptionTable& table, const std::string& name, const 
   return short_spec(asked, name, complete);
 }
 
+// A changed script is another build.
+std::string with_foreign(const Component& component, std::string sources) {
+  return component.foreign ? digest(sources + digest_of(*component.foreign)) : sources;
+}
+
 template <class Entry>
 Component complete(const Entry& entry, const OptionValues& given) {
   OptionValues options = complete_options(entry.options, entry.name, given);
@@ -36,6 +41,8 @@ Component complete(const Entry& entry, const OptionValues& given) {
                       .asked = asked_spec(entry.options, entry.name, given, options),
                       .is_learned = asks_to_learn(options),
                       .sources = source_digest(entry.file)};
+  if (entry.introduce) component.foreign = entry.introduce(options);
+  component.sources = with_foreign(component, std::move(component.sources));
   component.options = std::move(options);
   return component;
 }
@@ -91,9 +98,11 @@ Component complete_optimizer(const Catalog& catalog, const std::string& name,
                              const OptionValues& options) {
   const OptimizerEntry& entry = catalog.optimizers.at(name);
   Component optimizer = complete(entry, options);
-  entry.make(optimizer.options, catalog.optimizers);  // refuses a bad optimizer inside another
-  optimizer.sources = digest_of(catalog, entry, optimizer.options, false);
-  optimizer.learning_sources = digest_of(catalog, entry, optimizer.options, true);
+  // Refuses a bad optimizer inside another; what is foreign has introduced itself already.
+  if (!entry.introduce) entry.make(optimizer.options, catalog.optimizers);
+  optimizer.sources = with_foreign(optimizer, digest_of(catalog, entry, optimizer.options, false));
+  optimizer.learning_sources =
+      with_foreign(optimizer, digest_of(catalog, entry, optimizer.options, true));
   return optimizer;
 }
 

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -19,8 +20,10 @@ void limit_memory([[maybe_unused]] std::int64_t bytes) {
 #ifndef ISOLINE_SANITIZE  // the sanitizers' shadow memory does not fit under an address-space limit
   const auto figures = figures_of(getpid());
   const auto most = static_cast<rlim_t>(bytes + (figures ? figures->address_space_bytes : 0));
-  const rlimit both{most, most};
-  setrlimit(RLIMIT_AS, &both);
+  rlimit limit{};
+  getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = std::min(most, limit.rlim_max);  // the other one stays: a child may lift this
+  setrlimit(RLIMIT_AS, &limit);
 #endif
   std::set_new_handler([] { throw std::bad_alloc(); });
 }

@@ -11,6 +11,7 @@
 
 #include "benchmarks/run/child_process.h"
 #include "core/clock.h"
+#include "core/foreign/child.h"
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
@@ -50,6 +51,7 @@ void Worker::start(const std::function<void(Trace&)>& work, const Limits& limits
 
 void Worker::do_in_child(const std::function<void(Trace&)>& work, int threads) {
   output_.redirect();
+  join_child_programs();
   SharedMemory::keep_only({&trace_.memory(), &returned_.memory()});
   limit_memory(watch_.limits().memory_bytes);
   set_library_threads(threads);

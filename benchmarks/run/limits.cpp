@@ -23,11 +23,14 @@ LimitWatch::Breach timeout(std::string message) { return {Status::timeout, std::
 }  // namespace
 
 Limits limits_of(const Request& request, const Limits& standard, double predicted_seconds) {
+  constexpr double kForeignStartup = 600;  // its door waits for that, and gives it up before
   Limits limits = standard;
+  if (request.problem.foreign || request.optimizer.foreign)
+    limits.startup_seconds = std::max(limits.startup_seconds, kForeignStartup);
   const double budget = request.budget.seconds;
   if (std::isfinite(budget)) {
     limits.hard_seconds = kBudgetFactor * budget;
-    limits.startup_seconds = std::max(standard.startup_seconds, limits.hard_seconds);
+    limits.startup_seconds = std::max(limits.startup_seconds, limits.hard_seconds);
   } else if (request.hard_seconds > 0) {
     limits.hard_seconds = request.hard_seconds;
   } else if (std::isfinite(predicted_seconds)) {

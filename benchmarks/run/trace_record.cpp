@@ -223,6 +223,7 @@ Record record_of(const Request& request, const Trace& trace) {
   record.fields = fields_of(trace);
   record.spectrum = spectrum_of(trace);
   record.privileges = lines_of(trace.privileges);
+  record.foreign = {request.problem.foreign, request.optimizer.foreign};
   record.is_nondeterministic = trace.stopped_by_clock || record.status == Status::timeout ||
                                record.status == Status::interrupted ||
                                record.status == Status::memory;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/aim.h"
+#include "core/foreign/foreign.h"
 #include "core/oracle.h"
 #include "core/real.h"
 #include "core/records/exhibit.h"
@@ -50,6 +51,13 @@ struct Spectrum {
   bool operator==(const Spectrum&) const = default;
 };
 
+// The parts of a run that other programs computed.
+struct ForeignParts {
+  std::optional<Foreign> problem = {}, optimizer = {};
+
+  bool empty() const { return !problem && !optimizer; }
+};
+
 struct Summary {
   std::int64_t iterations = 0, work = 0, rejected_steps = 0;
   Real start_loss = 0, loss = 0, best_loss = 0;
@@ -89,6 +97,7 @@ struct Record {
   std::optional<FieldFrames> fields;  // of a problem on a grid
   std::optional<Spectrum> spectrum;
   std::vector<std::string> privileges;
+  ForeignParts foreign;
   bool is_nondeterministic = false;       // ended by a clock or a kill
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
   Provenance provenance;

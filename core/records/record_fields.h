@@ -74,6 +74,22 @@ void fields(Like<Spectrum> auto& spectrum, auto& field) {
   field("sigma", spectrum.sigma);
 }
 
+void fields(Like<Foreign> auto& foreign, auto& field) {
+  field("door", foreign.door, R"({"enum": ["process", "umbridge", "plugin"]})");
+  field("command", foreign.command);
+  field("digest", foreign.digest, kDigestLaw);
+  field.optional("label", foreign.label, R"({"description": "What tables call it"})");
+  field.optional("interpreter", foreign.interpreter);
+  field.optional("packages", foreign.packages, R"({"description": "Versions by name"})");
+  field.optional("note", foreign.note);
+  field.optional("source", foreign.source);
+}
+
+void fields(Like<ForeignParts> auto& parts, auto& field) {
+  field.optional("problem", parts.problem);
+  field.optional("optimizer", parts.optimizer);
+}
+
 void fields(Like<Record> auto& record, auto& field) {
   field.constant("schema", kRunSchema);
   field("cell", record.cell, kDigestLaw);
@@ -106,6 +122,8 @@ void fields(Like<Record> auto& record, auto& field) {
   field.optional("spectrum", record.spectrum,
                  R"({"description": "Singular values of J, where --spectrum asked for them"})");
   field("privileges", record.privileges);
+  field.optional("foreign", record.foreign,
+                 R"({"description": "What other programs computed, and which"})");
   field("nondeterministic", record.is_nondeterministic);
   field("repeat_wall_seconds", record.repeat_wall_seconds);
   field("provenance", record.provenance);

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "core/budget.h"
+#include "core/foreign/foreign.h"
 #include "core/options.h"
 
 namespace isoline {
@@ -25,6 +27,7 @@ struct Component {
   // Digests of what computes it, not in the record's request; the second where it learns: of a
   // problem its network's, of an optimizer its own and those of what steps inside it.
   std::string sources = {}, learning_sources = {};
+  std::optional<Foreign> foreign = {};  // who computes it, where that is another program; likewise
 };
 
 // Whether complete options ask for the learning problem. The one place that says how.

@@ -25,14 +25,14 @@ const Catalog& catalog() {
 const FinishedMatrix& matrix() {
   static const FinishedMatrix all = [] {
     std::vector<std::string> problems, slow;
-    for (const auto& [name, entry] : catalog().problems) {
+    for (const auto& [name, entry] : catalog().problems.ready()) {
       const bool has_size = complete_problem(catalog(), name, OptionValues()).options.contains("N");
       (entry.in_all ? problems : slow).push_back(has_size ? name + "[N=8]" : name);
     }
     const auto block = [](const std::vector<std::string>& some,
                           std::int64_t iterations) -> MatrixBlock {
       return {.problems = some,
-              .optimizers = catalog().optimizers.names(),
+              .optimizers = catalog().optimizers.ready().names(),
               .seeds = {1},
               .budget = {.iterations = iterations, .work = 5 * iterations}};
     };
@@ -57,7 +57,8 @@ TEST(Records, OfTheWholeRegistryConformToTheSchemaAndSurviveTheRoundTrip) {
 
 TEST(Records, NoPairOfTheRegistryFailsCrashesOrHangs) {
   EXPECT_EQ(matrix().outcome.failures, std::vector<std::string>{});
-  EXPECT_EQ(matrix().records.size(), catalog().problems.size() * catalog().optimizers.size());
+  EXPECT_EQ(matrix().records.size(),
+            catalog().problems.ready().size() * catalog().optimizers.ready().size());
 }
 
 TEST(Records, CellsThatCannotExistSayWhy) {

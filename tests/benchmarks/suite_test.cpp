@@ -95,7 +95,7 @@ TEST(Quick, GivesEveryMethodTheSmallestGridsAndEachTheLargestThatItCanTreat) {
       sides[cell.problem.name + " " + cell.optimizer.name].insert(
           std::get<Index>(cell.problem.options.at("N")));
   for (const char* problem : {"poisson", "heat"})
-    for (const auto& [name, entry] : catalog().optimizers) {
+    for (const auto& [name, entry] : catalog().optimizers.ready()) {
       if (!entry.in_all) continue;
       const std::set<Index>& asked = sides[std::string(problem) + " " + name];
       EXPECT_TRUE(asked.contains(8)) << name;
@@ -213,9 +213,9 @@ TEST(Filters, ThatLeaveNothingOrNameWhatIsUnknownAreErrors) {
 
 // Charts colour by the one, tables stand together by the other.
 TEST(Registries, SayTheKindOfEachMethodAndTheGroupOfEachProblem) {
-  for (const auto& [name, entry] : catalog().optimizers)
+  for (const auto& [name, entry] : catalog().optimizers.ready())
     EXPECT_NE(entry.kind, optimizers::Kind::other) << name;
-  for (const auto& [name, entry] : catalog().problems)
+  for (const auto& [name, entry] : catalog().problems.ready())
     EXPECT_NE(entry.group, problems::Group::other) << name;
 }
 

@@ -39,7 +39,7 @@ Component problem_of(const std::string& spec) {
 // step, leaves nothing to choose.
 TEST(Tuning, OfEveryMethodIsOneNumberOfItsOwnUnlessItSearchesALineOrIsALibrarys) {
   std::size_t without = 0;
-  for (const auto& [name, entry] : catalog().optimizers) {
+  for (const auto& [name, entry] : catalog().optimizers.ready()) {
     if (entry.tunable.option.empty()) {
       ++without;
       EXPECT_TRUE(name.starts_with("ceres-") || name.starts_with("nlopt-") || name == "ssbroyden" ||
@@ -79,7 +79,7 @@ TEST(Tuning, OfWhatTrainsANetworkIsTheRateOfItsNetworksOptimizer) {
 // --- which values
 
 TEST(TuningGrids, AreSevenValuesOfWhichOneIsTheDefault) {
-  for (const auto& [name, entry] : catalog().optimizers) {
+  for (const auto& [name, entry] : catalog().optimizers.ready()) {
     const auto knob = knob_of(catalog(), name, problem_of("hig-toy"), {});
     if (!knob || knob->tunable.unit == Tunable::Unit::cauchy) continue;
     const std::vector<Real> values = grid_of(*knob, knob->standard);

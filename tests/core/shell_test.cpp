@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/errors.h"
+
 namespace isoline {
 namespace {
 
@@ -18,6 +20,21 @@ TEST(Shell, WordsAreQuotedOnlyWhereTheyMustBe) {
   EXPECT_EQ(shell_word("sine[xi=1|3]"), "'sine[xi=1|3]'");
   const std::array words = {"isoline", "run", "--problem", "square, sine"};
   EXPECT_EQ(shell_command(words), "isoline run --problem 'square, sine'");
+}
+
+TEST(Shell, WordsOfACommandAreSplitAsAShellSplitsThem) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(shell_words("python3  mine.py\t-x\n"), (Words{"python3", "mine.py", "-x"}));
+  EXPECT_EQ(shell_words(R"(a' b 'c"d \e\"f" \g '' $HOME *)"),
+            (Words{"a b cd \\e\"f", "g", "", "$HOME", "*"}));
+  for (const char* open : {"", "  ", "a 'b", "a \"b", "a \\"})
+    EXPECT_THROW(shell_words(open), UsageError) << open;
+}
+
+TEST(Shell, WordsComeBackFromACommandMadeOfThem) {
+  const std::vector<const char*> words = {"it's", "a b", "$HOME", "\\", "\"", "", "two\nlines"};
+  EXPECT_EQ(shell_words(shell_command(words)),
+            std::vector<std::string>(words.begin(), words.end()));
 }
 
 // What `sh` makes of it, each word on a line of its own.

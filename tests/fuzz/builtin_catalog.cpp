@@ -4,8 +4,12 @@
 
 namespace isoline::fuzz {
 
+// But for those that start the program that they are told: what is invented here is never run.
 const benchmarks::Catalog& catalog() {
-  static const benchmarks::Catalog all = benchmarks::builtin_catalog();
+  static const benchmarks::Catalog all = [] {
+    benchmarks::Catalog whole = benchmarks::builtin_catalog();
+    return benchmarks::Catalog{whole.problems.ready(), whole.optimizers.ready()};
+  }();
   return all;
 }
 

@@ -56,7 +56,7 @@ std::int64_t allocations_of_steps(const Problem& problem, const std::string& spe
 TEST(Allocation, FirstOrderStepsAllocateNothingOnceWarm) {
   ProblemRegistry problems("problem");
   register_problems(problems);
-  for (const auto& [problem_name, problem_entry] : problems) {
+  for (const auto& [problem_name, problem_entry] : problems.ready()) {
     if (transforms(problem_name)) continue;
     const OptionValues options =
         complete_options(problem_entry.options, problem_name, OptionValues());

@@ -16,11 +16,12 @@ using problems::ProblemEntry;
 using problems::ProblemRegistry;
 using problems::register_problems;
 
+// Those that are made by their name alone.
 inline const OptimizerRegistry& optimizers() {
   static const OptimizerRegistry all = [] {
     OptimizerRegistry registry("optimizer");
     register_optimizers(registry);
-    return registry;
+    return registry.ready();
   }();
   return all;
 }

@@ -27,7 +27,7 @@ std::vector<std::string> specs() {
                                   "brown-dennis[m=4]",
                                   "broyden-tridiagonal[n=3]",
                                   "variably-dimensioned[n=1]"};
-  for (const auto& [name, entry] : all_problems()) {
+  for (const auto& [name, entry] : all_problems().ready()) {
     const bool is_grid = std::ranges::any_of(
         entry.options, [](const OptionField& field) { return field.name == "N"; });
     all.push_back(is_grid ? name + "[N=8]" : name);

@@ -76,12 +76,24 @@ TEST(Components, HaveATitleAFormulaASourceAndDocumentedOptions) {
 }
 
 TEST(Components, DefaultsAreWithinTheirOwnRanges) {
-  for (const auto& [name, entry] : catalog().problems)
+  for (const auto& [name, entry] : catalog().problems.ready())
     EXPECT_NO_THROW(complete_problem(catalog(), name, OptionValues())) << name;
-  for (const auto& [name, entry] : catalog().optimizers) {
+  for (const auto& [name, entry] : catalog().optimizers.ready()) {
     const OptionValues defaults = complete_optimizer(catalog(), name, OptionValues()).options;
     EXPECT_NO_THROW(complete_optimizer(catalog(), name, defaults)) << name;
   }
+}
+
+template <class Entry>
+void expect_kept_out_of_all(const Entry& entry) {
+  if (entry.needs_argument.empty()) return;
+  EXPECT_FALSE(entry.in_all) << entry.name;
+  EXPECT_TRUE(entry.needs_argument.starts_with(entry.name + "[")) << entry.needs_argument;
+}
+
+TEST(Components, ThatNeedAnArgumentSayHowAndAreNotMeantByAll) {
+  for (const auto& [name, entry] : catalog().problems) expect_kept_out_of_all(entry);
+  for (const auto& [name, entry] : catalog().optimizers) expect_kept_out_of_all(entry);
 }
 
 // A component that vanishes is missed here.

@@ -1,0 +1,62 @@
+// A program that is started beside this one and computes for it: its command, its environment, what
+// it prints, its end. It dies with this process, and with this object.
+#pragma once
+
+#include <sys/types.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace isoline {
+
+// In a process that is one cell: programs started from now on belong to its process group, so that
+// whoever ends the cell ends them, and what they print goes on to this process's own output, which
+// is captured. Elsewhere each leads a group of its own, and what it prints is shown to nobody.
+void join_child_programs();
+
+class ChildProgram {
+ public:
+  struct Start {
+    std::string command;  // words as of a shell, nothing expanded
+    // Beside what this process has; a value takes the place of its own.
+    std::vector<std::pair<std::string, std::string>> environment = {};
+    int descriptor = -1;  // that it inherits under the same number; −1: none but the standard ones
+  };
+
+  // UsageError where the command cannot be read or names no program.
+  explicit ChildProgram(const Start& start);
+  ~ChildProgram();  // kills it, and its group where it leads one
+  ChildProgram(const ChildProgram&) = delete;
+  ChildProgram& operator=(const ChildProgram&) = delete;
+
+  const std::string& command() const { return command_; }
+  // Readable when it has printed. Whoever waits for it waits for this too, and drains: else it
+  // would wait with a full pipe.
+  int output() const { return output_; }
+  void drain();
+  bool has_ended();  // without waiting
+  // "it left with exit code 1", or that it still runs; where it is ending, that is waited for.
+  std::string end_in_words();
+  // What it printed last, some lines of it, as valid UTF-8; empty where it said nothing.
+  std::string last_words() const;
+
+ private:
+  void launch(const Start& start);
+  void take(const char* bytes, std::size_t count);
+  void await_end(double seconds);
+
+  std::string command_;
+  pid_t process_ = 0;
+  int output_ = -1;
+  bool leads_group_ = true;
+  struct End {
+    bool is_exit;  // else a signal
+    int number;
+  };
+  std::optional<End> end_;
+  std::string tail_;
+};
+
+}  // namespace isoline

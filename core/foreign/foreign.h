@@ -1,0 +1,30 @@
+// Who computes a component, where that is not this program: a child process, a model behind
+// UM-Bridge, a shared library.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+namespace isoline {
+
+struct Foreign {
+  std::string door;         // "process", "umbridge" or "plugin"
+  std::string command;      // as it was given: a command, an address, a library's path
+  std::string digest;       // of the files that are known to compute it
+  std::string label;        // what tables call it, in the place of its spec; empty: the spec
+  std::string interpreter;  // "CPython 3.11.2"; empty where it has none
+  std::map<std::string, std::string> packages;  // versions by name, as it says itself
+  std::string note, source;                     // as an entry's
+
+  bool operator==(const Foreign&) const = default;
+};
+
+// Of the contents of those words that name regular files, in order: of "python3 mine.py" mine.py.
+// What such a file reads or imports itself is not followed. UsageError where one cannot be read.
+std::string digest_of_files(std::span<const std::string> words);
+
+// Of all that may change what it computes: a part of `build`.
+std::string digest_of(const Foreign& foreign);
+
+}  // namespace isoline
