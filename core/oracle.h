@@ -28,9 +28,18 @@ enum class Oracle {
 struct OracleSizes {
   std::int64_t unknowns, residuals;  // n, and m·B, the rows of J
   std::int64_t inputs, outputs;      // k, m
-  std::int64_t inverse_price;        // as the physics declares it
-  bool has_network;                  // other than the identity
+  std::int64_t pushforward_price, pullback_price;
+  bool has_pushforward, has_pullback;
+  std::int64_t inverse_price;  // as the physics declares it
+  bool has_network;            // other than the identity
 };
+
+// Of a matrix of so many columns and rows, made of the cheaper product.
+inline std::int64_t matrix_price(const OracleSizes& of, std::int64_t columns, std::int64_t rows) {
+  const std::int64_t by_column = columns * of.pushforward_price, by_row = rows * of.pullback_price;
+  if (!of.has_pushforward) return by_row;
+  return of.has_pullback ? std::min(by_column, by_row) : by_column;
+}
 
 struct OracleRow {
   Oracle kind;
@@ -49,12 +58,14 @@ inline constexpr std::array kOracleTable = {
     OracleRow{Oracle::forward, "forward", "y = P(N(θ)) and L",
               [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
     OracleRow{Oracle::pullback, "pullback", "Jᵀ w",
-              [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
+              [](const OracleSizes& of) { return of.pullback_price; },
+              "the problem offers no gradients"},
     OracleRow{Oracle::pushforward, "pushforward", "J v",
-              [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
+              [](const OracleSizes& of) { return of.pushforward_price; },
+              "the problem offers no products J v"},
     OracleRow{Oracle::jacobian, "jacobian", "J, (m, n)",
-              [](const OracleSizes& of) { return std::min(of.unknowns, of.residuals); },
-              "the Jacobian would be too large to form", true},
+              [](const OracleSizes& of) { return matrix_price(of, of.unknowns, of.residuals); },
+              "the Jacobian is not offered, or would be too large to form", true},
     OracleRow{Oracle::hessian, "hessian", "∇²L, (n, n)",
               [](const OracleSizes& of) { return of.unknowns; },
               "the problem offers no second derivatives", true},
@@ -63,8 +74,8 @@ inline constexpr std::array kOracleTable = {
               "the problem offers no second derivatives", true},
     OracleRow{Oracle::sensitivity, "sensitivity",
               "∂y/∂x, (m, k) a sample, through the physics alone",
-              [](const OracleSizes& of) { return std::min(of.inputs, of.outputs); },
-              "the Jacobian would be too large to form", true, false},
+              [](const OracleSizes& of) { return matrix_price(of, of.inputs, of.outputs); },
+              "the Jacobian is not offered, or would be too large to form", true, false},
     OracleRow{Oracle::hessian_product, "hessian_product", "∇²L v",
               // a pushforward, and the pullback's own derivative
               [](const OracleSizes&) -> std::int64_t { return 2; },

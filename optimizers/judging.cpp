@@ -154,7 +154,8 @@ void Meter::measure(VectorRef theta) {
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
   last.x_error = problem_.x_error(judged_.x(), judging());
-  last.gradient_norm = problem_.is_learned() ? TracePoint::kAbsent : judged_gradient_norm();
+  const bool has_gradient = !problem_.is_learned() && problem_.products().has_pullback;
+  last.gradient_norm = has_gradient ? judged_gradient_norm() : TracePoint::kAbsent;
   last.step_norm = (theta - previous_).norm();
   for (int i = 0; i < 2; ++i) {
     last.batch_loss[i] = batch_loss_.mean(TracePoint::kWindows[i]);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace isoline::problems {
@@ -26,8 +27,31 @@ class Examination {
   void repeatability() {
     Point again;
     problem_.forward(theta_, again);
-    const bool same = again.y == at_.y && again.loss == at_.loss;
-    add("forward gives the same bits twice", same ? 0 : 1, 0, "nothing random is left in it");
+    add("forward gives the same bits twice",
+        same_bits(again.y, at_.y) && again.loss == at_.loss ? 0 : 1, 0,
+        "nothing random is left in it");
+  }
+
+  // Elsewhere than here a product may draw numbers of its own, or go by what was asked before.
+  void purity() {
+    const Vector v = direction();
+    const Matrix u = cotangent();
+    const bool pushes = offers(Oracle::pushforward), pulls = offers(Oracle::pullback);
+    const Matrix Jv = pushes ? push(v) : Matrix();
+    const Matrix JTu = pulls ? Matrix(pull(u, at_)) : Matrix();
+    Point elsewhere;
+    problem_.forward(near_start(), elsewhere);
+    Point again;
+    problem_.forward(theta_, again);
+    bool same = same_bits(again.y, at_.y);
+    if (pushes) {
+      Matrix out(problem_.outputs(), problem_.samples());
+      problem_.pushforward(v, out, again);
+      same = same && same_bits(out, Jv);
+    }
+    if (pulls) same = same && same_bits(pull(u, again), JTu);
+    add("the same call gives the same bits, whatever was asked between", same ? 0 : 1, 0,
+        "a run is repeated bit for bit");
   }
 
   void adjoint() {
@@ -37,29 +61,35 @@ class Examination {
     const Real scale = u.norm() * Jv.norm() + v.norm() * pull(u, at_).norm();
     const Real gap = std::abs(u.cwiseProduct(Jv).sum() - v.dot(pull(u, at_)));
     const bool is_single = problem_.network().is_single_precision();
-    add("⟨u, J v⟩ = ⟨Jᵀu, v⟩", relative(gap, scale), is_single ? 1e-5 : 1e-12,
-        is_single ? "rounding in single precision, with room for cancellation" : kRounding);
+    add("⟨u, J v⟩ = ⟨Jᵀu, v⟩", relative(gap, scale), is_single ? 1e-5 : product_limit(),
+        is_single ? "rounding in single precision, with room for cancellation" : product_reason());
   }
 
   // ‖y(θ + h v) − y(θ) − h J v‖ falls by 4 when h is halved: the median over the halvings whose
   // remainder stands well above rounding; none does where the problem is linear.
   void taylor() {
-    constexpr int kHalvings = 16;
     const Vector v = direction();
     const Matrix Jv = push(v);
     const Real floor = 1e4 * kEpsilon * (at_.y.norm() + Jv.norm());
-    std::vector<Real> slopes;
-    Real h = 1e-2, previous = remainder(v, Jv, h);
-    for (int i = 0; i < kHalvings; ++i) {
-      h /= 2;
-      const Real now = remainder(v, Jv, h);
-      if (now > floor) slopes.push_back(std::log2(previous / now));
-      previous = now;
-    }
-    std::nth_element(slopes.begin(), slopes.begin() + slopes.size() / 2, slopes.end());
-    const Real slope = slopes.empty() ? 2 : slopes[slopes.size() / 2];
+    const Real slope = order_of([&](Real h) { return remainder(v, Jv, h); }, floor);
     add("the remainder after J v is of second order", std::abs(slope - 2), 0.1,
         "a third-order term bends the slope by O(h); a wrong J v gives slope 1");
+  }
+
+  // The same of Jᵀu, for who has no J v: |⟨u, y(θ + h v) − y(θ)⟩ − h ⟨Jᵀu, v⟩|.
+  void taylor_of_pullback() {
+    const Vector v = direction();
+    const Matrix u = cotangent() / std::sqrt(static_cast<Real>(problem_.residuals()));
+    const Real change = pull(u, at_).dot(v);
+    const Real floor = 1e4 * kEpsilon * (u.norm() * at_.y.norm() + std::abs(change));
+    const auto remainder_at = [&](Real h) {
+      Point at;
+      problem_.forward(theta_ + h * v, at);
+      return std::abs(u.cwiseProduct(at.y - at_.y).sum() - h * change);
+    };
+    const Real slope = order_of(remainder_at, floor);
+    add("the remainder after Jᵀu is of second order", std::abs(slope - 2), 0.1,
+        "a third-order term bends the slope by O(h); a wrong Jᵀu gives slope 1");
   }
 
   void gradient() {
@@ -78,11 +108,15 @@ class Examination {
     const Matrix u = cotangent();
     Matrix J;
     problem_.jacobian(J, at_);
-    const Vector Jv = push(v).reshaped(), JTu = pull(u, at_);
-    add("J v by the matrix is J v by the product", relative((J * v - Jv).norm(), Jv.norm()), 1e-12,
-        kRounding);
-    add("Jᵀu by the matrix is Jᵀu by the product",
-        relative((J.transpose() * u.reshaped() - JTu).norm(), JTu.norm()), 1e-12, kRounding);
+    const Vector Jv = offers(Oracle::pushforward) ? Vector(push(v).reshaped()) : Vector();
+    const Vector JTu = offers(Oracle::pullback) ? pull(u, at_) : Vector();
+    if (offers(Oracle::pushforward))
+      add("J v by the matrix is J v by the product", relative((J * v - Jv).norm(), Jv.norm()),
+          product_limit(), product_reason());
+    if (offers(Oracle::pullback))
+      add("Jᵀu by the matrix is Jᵀu by the product",
+          relative((J.transpose() * u.reshaped() - JTu).norm(), JTu.norm()), product_limit(),
+          product_reason());
   }
 
   void curvature() {
@@ -196,8 +230,32 @@ class Examination {
   }
 
  private:
+  // By which power of h the remainder falls: the median over the halvings that stay above `floor`.
+  template <class Remainder>
+  static Real order_of(const Remainder& remainder, Real floor) {
+    constexpr int kHalvings = 16;
+    std::vector<Real> slopes;
+    Real h = 1e-2, previous = remainder(h);
+    for (int i = 0; i < kHalvings; ++i) {
+      h /= 2;
+      const Real now = remainder(h);
+      if (now > floor) slopes.push_back(std::log2(previous / now));
+      previous = now;
+    }
+    std::nth_element(slopes.begin(), slopes.begin() + slopes.size() / 2, slopes.end());
+    return slopes.empty() ? 2 : slopes[slopes.size() / 2];
+  }
+  static bool same_bits(const Matrix& a, const Matrix& b) {
+    return a.size() == b.size() &&
+           std::memcmp(a.data(), b.data(), sizeof(Real) * static_cast<std::size_t>(a.size())) == 0;
+  }
   static bool is_dense_feasible(Index entries) { return entries <= 4'000'000; }
   static Real relative(Real gap, Real scale) { return gap == 0 ? 0 : gap / scale; }
+  // Differences agree with each other as far as they have digits.
+  Real product_limit() const { return problem_.products().are_differences ? 1e-5 : 1e-12; }
+  const char* product_reason() const {
+    return problem_.products().are_differences ? kDifferences : kRounding;
+  }
   bool offers(Oracle oracle) const { return problem_.offers().contains(oracle); }
   void add(std::string property, Real figure, Real limit, std::string reason) {
     findings.push_back({std::move(property), figure, limit, std::move(reason)});
@@ -265,13 +323,16 @@ class Examination {
 std::vector<Finding> examine(const Problem& problem, RandomStream& stream) {
   Examination examination(problem, stream);
   examination.repeatability();
-  examination.adjoint();
+  if (problem.is_elsewhere()) examination.purity();
+  const Products has = problem.products();
+  if (has.has_pushforward && has.has_pullback) examination.adjoint();
   // Differences mean little across the kinks of a network or in its single precision: the tests of
   // networks hold each of its derivatives by itself.
   const Network& network = problem.network();
   if (!network.has_kinks() && !network.is_single_precision()) {
-    examination.taylor();
-    examination.gradient();
+    if (has.has_pushforward) examination.taylor();
+    if (has.has_pullback && !has.has_pushforward) examination.taylor_of_pullback();
+    if (has.has_pullback) examination.gradient();
     examination.jacobian();
     examination.hessian_product();
   }

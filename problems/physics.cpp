@@ -5,7 +5,9 @@ namespace isoline::problems {
 
 void Physics::jacobian(BatchOut J, Workspace& w) const {
   const Index k = inputs(), m = outputs(), samples = J.cols() / k;
-  const bool by_column = k <= m;
+  const Products has = products();
+  const bool is_cheaper_by_column = k * has.pushforward_price <= m * has.pullback_price;
+  const bool by_column = has.has_pushforward && (is_cheaper_by_column || !has.has_pullback);
   w.unit.setZero(by_column ? k : m, samples);
   w.product.resize(by_column ? m : k, samples);
   for (Index i = 0; i < w.unit.rows(); ++i) {

@@ -18,6 +18,13 @@ enum class Inverse {
   approximate,  // found from P itself, within an error: reversed steps, a few steps of a search
 };
 
+// What a physics has of products with J, and what each costs in forwards.
+struct Products {
+  bool has_pushforward = true, has_pullback = true;
+  Index pushforward_price = 1, pullback_price = 1;
+  bool are_differences = false;  // quotients of forwards, of some eight digits
+};
+
 class Physics {
  public:
   virtual ~Physics() = default;
@@ -28,6 +35,11 @@ class Physics {
   virtual void forward(BatchRef x, BatchRef c, BatchOut y, Workspace& w) const = 0;
   virtual void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const = 0;  // (k, B) -> (m, B)
   virtual void pullback(BatchRef u, BatchOut JTu, Workspace& w) const = 0;    // (m, B) -> (k, B)
+
+  // Who lacks one leaves it out here, and is not asked for it.
+  virtual Products products() const { return {}; }
+  // Another process computes it, whose time is not this one's.
+  virtual bool is_elsewhere() const { return false; }
 
   // J of each sample, side by side: (m, k·B). By default from the cheaper product.
   virtual void jacobian(BatchOut J, Workspace& w) const;

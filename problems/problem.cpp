@@ -87,14 +87,17 @@ void Problem::draw(std::string_view purpose, std::uint64_t first, Index count, B
 }
 
 OracleSet Problem::offers() const {
-  OracleSet offered{Oracle::forward, Oracle::pullback, Oracle::pushforward, Oracle::network};
+  OracleSet offered{Oracle::forward, Oracle::network};
+  const Products has = products();
+  if (has.has_pullback) offered.add(Oracle::pullback);
+  if (has.has_pushforward) offered.add(Oracle::pushforward);
   // A dense matrix of more than 1 GiB is not offered, nor more than a few products a sample: the
   // Jacobian of a grid costs as many solves as it has cells.
   constexpr Real kMostEntries = 1 << 27;
   constexpr Index kMostProducts = 64;
   const Real entries = static_cast<Real>(residuals()) * static_cast<Real>(unknowns());
   const bool is_small = has_identity_network() || std::min(inputs(), outputs()) <= kMostProducts;
-  if (is_small && entries <= kMostEntries) {
+  if (is_small && entries <= kMostEntries && (has.has_pullback || has.has_pushforward)) {
     offered.add(Oracle::jacobian);
     offered.add(Oracle::sensitivity);
   }
@@ -114,6 +117,10 @@ OracleCounts Problem::prices() const {
                           .residuals = residuals(),
                           .inputs = inputs(),
                           .outputs = outputs(),
+                          .pushforward_price = products().pushforward_price,
+                          .pullback_price = products().pullback_price,
+                          .has_pushforward = products().has_pushforward,
+                          .has_pullback = products().has_pullback,
                           .inverse_price = parts_.physics->inverse_price(),
                           .has_network = !has_identity_network()};
   OracleCounts prices{};

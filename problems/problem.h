@@ -129,6 +129,8 @@ class Problem {
   bool has_fresh_batches() const { return is_learned() && parts_.samples.data == 0; }
   bool is_least_squares() const { return parts_.loss->is_least_squares(); }
   Inverse inverse_kind() const { return parts_.physics->inverse_kind(); }
+  Products products() const { return parts_.physics->products(); }
+  bool is_elsewhere() const { return parts_.physics->is_elsewhere(); }
   Real x_error(BatchRef x, const Batch& batch) const;  // nan where no solution is known
   Real x_error(BatchRef x) const { return x_error(x, batch_); }
 
@@ -210,7 +212,8 @@ struct ProblemEntry {
   // Whether `*` of a suite means it: not where a forward solve takes over a millisecond or an
   // argument is required.
   bool in_all = true;
-  // Where its name alone means nothing, how to name one: "process[command=…]". Then in_all is false.
+  // Where its name alone means nothing, how to name one: "process[command=…]". Then in_all is
+  // false.
   std::string needs_argument = {};
   std::string file = {};           // that registers it, as the registry saw it
   std::vector<Panel> panels = {};  // figures to draw of its runs

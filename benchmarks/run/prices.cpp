@@ -87,10 +87,15 @@ std::vector<Oracle> measured_ones(OracleSet offered) {
   return products;
 }
 
+// Of the processor; where another process computes, of the clock on the wall.
+double seconds_by(bool is_elsewhere) {
+  return is_elsewhere ? 1e-9 * static_cast<double>(monotonic_nanoseconds()) : processor_seconds();
+}
+
 // What one call takes: of the processor, where it is long enough to be interrupted; else by its
 // time-stamp counter, which costs little beside a microsecond.
-double seconds_of(double expected, const std::function<void()>& call) {
-  if (expected > kClockSeconds) {
+double seconds_of(const Problem& problem, double expected, const std::function<void()>& call) {
+  if (expected > kClockSeconds && !problem.is_elsewhere()) {
     const double begin = processor_seconds();
     call();
     return processor_seconds() - begin;
@@ -125,8 +130,10 @@ void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
   const auto pairs = std::clamp(static_cast<std::size_t>(wanted), std::size_t{1}, kMostPairs);
   std::vector<Real> before, asked;
   for (std::size_t i = 0; i <= pairs; ++i) {
-    const double solve = seconds_of(of.forward, [&] { problem.forward(problem.start(), at); });
-    const double call = seconds_of(of.expected, [&] { ask(of.oracle, problem, at, room); });
+    const double solve =
+        seconds_of(problem, of.forward, [&] { problem.forward(problem.start(), at); });
+    const double call =
+        seconds_of(problem, of.expected, [&] { ask(of.oracle, problem, at, room); });
     if (i == 0) continue;  // the first allocates
     before.push_back(solve);
     asked.push_back(call);
@@ -139,10 +146,10 @@ void add_round(const Problem& problem, const Question& of, Rounds& rounds) {
 
 Rounds rounds_of(const Problem& problem, const Question& of) {
   Rounds rounds;
-  const double begin = processor_seconds();
+  const double begin = seconds_by(problem.is_elsewhere());
   while (rounds.ratios.size() < kMostRounds) {
     add_round(problem, of, rounds);
-    const double spent = processor_seconds() - begin;
+    const double spent = seconds_by(problem.is_elsewhere()) - begin;
     if (spent > kLongOracleSeconds) break;
     if (spent > kOracleSeconds && rounds.ratios.size() >= kFewRounds) break;
   }
@@ -172,16 +179,16 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   MeasuredPrices measured{.build = build, .processor = this_build()->processor, .oracles = {}};
   Point at;
   const std::function<void()> solve = [&] { problem.forward(problem.start(), at); };
-  const double begin = processor_seconds();
-  seconds_of(1, solve);  // allocates
-  const double once = std::max(seconds_of(1, solve), 1e-9);
+  const double begin = seconds_by(problem.is_elsewhere());
+  seconds_of(problem, 1, solve);  // allocates
+  const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
   Rounds alone = rounds_of(problem, {Oracle::forward, once, once});
   measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
   const OracleCounts declared = problem.prices();
   const double forward = measured.forward_seconds;
   measured.oracles.push_back(price_of(Oracle::forward, 1, forward, alone));
   for (const Oracle oracle : measured_ones(problem.offers())) {
-    if (processor_seconds() - begin > kProblemSeconds) break;
+    if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) break;
     const auto kind = static_cast<std::size_t>(oracle);
     const double expected = forward * static_cast<double>(declared[kind]);
     if (row_of(oracle).is_dense_matrix && expected > kMatrixSeconds) continue;

@@ -36,7 +36,8 @@ std::vector<Real> small(const Matrix& values) {
 
 bool has_small_jacobian(const Problem& problem) {
   const bool is_small = problem.unknowns() * problem.residuals() <= kMostEntries;
-  return !problem.is_learned() && problem.has_identity_network() && is_small;
+  return !problem.is_learned() && problem.has_identity_network() && is_small &&
+         problem.offers().contains(Oracle::jacobian);
 }
 
 // σ_max / σ_min of J there; nothing where it is no number.
