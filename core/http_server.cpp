@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <httplib.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -76,7 +77,11 @@ class HttpServer::Connections final : public httplib::Server {
   }
   void end() {
     is_over_ = true;
-    if (!listening_.joinable()) return;
+    if (!listening_.joinable()) {
+      if (const socket_t bound = svr_sock_.exchange(INVALID_SOCKET); bound != INVALID_SOCKET)
+        ::close(bound);
+      return;
+    }
     while (!is_running() && svr_sock_ != INVALID_SOCKET) std::this_thread::yield();
     stop();
     listening_.join();
