@@ -248,6 +248,7 @@ void CommandLine::add_verbs_on_components() {
       tune_verb);
   add("train", "Train a network on a learning problem and write it to a file", train_verb);
   add("infer", "Apply a network that `isoline train` wrote to observations", infer_verb);
+  add("serve", "Offer problems as models of UM-Bridge, to optimizers of any language", serve_verb);
 }
 
 void CommandLine::add_verbs_on_the_program() {

@@ -63,6 +63,7 @@ void declare(VerbArguments& verb, ValidateArguments& given);
 void declare(VerbArguments& verb, TuneArguments& given);
 void declare(VerbArguments& verb, TrainArguments& given);
 void declare(VerbArguments& verb, InferArguments& given);
+void declare(VerbArguments& verb, ServeArguments& given);
 void declare(VerbArguments& verb, CompletionArguments& given);
 
 }  // namespace isoline::benchmarks

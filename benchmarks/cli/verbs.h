@@ -159,6 +159,14 @@ struct InferArguments {
 };
 int infer_verb(const InferArguments& given, Session& session);
 
+struct ServeArguments {
+  std::vector<std::string> problems;
+  std::string host = "127.0.0.1", folder, client;
+  int port = -1;  // −1: what PORT of the environment says, or any
+  std::uint64_t seed = 0;
+};
+int serve_verb(const ServeArguments& given, Session& session);
+
 struct CompletionArguments {
   std::string shell = "bash";
   std::vector<std::string> verbs;  // filled in by the command line, which knows them

@@ -16,9 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::map<std::string, void (*)(std::string_view)> kTargets = {
-    {"spec", spec},     {"command_line", command_line}, {"suite", suite},     {"record", record},
-    {"claims", claims}, {"checkpoint", checkpoint},     {"network", network}, {"npy", npy},
-    {"wire", wire}};
+    {"spec", spec},       {"command_line", command_line},
+    {"suite", suite},     {"record", record},
+    {"claims", claims},   {"checkpoint", checkpoint},
+    {"network", network}, {"npy", npy},
+    {"wire", wire},       {"bridge", bridge}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";
 

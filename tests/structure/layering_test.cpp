@@ -20,7 +20,9 @@ const std::map<std::string, Set> kAllowed = {
     {"core/records", {"core", "core/foreign"}},
     {"networks", {"core", "networks/unet"}},
     {"networks/unet", {"core", "networks/network.h", "networks/lanes.h"}},
-    {"problems", {"core", "core/foreign", "core/records/panel.h", "networks", "problems/physics"}},
+    {"problems",
+     {"core", "core/foreign", "core/records/npy.h", "core/records/panel.h", "networks",
+      "problems/physics"}},
     {"problems/physics",
      {"core", "core/foreign", "problems/loss.h", "problems/physics.h", "problems/random_fields.h"}},
     {"optimizers", {"core", "core/foreign", "problems/problem.h"}},
@@ -31,6 +33,8 @@ const std::map<std::string, Set> kAllowed = {
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
     {"benchmarks/merge", {"core", "core/records"}},
     {"benchmarks/shard",
+     {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
+    {"benchmarks/serve",
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
     {"reports/statistics", {"core"}},
     {"reports/read", {"core", "core/records", "reports/statistics"}},
@@ -140,6 +144,7 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
     {"Random123/", R"(core/random\.cpp)"},
     {"simdjson.h", R"(core/records/json_view\.(h|cpp))"},
     {"valijson/", R"(core/records/schema\.cpp)"},
+    {"httplib.h", R"(core/http_(client|server)\.cpp)"},
     {"ceres/", R"(optimizers/ceres\.cpp|benchmarks/micro/.*\.cpp)"},
     {"glog/", R"(optimizers/ceres\.cpp|benchmarks/micro/.*\.cpp)"},
     {"nlopt.h", R"(optimizers/nlopt\.cpp|benchmarks/micro/.*\.cpp)"},
@@ -154,8 +159,9 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
 
 // Headers of C++ have no dot; these are the operating system's.
 bool is_system(const std::string& header) {
-  static const Set known = {"unistd.h", "poll.h",      "fcntl.h", "stdlib.h", "strings.h",
-                            "cpuid.h",  "x86intrin.h", "dlfcn.h", "malloc.h", "spawn.h"};
+  static const Set known = {"unistd.h",  "poll.h",  "fcntl.h",     "stdlib.h",
+                            "strings.h", "cpuid.h", "x86intrin.h", "dlfcn.h",
+                            "malloc.h",  "spawn.h", "arpa/inet.h", "netinet/in.h"};
   return header.find('.') == std::string::npos
              ? header.find('/') == std::string::npos
              : header.starts_with("sys/") || known.contains(header);

@@ -1,0 +1,111 @@
+"""Problems behind UM-Bridge, as `isoline run` treats them: a server that knows nothing of Isoline is
+started for each cell, is certified, run and ended with it."""
+
+import glob
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SERVER = pathlib.Path(__file__).parent / "model_server.py"
+GIVEN = 'start="[-1.2, 1]",target="[0, 0]",truth="[1, 1]",minimum=0'
+
+
+def spec(kind, more=""):
+    return f'umbridge[command="{sys.executable} {SERVER} {kind}",{GIVEN}{more}]'
+
+
+def processes_with(word):
+    found = []
+    for path in glob.glob("/proc/[0-9]*/cmdline"):
+        try:
+            with open(path, "rb") as command:
+                if word.encode() in command.read().split(b"\0"):
+                    found.append(path)
+        except OSError:
+            continue
+    return found
+
+
+class Client(unittest.TestCase):
+    def setUp(self):
+        self.folder = self.enterContext(tempfile.TemporaryDirectory())
+
+    def isoline(self, *arguments, code=0):
+        run = subprocess.run([sys.argv[1], *arguments], cwd=self.folder, capture_output=True,
+                             text=True, check=False)
+        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
+        return run.stdout + run.stderr
+
+    def record(self, problem, optimizer, code=0, **options):
+        out = f"{len(os.listdir(self.folder))}"
+        more = [word for name, value in options.items() for word in (f"--{name}", value)]
+        said = self.isoline("run", "--problem", problem, "--optimizer", optimizer, "--out", out,
+                            "--no-report", *more, code=code)
+        found = glob.glob(f"{self.folder}/{out}/runs/*.json")
+        self.assertEqual(len(found), 1, said)
+        with open(found[0], encoding="utf-8") as file:
+            return json.load(file)
+
+    def test_the_same_trace_as_the_trees_own_bit_for_bit(self):
+        for optimizer in ["levenberg-marquardt", "gd[rate=1e-3]"]:
+            own = self.record("rosenbrock", optimizer)
+            for kind in ["plain", "parts", "late", "chatty"]:
+                with self.subTest(kind=kind, optimizer=optimizer):
+                    there = self.record(spec(kind), optimizer)
+                    self.assertEqual(there["status"], own["status"], there["message"])
+                    self.assertEqual(there["counts"], own["counts"])
+                    for column in ["iteration", "loss", "x_error", "gradient_norm", "step_norm"]:
+                        self.assertEqual(there["curve"][column], own["curve"][column], column)
+
+    def test_a_record_names_the_server_and_a_changed_one_is_another_build(self):
+        own = pathlib.Path(self.folder) / "server.py"
+        own.write_text(SERVER.read_text(encoding="utf-8"), encoding="utf-8")
+        problem = f'umbridge[command="{sys.executable} {own} plain",{GIVEN},label=valley]'
+        first = self.record(problem, "ceres-lm")
+        foreign = first["foreign"]["problem"]
+        self.assertEqual(foreign["door"], "umbridge")
+        self.assertEqual(foreign["label"], "valley")
+        self.assertIn("server.py plain", foreign["command"])
+        own.write_text(own.read_text(encoding="utf-8") + "# a remark\n", encoding="utf-8")
+        second = self.record(problem, "ceres-lm")
+        self.assertEqual(second["cell"], first["cell"])
+        self.assertNotEqual(second["build_parts"]["problem"], first["build_parts"]["problem"])
+        self.assertEqual(second["curve"]["loss"], first["curve"]["loss"])
+
+    def test_what_is_offered_passes_its_certificate(self):
+        said = self.isoline("check", spec("parts"))
+        self.assertIn("0 failed", said)
+
+    def test_forward_alone_is_for_methods_without_derivatives(self):
+        self.assertEqual(self.record(spec("forward"), "adam")["status"], "inapplicable")
+        found = self.record(spec("forward"), "nlopt-neldermead")
+        self.assertLess(found["summary"]["loss"], 1e-6)
+
+    def test_what_is_not_finite_is_data(self):
+        start = GIVEN.replace("-1.2", "-1.1")
+        problem = f'umbridge[command="{sys.executable} {SERVER} holes",{start}]'
+        found = self.record(problem, "nlopt-neldermead")
+        self.assertIn(found["status"], ("target", "converged", "budget", "stalled"),
+                      found["message"])
+
+    def test_a_server_that_fails_costs_its_cell_and_says_why(self):
+        for kind, words in [("broken", "no module named meshing"), ("refusing", "mesh is tangled"),
+                            ("short", "2 numbers")]:
+            with self.subTest(kind=kind):
+                said = self.isoline("run", "--problem", spec(kind), "--optimizer", "adam", "--out",
+                                    kind, code=2)
+                texts = [pathlib.Path(path).read_text(encoding="utf-8")
+                         for path in glob.glob(f"{self.folder}/{kind}/runs/*.json")]
+                self.assertIn(words, said + "".join(texts))
+
+    def test_no_server_outlives_its_cell(self):
+        self.record(spec("plain"), "levenberg-marquardt")
+        self.assertEqual(processes_with(str(SERVER)), [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
