@@ -143,7 +143,9 @@ void register_ssbroyden(OptimizerRegistry& registry) {
        .kind = Kind::quasi_newton,
        .formula = "θ ← θ − α H ∇L,  H ← (H − Hy yᵀH/(yᵀHy) + φ v vᵀ)/τ + s sᵀ/(yᵀs)",
        .source = "Al-Baali, Khalfan (2005); Urbán, Stefanou, Pons (2025)",
-       .note = "Dense, with a line search to the strong Wolfe conditions.",
+       .note = "The update is the authors' printed one. Dense, with a line search to the strong "
+               "Wolfe conditions. H is scaled before its first update as BFGS scales it, which "
+               "they leave as an option.",
        .needs = {Oracle::forward, Oracle::pullback},
        .needs_same_samples = true,
        .most_unknowns = 3000}));
