@@ -7,6 +7,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/shard/census.h"
+#include "core/records/instant.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 
@@ -22,7 +23,7 @@ std::string or_null(const std::optional<double>& value) {
 std::string json_of(const Census& census, std::int64_t now) {
   std::string end = "null";
   if (census.remaining_seconds)
-    end = "\"" + instant_of(now + static_cast<std::int64_t>(*census.remaining_seconds)) + "\"";
+    end = "\"" + instant_text(now + static_cast<std::int64_t>(*census.remaining_seconds)) + "\"";
   return fmt::format(
       "{{\"planned\": {}, \"done\": {}, \"running\": {}, \"failed\": {}, \"left\": {}, "
       "\"left_seconds\": {}, \"remaining_seconds\": {}, \"end\": {}}}\n",
@@ -40,9 +41,10 @@ std::string words_of(const Census& census, std::int64_t now) {
                         duration_text(*census.left_seconds));
   if (!census.remaining_seconds)
     return text + "no cell ended in the last hour: there is no pace to predict an end by\n";
-  return text + fmt::format("at the pace of the last hour the end is in {}, at {}\n",
-                            duration_text(*census.remaining_seconds),
-                            instant_of(now + static_cast<std::int64_t>(*census.remaining_seconds)));
+  return text +
+         fmt::format("at the pace of the last hour the end is in {}, at {}\n",
+                     duration_text(*census.remaining_seconds),
+                     instant_text(now + static_cast<std::int64_t>(*census.remaining_seconds)));
 }
 
 }  // namespace

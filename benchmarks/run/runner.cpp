@@ -1,7 +1,6 @@
 // The run of a whole plan: workers filled, watched, collected and stored.
 #include "benchmarks/run/runner.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <poll.h>
@@ -17,6 +16,7 @@
 #include "benchmarks/run/prediction.h"
 #include "benchmarks/run/same_result.h"
 #include "core/clock.h"
+#include "core/records/instant.h"
 #include "core/records/provenance.h"
 #include "core/text.h"
 
@@ -115,8 +115,7 @@ class Runner {
   }
 
   RunProvenance run_provenance() const {
-    const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    return {.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
+    return {.started = instant_text(seconds_now()),
             .concurrent_jobs = jobs_,
             .is_exclusive = options_.exclusive,
             .command = options_.command};

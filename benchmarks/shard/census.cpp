@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <unordered_map>
 
 #include "benchmarks/run/glance.h"
@@ -13,6 +12,7 @@
 #include "benchmarks/shard/split.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/records/instant.h"
 #include "core/records/plan.h"
 
 namespace isoline::benchmarks {
@@ -61,7 +61,7 @@ std::optional<double> remaining(const Cells& cells, double left, std::int64_t no
   std::int64_t first = now;
   for (const auto& [cell, known] : cells) {
     if (!known.latest) continue;
-    const auto begun = seconds_of(known.latest->started);
+    const auto begun = instant_from(known.latest->started);
     if (!begun || *begun < now - kWindow || *begun > now) continue;
     first = std::min(first, *begun);
     done += known.weight;
@@ -95,21 +95,6 @@ Census census_of(const fs::path& whole, std::int64_t now, const Listener& listen
   if (is_predicted) census.left_seconds = left;
   if (missing > 0) census.remaining_seconds = remaining(cells, left, now);
   return census;
-}
-
-std::optional<std::int64_t> seconds_of(const std::string& instant) {
-  std::tm parts{};
-  const char* end = strptime(instant.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  if (end == nullptr || *end != '\0') return std::nullopt;
-  return timegm(&parts);
-}
-
-std::string instant_of(std::int64_t seconds) {
-  const std::time_t time = seconds;
-  std::tm parts{};
-  gmtime_r(&time, &parts);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
-                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
 }
 
 }  // namespace isoline::benchmarks

@@ -26,8 +26,4 @@ struct Census {
 Census census_of(const std::filesystem::path& whole, std::int64_t now,
                  const Listener& listener = {});
 
-// "2026-01-31T12:00:00Z" in seconds since 1970, and back; none where it is no such text.
-std::optional<std::int64_t> seconds_of(const std::string& instant);
-std::string instant_of(std::int64_t seconds);
-
 }  // namespace isoline::benchmarks
