@@ -150,7 +150,9 @@ def seed():
 
 def _introduce(line, greeting, role, said):
     if greeting["role"] != role:
-        line.send(HELLO, FAILED, f"this script is a {role}, and was asked as {greeting['role']}".encode())
+        article = "an" if role == "optimizer" else "a"
+        wrong = f"this script is {article} {role}, and was asked as {greeting['role']}"
+        line.send(HELLO, FAILED, wrong.encode())
         sys.exit(0)
     packages = {}
     for name in ("numpy", "scipy", "torch", "jax"):
