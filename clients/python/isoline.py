@@ -444,7 +444,9 @@ class optimizer:
     raises Stop when the run is over, which leaves the script.
     """
 
-    def __init__(self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None):
+    def __init__(
+        self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None
+    ):
         self._line, greeting = _greeted()
         said = {"name": name, "note": note, "source": source, "needs": list(needs)}
         said.update(least_squares=least_squares, reports=reports)

@@ -203,10 +203,11 @@ TEST_F(ForeignCells, OfAnOptimizerThatDoesNotStopEndAllTheSame) {
 }
 
 TEST_F(ForeignCells, OfAProblemFromOutsideHaveTheTraceOfTheTreesOwn) {
+  const std::string valley = valley_of_this_build();
   for (const char* method : {"levenberg-marquardt", "gd[rate=1e-3]", "nlopt-lbfgs", "newton"}) {
     const Budget budget{.iterations = 60, .target = 0};
     const Record ours = record_of(request_of("rosenbrock", method, budget));
-    const Record theirs = record_of(request_of(kValley, method, budget));
+    const Record theirs = record_of(request_of(valley, method, budget));
     if (std::string_view(method) == "newton") {
       EXPECT_EQ(theirs.status, Status::inapplicable) << "it offers no second derivatives";
       continue;

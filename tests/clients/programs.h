@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/spec.h"
+#include "problems/problem.h"
 
 namespace isoline {
 
@@ -29,6 +30,20 @@ inline std::string example(const std::string& words, const std::string& python =
 // process[command="…"]
 inline std::string process_of(const std::string& command, const std::string& more = "") {
   return "process[command=" + quoted(command) + more + "]";
+}
+
+// Rosenbrock's valley in the arithmetic of this build: whether the compiler fuses x₂ − x₁² into one
+// rounding is its own choice.
+inline std::string valley_of_this_build() {
+  const problems::Problem ours = [] {
+    problems::ProblemRegistry all("problem");
+    problems::register_problems(all);
+    return all.at("rosenbrock").make({}, problems::Draw(0, "rosenbrock"));
+  }();
+  problems::Point at;
+  const Real x = 0.1;  // whose square is no double
+  ours.forward(Eigen::Vector2d(x, x * x), at);
+  return process_of(misbehaving(at.y(0) == 0 ? "valley.py plain" : "valley.py fused"));
 }
 
 }  // namespace isoline
