@@ -150,7 +150,9 @@ def seed():
 
 def _introduce(line, greeting, role, said):
     if greeting["role"] != role:
-        line.send(HELLO, FAILED, f"this script is a {role}, and was asked as {greeting['role']}".encode())
+        article = "an" if role == "optimizer" else "a"
+        wrong = f"this script is {article} {role}, and was asked as {greeting['role']}"
+        line.send(HELLO, FAILED, wrong.encode())
         sys.exit(0)
     packages = {}
     for name in ("numpy", "scipy", "torch", "jax"):
@@ -442,7 +444,9 @@ class optimizer:
     raises Stop when the run is over, which leaves the script.
     """
 
-    def __init__(self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None):
+    def __init__(
+        self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None
+    ):
         self._line, greeting = _greeted()
         said = {"name": name, "note": note, "source": source, "needs": list(needs)}
         said.update(least_squares=least_squares, reports=reports)

@@ -38,4 +38,11 @@ string(JSON dirty GET "${record}" provenance dirty)
 if(NOT found STREQUAL commit OR dirty)
   message(FATAL_ERROR "the record names commit ${found}, dirty ${dirty}; the repository's is ${commit}")
 endif()
+
+# The client of Python is found beside the installed program.
+find_program(python python3)
+if(python)
+  run(prefix/bin/isoline check
+      "process[command=\"python3 prefix/share/isoline/python/examples/rosenbrock.py\"]")
+endif()
 file(REMOVE_RECURSE ${WORK})

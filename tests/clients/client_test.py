@@ -103,7 +103,8 @@ class Problems(unittest.TestCase):
             self.assertEqual(status, 0)
             self.assertEqual((said["inputs"], said["outputs"], said["name"]), (2, 3, "three"))
             self.assertEqual(said["start"], [1, 5])
-            self.assertEqual((said["target"], said["truth"], said["minimum"]), ([4, 2, 3], [2, 1], 0))
+            self.assertEqual((said["target"], said["truth"]), ([4, 2, 3], [2, 1]))
+            self.assertEqual(said["minimum"], 0)
             self.assertEqual(
                 said["oracles"], ["forward", "pullback", "pushforward", "jacobian", "inverse"]
             )
@@ -158,7 +159,8 @@ class Problems(unittest.TestCase):
         with self.program(PROBLEM.replace("3 * x[1]]", "float('inf')]") % "vjp=vjp") as program:
             said = json.loads(program.greet("problem", seed=0)[1])
             self.assertEqual(said["target"], [4, 2, "inf"])
-            self.assertEqual(program.ask(2, 0, [float("-inf"), 1])[:2], [float("inf"), float("-inf")])
+            infinity = float("inf")
+            self.assertEqual(program.ask(2, 0, [-infinity, 1])[:2], [infinity, -infinity])
 
     def test_takes_frames_larger_than_its_buffer(self):
         text = "import isoline\nisoline.problem(lambda x: x, [0.0] * 20000, vjp=lambda x, u: u)"

@@ -16,6 +16,6 @@ def inverse(y, x0):
 
 
 isoline.problem(
-    forward, [-1.2, 1], target=[0, 0], truth=[1, 1], minimum=0.0, jacobian=jacobian, inverse=inverse,
-    name="rosenbrock-python",
+    forward, [-1.2, 1], target=[0, 0], truth=[1, 1], minimum=0.0, jacobian=jacobian,
+    inverse=inverse, name="rosenbrock-python",
 )

@@ -1,4 +1,4 @@
-"""The methods of scipy.optimize, one a name: python3 scipy_optimize.py lm | trf | bfgs | l-bfgs-b …"""
+"""The methods of scipy.optimize, one a word: python3 scipy_optimize.py lm, trf, bfgs, l-bfgs-b …"""
 import sys
 
 from scipy.optimize import least_squares, minimize
@@ -13,4 +13,4 @@ if method in ("lm", "trf", "dogbox"):
 else:
     p = isoline.optimizer(["pullback"], f"scipy-{method}", reports=True)
     found = minimize(p.value, p.x0, jac=p.gradient, method=method, callback=p.report)
-p.finish(found.x, f"{found.message} nfev={found.nfev} njev={found.njev}")
+p.finish(found.x, f"{found.message} nfev={found.nfev} njev={found.get('njev')}")
