@@ -156,8 +156,9 @@ Rounds rounds_of(const Problem& problem, const Question& of) {
   return rounds;
 }
 
-MeasuredPrice price_of(Oracle oracle, std::int64_t declared, double forward, Rounds& rounds) {
-  MeasuredPrice price{.oracle = std::string(name_of(oracle)),
+MeasuredPrice price_of(std::string_view name, std::int64_t declared, double forward,
+                       Rounds& rounds) {
+  MeasuredPrice price{.oracle = std::string(name),
                       .declared = declared,
                       .price = at_share(rounds.ratios, 0.5),
                       .low = at_share(rounds.ratios, kTail),
@@ -166,6 +167,34 @@ MeasuredPrice price_of(Oracle oracle, std::int64_t declared, double forward, Rou
                       .calls = static_cast<std::int64_t>(rounds.calls)};
   price.resolved = is_resolved(price, forward);
   return price;
+}
+
+// The network alone, as `isoline infer` applies it, to the samples of a batch at once: what one of
+// them takes. No forward solve goes before it, since none is needed.
+MeasuredPrice inference_price(const Problem& problem, double forward) {
+  const problems::Network& network = problem.network();
+  const Matrix& input = problem.batch().input;
+  const Vector& theta = problem.start();
+  Rounds rounds;
+  const double begin = processor_seconds();
+  while (rounds.ratios.size() < kMostRounds) {
+    Workspace workspace;
+    Matrix x(problem.inputs(), problem.samples());
+    const Vector statistics = network.statistics(theta, input, workspace);
+    const auto infer = [&] { network.infer(theta, statistics, input, x, workspace); };
+    seconds_of(1, infer);  // allocates
+    const double once = seconds_of(1, infer);
+    const auto calls = static_cast<std::size_t>(
+        std::clamp(kRoundSeconds / std::max(once, 1e-9), 1.0, static_cast<double>(kMostPairs)));
+    std::vector<Real> seconds;
+    for (std::size_t i = 0; i < calls; ++i) seconds.push_back(seconds_of(once, infer));
+    rounds.calls += calls;
+    rounds.ratios.push_back(std::max(at_share(seconds, 0.5), 1e-9) / forward /
+                            static_cast<Real>(problem.samples()));
+    if (processor_seconds() - begin > kLongOracleSeconds && rounds.ratios.size() >= kFewRounds)
+      break;
+  }
+  return price_of(kInference, 0, forward, rounds);
 }
 
 }  // namespace
@@ -186,14 +215,15 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build) 
   measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
   const OracleCounts declared = problem.prices();
   const double forward = measured.forward_seconds;
-  measured.oracles.push_back(price_of(Oracle::forward, 1, forward, alone));
+  measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, forward, alone));
+  if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward));
   for (const Oracle oracle : measured_ones(problem.offers())) {
     if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) break;
     const auto kind = static_cast<std::size_t>(oracle);
     const double expected = forward * static_cast<double>(declared[kind]);
     if (row_of(oracle).is_dense_matrix && expected > kMatrixSeconds) continue;
     Rounds rounds = rounds_of(problem, {oracle, forward, expected});
-    measured.oracles.push_back(price_of(oracle, declared[kind], forward, rounds));
+    measured.oracles.push_back(price_of(name_of(oracle), declared[kind], forward, rounds));
   }
   return measured;
 }

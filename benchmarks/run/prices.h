@@ -18,9 +18,9 @@ using problems::Problem;
 inline constexpr double kLeastForwardSeconds = 1e-6;
 bool is_resolved(const MeasuredPrice& price, double forward_seconds);
 
-// Every oracle that the problem offers, at its start. Some 10 ms an oracle; a dense matrix that
-// would take more than 10 ms, as its declared price has it, is left out, and what is left when a
-// second has gone.
+// Every oracle that the problem offers, at its start, and of a learned one its network alone. Some
+// 10 ms an oracle; a dense matrix that would take more than 10 ms, as its declared price has it, is
+// left out, and what is left when a second has gone.
 MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 
 // Whose prices these are: they hold for one build on one processor.

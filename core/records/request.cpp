@@ -12,6 +12,15 @@ namespace isoline {
 
 bool asks_to_learn(const OptionValues& options) { return options.text("mode") == "learn"; }
 
+bool is_instance_of(OptionValues direct, OptionValues learned) {
+  if (asks_to_learn(direct) || !asks_to_learn(learned)) return false;
+  for (const char* of_learning : {"mode", "network", "batch", "data", "epoch", "watch"}) {
+    direct.erase(of_learning);
+    learned.erase(of_learning);
+  }
+  return direct == learned;
+}
+
 // A JSON object with its keys in order.
 CellNames::CellNames(const Request& request) {
   Json budget;

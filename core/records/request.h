@@ -32,6 +32,9 @@ struct Component {
 
 // Whether complete options ask for the learning problem. The one place that says how.
 bool asks_to_learn(const OptionValues& options);
+// Whether the direct problem with these options is an instance of what the learning one of the same
+// name learns: all options agree but those of learning itself.
+bool is_instance_of(OptionValues direct, OptionValues learned);
 
 struct Request {
   Component problem, optimizer;

@@ -38,6 +38,9 @@ struct MeasuredPrice {
   bool resolved = true;  // else overhead and noise: the declared one says more
 };
 
+// The row of a learned problem that is no oracle: what its network alone takes, an example.
+inline constexpr const char* kInference = "inference";
+
 // Measured at the published instance of a problem, with nothing else running.
 struct MeasuredPrices {
   std::string build, processor;  // of the program and the machine that measured

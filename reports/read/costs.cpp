@@ -35,7 +35,8 @@ bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price) {
 Prices::Prices(const Sheet* sheet) {
   if (sheet == nullptr || !sheet->prices) return;
   for (const MeasuredPrice& each : sheet->prices->oracles)
-    if (is_told(*sheet->prices, each)) measured_[each.oracle] = each.price;
+    if (each.oracle != kInference && is_told(*sheet->prices, each))
+      measured_[each.oracle] = each.price;
 }
 
 Real Prices::price(const Record& record, std::size_t kind) const {

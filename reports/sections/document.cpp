@@ -22,6 +22,7 @@ Document document_of(Comparison comparison, std::vector<Judgement> claims) {
   document.sections = {standings_section(c),
                        problems_section(c),
                        learned_section(c),
+                       amortized_section(c),
                        sweeps_section(c),
                        spectra_section(c),
                        claims_section(document.claims),

@@ -14,6 +14,7 @@ namespace isoline::reports {
 Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
 Section learned_section(const Comparison& comparison);
+Section amortized_section(const Comparison& comparison);  // training once, or solving each
 Section claims_section(const std::vector<Judgement>& judgements);
 // A line a claim, the refuted first.
 Section claims_summary(const std::vector<Judgement>& judgements);

@@ -54,6 +54,22 @@ TEST(Prices, AreMeasuredOfEveryOracleThatIsOffered) {
   }
 }
 
+// A network sees one pass of a batch, shared by its samples; the solve has physics besides.
+TEST(Prices, OfALearnedProblemTellWhatItsNetworkTakesAnExample) {
+  const auto inference = [](const std::string& name, const OptionValues& options) {
+    const Problem problem = make_problem(catalog(), request_of(name, options).problem, 0);
+    const MeasuredPrices measured = measure_prices(problem, "b");
+    const auto at = std::ranges::find(measured.oracles, kInference, &MeasuredPrice::oracle);
+    return at == measured.oracles.end() ? std::optional<MeasuredPrice>() : *at;
+  };
+  EXPECT_FALSE(inference("sine", {}));
+  const auto price = inference("sine", {{"mode", "learn"}, {"batch", 100}});
+  ASSERT_TRUE(price);
+  EXPECT_GT(price->price, 0);
+  EXPECT_LT(price->price, 0.1) << "a hundredth of a batch, or a few of them";
+  EXPECT_EQ(price->declared, 0);
+}
+
 TEST(Prices, OfMatricesAreLeftOutWhereOneWouldTakeTooLong) {
   const OptionValues grid{{"N", 64}};  // 4096 unknowns: a Jacobian of 128 MiB
   const Problem problem = make_problem(catalog(), request_of("poisson", grid).problem, 0);
