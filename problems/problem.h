@@ -181,6 +181,7 @@ class Draw {
  public:
   Draw(std::uint64_t seed, std::string problem) : seed_(seed), problem_(std::move(problem)) {}
   bool is_published() const { return seed_ == 0; }
+  std::uint64_t seed() const { return seed_; }  // for who draws by streams of its own
   RandomStream stream(std::string_view purpose, std::uint64_t index = 0) const {
     return {seed_, problem_, purpose, index};
   }
