@@ -1,5 +1,5 @@
-# `cmake --install` exports Isoline::core, Isoline::problems, …: components can live in a tree of
-# their own, found by find_package(Isoline).
+# `cmake --install` exports Isoline::core, Isoline::problems, … and isoline_program(): components can
+# live in a tree of their own, found by find_package(Isoline). Libraries in C need isoline.h alone.
 include(CMakePackageConfigHelpers)
 
 set(libraries core networks problems optimizers reports benchmarks)
@@ -17,11 +17,13 @@ include(cmake/Package.cmake)
 set(package lib/cmake/Isoline)
 install(EXPORT IsolineTargets NAMESPACE Isoline:: DESTINATION ${package})
 install(FILES cmake/Dependencies.cmake cmake/Commit.cmake cmake/BuildInfo.cmake
-        DESTINATION ${package})
+              cmake/Program.cmake cmake/program.cpp.in DESTINATION ${package})
+install(FILES clients/c/isoline.h DESTINATION include)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/IsolineConfig.cmake @ONLY CONTENT [[
 include("${CMAKE_CURRENT_LIST_DIR}/Dependencies.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/IsolineTargets.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/Commit.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/Program.cmake")
 ]])
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/IsolineConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)

@@ -2,9 +2,9 @@
 #
 # Digests of what computes a run, written as the C++ function tree_sources(): "harness" is all of
 # core/ outside core/records/ and whatever benchmarks/run/execute.cpp reaches; each file that
-# registers a component has the digest of itself and of what it reaches besides. A file reaches what
-# it includes; a header reaches the file of its name that implements it, and those without a header
-# of their own that include it first.
+# registers a component, or adds those of others, has the digest of itself and of what it reaches
+# besides. A file reaches what it includes; a header reaches the file of its name that implements it,
+# and those without a header of their own that include it first.
 cmake_minimum_required(VERSION 3.25)
 set(rooms core networks problems optimizers benchmarks/plan benchmarks/run)
 
@@ -30,7 +30,7 @@ foreach(file IN LISTS files)
     continue()
   endif()
   cmake_path(GET file STEM stem)
-  file(STRINGS ${ROOT}/${file} definition REGEX "void register_${stem}\\(" LIMIT_COUNT 1)
+  file(STRINGS ${ROOT}/${file} definition REGEX "void (register|add)_${stem}\\(" LIMIT_COUNT 1)
   cmake_path(REPLACE_EXTENSION file .h OUTPUT_VARIABLE header)
   if(definition)
     list(APPEND components ${file})

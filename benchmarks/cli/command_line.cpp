@@ -164,6 +164,17 @@ std::string sentence_on(const CLI::App& verb, const std::string& unexpected) {
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
 
+// The libraries that a verb is given, where it takes any.
+template <class Arguments>
+std::vector<std::string> plugins_of(const Arguments& given) {
+  if constexpr (requires { given.plugins; })
+    return given.plugins;
+  else if constexpr (requires { given.run.plugins; })
+    return given.run.plugins;
+  else
+    return {};
+}
+
 template <class Kind>
 bool is_a(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
@@ -185,7 +196,9 @@ class CommandLine {
     declare(parsed, *given);
     declared.footer(notes_of(name));
     declared.callback([this, given, verb] {
-      if (runs_) exit_code_ = verb(*given, session_);
+      if (!runs_) return;
+      session_.set_plugins(plugins_of(*given));
+      exit_code_ = verb(*given, session_);
     });
     return *given;
   }
@@ -242,6 +255,7 @@ void CommandLine::add_verbs_on_components() {
   add("check", "Check a problem's derivatives, adjoint and inverse against each other", check_verb);
   add("audit", "Measure optimizers' scaling, invariance, order, consistency and oracles",
       audit_verb);
+  add("new", "Write the file that a problem or optimizer of your own starts from", new_verb);
   add("validate", "Validate records, suites and all other JSON files of Isoline by their schemas",
       validate_verb);
   add("tune", "Choose one option of each method for each problem, with an equal budget for all",

@@ -19,6 +19,7 @@ _isoline() {
     --problem) list=$("$program" list problems --names 2>/dev/null) ;;
     --optimizer) list=$("$program" list optimizers --names 2>/dev/null) ;;
     --out|--from) COMPREPLY=($(compgen -d -- "$word")); return ;;
+    --plugin) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --retry) list="@STATUSES@" ;;
     --rates) COMPREPLY=($(compgen -W "builtin none" -- "$word") $(compgen -f -- "$word")); return ;;
   esac
@@ -39,6 +40,7 @@ _isoline() {
          check) list=$("$program" list problems --names 2>/dev/null) ;;
          claims) list=$("$program" claims --list --all 2>/dev/null | grep -oE '^  [a-z0-9-]+') ;;
          help) list="@VERBS@" ;;
+         new) list="problem optimizer" ;;
          list) list="problems networks optimizers suites all" ;;
          completion) list=bash ;;
          *) COMPREPLY=($(compgen -f -- "$word")); return ;;

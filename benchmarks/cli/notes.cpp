@@ -108,6 +108,14 @@ constexpr const char* kClaimsNotes =
     "partly where only the direction holds.\n"
     "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 none can be compared.";
 
+constexpr const char* kNew =
+    "  isoline new problem my-chain                 problems/my_chain.cpp, for a program of your own\n"
+    "  isoline new optimizer my-method --c          my_method.c, for a library\n"
+    "  isoline new problem my-simulator --python    my_simulator.py, for a process";
+constexpr const char* kNewNotes =
+    "What it writes builds and passes its checks as it is; nothing is overwritten. Beside it goes what\n"
+    "it is built with, where that is missing: CMakeLists.txt, or isoline.h.";
+
 constexpr const char* kTune =
     "  isoline tune rosenbrock,heat --optimizer gd,adam --table rates.json\n"
     "  isoline tune square --optimizer gd --grid rate=1e-3..1x7 --unit cauchy\n"
@@ -145,6 +153,7 @@ const std::map<std::string_view, Notes>& notes() {
       {"describe", {"  isoline describe sip\n  isoline describe 'sine[xi=32]' --json"}},
       {"check", {"  isoline check rosenbrock\n  isoline check 'poisson[N=8|16]' --seed 3"}},
       {"audit", {"  isoline audit gd adam sip\n  isoline audit --out results/quick --all"}},
+      {"new", {kNew, kNewNotes}},
       {"validate", {"  isoline validate results/quick my-suite.json"}},
       {"tune", {kTune, kTuneNotes}},
       {"train", {"  isoline train 'sine[xi=32]' --optimizer sip --iterations 1000 --out net.json"}},

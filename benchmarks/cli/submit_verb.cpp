@@ -153,6 +153,7 @@ int submit_verb(const SubmitArguments& given, Session& session) {
   const RunArguments run = read_run_arguments("isoline submit --", given.run);
   require(run.shard.empty(), "--shard is each task's own: leave it out after --");
   require(!run.is_dry && !run.in_process, "a task writes records: no --dry-run, no --in-process");
+  session.set_plugins(run.plugins);
   const Undertaking all = undertaking_of(run, session.catalog());
   Preview shown = foreseen(all, run, {}, result_folders(all.folder), session);
   keep_predictions(all.folder, shown);

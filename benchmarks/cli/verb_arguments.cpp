@@ -8,6 +8,13 @@ namespace {
 
 constexpr WholeLaw kJobs{1, 1024}, kThreads{1, 256}, kShards{1, 100'000};
 
+void declare_plugins(VerbArguments& verb, std::vector<std::string>& plugins) {
+  verb.texts("--plugin", plugins,
+             "Shared library whose problems and optimizers join those of `isoline list`; may be "
+             "given more than once")
+      .one_each();
+}
+
 void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("SUITE", given.suite,
             "Name of a suite, or path of one (default: quick); --problem and --optimizer keep the "
@@ -25,6 +32,7 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
   verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
+  declare_plugins(verb, given.plugins);
 }
 
 void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
@@ -128,11 +136,13 @@ void declare(VerbArguments& verb, BaselineArguments& given) {
   verb.whole("--perturbations", given.perturbations,
              "Runs of each cell from a start that differs in the last bit", {0, 100});
   verb.whole("--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
+  declare_plugins(verb, given.plugins);
 }
 
 void declare(VerbArguments& verb, ReplayArguments& given) {
   verb.texts("RECORD", given.records, "Records of `isoline run`: files in runs/").required();
   verb.memory("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)");
+  declare_plugins(verb, given.plugins);
 }
 
 void declare(VerbArguments& verb, MergeArguments& given) {
@@ -182,17 +192,20 @@ void declare(VerbArguments& verb, ListArguments& given) {
       .shown();
   verb.flag("--json", given.as_json, "Print JSON");
   verb.flag("--names", given.names_only, "Print names only, one a line");
+  declare_plugins(verb, given.plugins);
 }
 
 void declare(VerbArguments& verb, DescribeArguments& given) {
   verb.text("NAME", given.name, "A name of `isoline list`, or a spec").required();
   verb.flag("--json", given.as_json, "Print JSON");
+  declare_plugins(verb, given.plugins);
 }
 
 void declare(VerbArguments& verb, CheckArguments& given) {
   verb.text("SPEC", given.spec, "Problems, as in `isoline run` (default: all)");
   verb.seed("--seed", given.seed, "Seed of the instance and of the directions");
   verb.flag("--json", given.as_json, "Print JSON");
+  declare_plugins(verb, given.plugins);
 }
 
 void declare(VerbArguments& verb, AuditArguments& given) {
@@ -200,6 +213,7 @@ void declare(VerbArguments& verb, AuditArguments& given) {
   verb.text("--out", given.out, "Folder to write audit.json to, as reports read it");
   verb.flag("--all", given.lists_all, "Print every table whole, not the first 20 lines");
   verb.flag("--json", given.as_json, "Print JSON");
+  declare_plugins(verb, given.plugins);
 }
 
 void declare(VerbArguments& verb, ValidateArguments& given) {
@@ -228,6 +242,7 @@ void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("--table", given.table, "Table of rates to write or to add to");
   verb.flag("--all", given.lists_all, "List every pair, not the first 20");
   verb.flag("--json", given.as_json, "Print the rows of the table as JSON");
+  declare_plugins(verb, given.plugins);
 }
 
 void declare(VerbArguments& verb, TrainArguments& given) {
@@ -242,6 +257,14 @@ void declare(VerbArguments& verb, TrainArguments& given) {
             "Most time of training: 10s, 2m; training that takes twice that is killed");
   verb.memory("--memory", given.memory_bytes, "Most memory (default: 4GB)");
   verb.flag("--quiet", given.quiet, "Show no progress");
+  declare_plugins(verb, given.plugins);
+}
+
+void declare(VerbArguments& verb, NewArguments& given) {
+  verb.text("KIND", given.kind, "problem or optimizer").one_of({"problem", "optimizer"}).required();
+  verb.text("NAME", given.name, "Its name: lower-case letters, digits and hyphens").required();
+  const Argument& c = verb.flag("--c", given.is_c, "In C, for --plugin");
+  verb.flag("--python", given.is_python, "In Python, for process[command=…]").excludes(c);
 }
 
 void declare(VerbArguments& verb, InferArguments& given) {

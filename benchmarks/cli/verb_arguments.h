@@ -62,6 +62,7 @@ void declare(VerbArguments& verb, AuditArguments& given);
 void declare(VerbArguments& verb, ValidateArguments& given);
 void declare(VerbArguments& verb, TuneArguments& given);
 void declare(VerbArguments& verb, TrainArguments& given);
+void declare(VerbArguments& verb, NewArguments& given);
 void declare(VerbArguments& verb, InferArguments& given);
 void declare(VerbArguments& verb, ServeArguments& given);
 void declare(VerbArguments& verb, CompletionArguments& given);

@@ -24,6 +24,7 @@ struct RunArguments {
   bool keeps_fields = false;
   bool keeps_spectra = false;
   bool in_process = false;
+  std::vector<std::string> plugins;  // libraries, which join the registries first
 };
 int run_verb(const RunArguments& given, Session& session);
 
@@ -57,12 +58,14 @@ struct BaselineArguments {
   std::vector<std::string> folders;
   std::string out;
   int perturbations = 2, jobs = 0;
+  std::vector<std::string> plugins;
 };
 int baseline_verb(const BaselineArguments& given, Session& session);
 
 struct ReplayArguments {
   std::vector<std::string> records;
   std::int64_t memory_bytes = 0;  // 0: as the runner has it
+  std::vector<std::string> plugins;
 };
 int replay_verb(const ReplayArguments& given, Session& session);
 
@@ -105,12 +108,14 @@ int claims_verb(const ClaimArguments& given, Session& session);
 struct ListArguments {
   std::string kind = "all";
   bool as_json = false, names_only = false;
+  std::vector<std::string> plugins;
 };
 int list_verb(const ListArguments& given, Session& session);
 
 struct DescribeArguments {
   std::string name;
   bool as_json = false;
+  std::vector<std::string> plugins;
 };
 int describe_verb(const DescribeArguments& given, Session& session);
 
@@ -118,6 +123,7 @@ struct CheckArguments {
   std::string spec;
   std::uint64_t seed = 0;
   bool as_json = false;
+  std::vector<std::string> plugins;
 };
 int check_verb(const CheckArguments& given, Session& session);
 
@@ -125,6 +131,7 @@ struct AuditArguments {
   std::vector<std::string> names;
   std::string out;
   bool as_json = false, lists_all = false;
+  std::vector<std::string> plugins;
 };
 int audit_verb(const AuditArguments& given, Session& session);
 
@@ -139,6 +146,7 @@ struct TuneArguments {
   std::int64_t iterations = 100'000, work = 2000;
   int jobs = 0;
   bool as_json = false, lists_all = false;
+  std::vector<std::string> plugins;
 };
 int tune_verb(const TuneArguments& given, Session& session);
 
@@ -149,8 +157,15 @@ struct TrainArguments {
   double seconds = 0;                                // 0: no limit
   int threads = 1;
   bool quiet = false;
+  std::vector<std::string> plugins;
 };
 int train_verb(const TrainArguments& given, Session& session);
+
+struct NewArguments {
+  std::string kind, name;
+  bool is_c = false, is_python = false;  // else C++
+};
+int new_verb(const NewArguments& given, Session& session);
 
 struct InferArguments {
   std::string network, input, output;

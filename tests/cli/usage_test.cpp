@@ -14,9 +14,9 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run",  "plan",   "report", "compare",    "baseline", "merge",  "submit",   "status",
-        "best", "claims", "list",   "describe",   "check",    "audit",  "validate", "replay",
-        "tune", "train",  "infer",  "completion", "help",     "version"}) {
+       {"run",    "plan",   "report", "compare",  "baseline",   "merge", "submit", "status",
+        "best",   "claims", "list",   "describe", "check",      "audit", "new",    "validate",
+        "replay", "tune",   "train",  "infer",    "completion", "help",  "version"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
@@ -32,7 +32,7 @@ TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   EXPECT_TRUE(
       contains(completion,
                "\"run plan report compare baseline replay merge submit status best claims list "
-               "describe check audit "
+               "describe check audit new "
                "validate tune train infer completion help version  --help --version\""))
       << completion;
 }

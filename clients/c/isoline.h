@@ -1,0 +1,106 @@
+// Problems and optimizers for Isoline in C, or in any language that has C's calling convention. A
+// shared library exports the one function isoline_plugin(), and `isoline run --plugin ./libmine.so`
+// knows what it brings by its name, as every other verb does that takes --plugin.
+//
+// Numbers are doubles, matrices lie column by column. A function returns 0, and anything else where
+// it has no answer: what it was to write then counts as not a number. It keeps no pointer that it
+// is given. Calls come one at a time; each run has a process of its own.
+#pragma once
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ISOLINE_VERSION = 1 };
+
+// What a problem can do, and what an optimizer asks of a problem.
+enum {
+  ISOLINE_FORWARD = 1 << 0,      // y = P(x)
+  ISOLINE_PUSHFORWARD = 1 << 1,  // J v
+  ISOLINE_PULLBACK = 1 << 2,     // Jᵀ u
+  ISOLINE_JACOBIAN = 1 << 3,     // J, (m, k)
+  ISOLINE_INVERSE = 1 << 4,      // an x near x0 with P(x) = y
+  ISOLINE_TRUTH = 1 << 5,        // of a problem alone: the x* that made the target
+  ISOLINE_STEP = 1 << 8,         // of an optimizer alone: step() is one iteration,
+  ISOLINE_SOLVE = 1 << 9,        // or the whole solve, which reports each iteration itself
+  ISOLINE_COMPARES = 1 << 10     // besides: it compares losses from step to step
+};
+
+// How far an inverse can be trusted.
+enum { ISOLINE_EXACT = 1, ISOLINE_DAMPED, ISOLINE_ESTIMATE, ISOLINE_APPROXIMATE };
+
+// What step() returns.
+enum { ISOLINE_RUNNING = 0, ISOLINE_CONVERGED, ISOLINE_STALLED, ISOLINE_FAILED };
+
+// A number that a user may set: `mine[rate=0.1]`.
+typedef struct isoline_option {
+  const char *name, *about;
+  double standard, low, high;  // its default, and the range that it is held to
+  uint32_t is_tuned;           // of an optimizer: `isoline tune` chooses this one
+} isoline_option;
+
+// What a problem says of an instance. It comes as zeros, and `minimum` as not a number.
+typedef struct isoline_sizes {
+  uint64_t inputs, outputs;  // k, m
+  uint64_t kept;             // doubles that forward() leaves for the products at the same x
+  double minimum;            // the least loss that can be attained, where that is known
+  uint32_t inverse;          // ISOLINE_EXACT, …, where there is an inverse
+} isoline_sizes;
+
+// The problem as an optimizer sees it: r = (y − y*)/√B over its B samples, J = ∂r/∂θ, and y*. The
+// functions return 0, and anything else where the run is over: step() then returns at once, with
+// any value. All but loss() and report() are of the θ that was linearized last.
+typedef struct isoline_oracles isoline_oracles;
+struct isoline_oracles {
+  uint64_t unknowns, residuals;  // n, m
+  const double* target;          // y*, (m)
+  int (*linearize)(isoline_oracles* f, const double* theta, double* loss);
+  int (*loss)(isoline_oracles* f, const double* theta, double* loss);  // of a trial
+  int (*gradient)(isoline_oracles* f, double* g);                      // ∇L, (n): a pullback
+  int (*residual)(isoline_oracles* f, double* r);                      // (m)
+  int (*pushforward)(isoline_oracles* f, const double* v, double* Jv);
+  int (*pullback)(isoline_oracles* f, const double* u, double* JTu);
+  int (*jacobian)(isoline_oracles* f, double* J);  // (m, n)
+  int (*inverse)(isoline_oracles* f, const double* y, double* x);
+  int (*report)(isoline_oracles* f, const double* theta);  // of ISOLINE_SOLVE: an iteration
+};
+
+// A problem or an optimizer. Functions that its capabilities do not name may be null, and so may
+// `note`, `open`, `close` and `start`.
+typedef struct isoline_component {
+  uint32_t version, bytes;  // ISOLINE_VERSION, sizeof(isoline_component)
+  uint64_t capabilities;    // ISOLINE_FORWARD | …
+  const char* name;         // lower-case letters, digits and hyphens
+  const char *title, *formula, *source, *note;
+  const isoline_option* options;
+  uint64_t option_count;
+
+  // An instance, which every function below is given as `self`. `options` are in the order above;
+  // seed 0 is the published instance of a problem, and what an optimizer gets. Null: it failed.
+  void* (*open)(const double* options, uint64_t seed);
+  void (*close)(void* self);
+
+  // A problem: ISOLINE_FORWARD and what it has of derivatives. Products that it lacks follow from
+  // its Jacobian; without any it is for methods that ask for none. `truth` is null where
+  // ISOLINE_TRUTH is not set. Seeds other than 0 start near `start`, as Isoline draws it.
+  int (*dimension)(void* self, isoline_sizes* sizes);
+  int (*instance)(void* self, double* start, double* target, double* truth);  // (k), (m), (k)
+  int (*forward)(void* self, const double* x, double* y, double* kept);
+  int (*pushforward)(void* self, const double* x, const double* kept, const double* v, double* Jv);
+  int (*pullback)(void* self, const double* x, const double* kept, const double* u, double* JTu);
+  int (*jacobian)(void* self, const double* x, const double* kept, double* J);
+  int (*inverse)(void* self, const double* y, const double* x0, double* x);
+
+  // An optimizer: ISOLINE_STEP or ISOLINE_SOLVE, with what it asks for. step() moves θ, (n).
+  int (*start)(void* self, isoline_oracles* f, const double* theta);
+  int (*step)(void* self, isoline_oracles* f, double* theta);
+} isoline_component;
+
+// What a library exports: its components by number, from 0; null behind the last.
+const isoline_component* isoline_plugin(uint64_t which);
+
+#ifdef __cplusplus
+}
+#endif

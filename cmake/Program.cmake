@@ -1,0 +1,40 @@
+# isoline_program(target [PROBLEMS files...] [OPTIMIZERS files...] [SOURCES files...])
+#
+# The program <target>: every verb of Isoline over its own components and these. By the rule of the
+# tree problems/my_chain.cpp must define isoline::problems::register_my_chain(ProblemRegistry&), and
+# an optimizer's file likewise; SOURCES are compiled besides. Its records name the commit of the
+# repository that the calling CMakeLists.txt lies in.
+function(isoline_program target)
+  cmake_parse_arguments(PARSE_ARGV 1 "" "" "" "PROBLEMS;OPTIMIZERS;SOURCES")
+  if(_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "isoline_program(${target}): ${_UNPARSED_ARGUMENTS} stand after none of "
+                        "PROBLEMS, OPTIMIZERS and SOURCES")
+  endif()
+  set(problems ${_PROBLEMS})
+  set(optimizers ${_OPTIMIZERS})
+  set(entry_of_problems ProblemEntry)
+  set(entry_of_optimizers OptimizerEntry)
+  foreach(room problems optimizers)
+    string(APPEND declarations "namespace isoline::${room} {\n")
+    foreach(file IN LISTS ${room})
+      cmake_path(ABSOLUTE_PATH file)
+      set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+      cmake_path(GET file STEM name)
+      file(STRINGS ${file} definition REGEX "void register_${name}\\(" LIMIT_COUNT 1)
+      if(NOT definition)
+        message(FATAL_ERROR "${file} must define isoline::${room}::register_${name}(Registry<"
+                            "${entry_of_${room}}>&); a file that is no component stands after SOURCES")
+      endif()
+      string(APPEND declarations "void register_${name}(Registry<${entry_of_${room}}>&);\n")
+      string(APPEND calls "  isoline::${room}::register_${name}(catalog.${room});\n")
+    endforeach()
+    string(APPEND declarations "}\n")
+  endforeach()
+  set(main ${CMAKE_CURRENT_BINARY_DIR}/${target}_main.cpp)
+  configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/program.cpp.in ${main} @ONLY)
+  add_executable(${target} ${main} ${_PROBLEMS} ${_OPTIMIZERS} ${_SOURCES})
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE Isoline::cli)
+  isoline_names_commit(${target})
+endfunction()

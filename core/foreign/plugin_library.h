@@ -1,0 +1,53 @@
+// The door to shared libraries: the components that one brings by the struct of
+// clients/c/isoline.h, each held to the law of that struct before any function of it is called.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/foreign/foreign.h"
+#include "core/options.h"
+#include "core/real.h"
+
+struct isoline_component;
+
+namespace isoline {
+
+struct PluginComponent {
+  // A copy, which the library cannot change any more; what it points to lives as long as the
+  // process.
+  std::shared_ptr<const isoline_component> table;
+  std::string name, title, formula, source, note;
+  OptionTable options;
+  std::string tuned;  // the option that tuning chooses; empty: there is none
+  Foreign foreign;
+  bool is_optimizer = false;
+
+  bool can(std::uint64_t capability) const;
+  std::string words() const;  // "./libmine.so: spring"
+};
+
+// UsageError, which names the path, where it is no library, no plugin, of another version, or
+// promises what it has not.
+std::vector<PluginComponent> load_plugin(const std::string& path);
+
+// One that is open as long as this lives.
+class PluginInstance {
+ public:
+  PluginInstance(PluginComponent of, const OptionValues& options, std::uint64_t seed);
+  ~PluginInstance();
+  PluginInstance(const PluginInstance&) = delete;
+  PluginInstance& operator=(const PluginInstance&) = delete;
+
+  const PluginComponent& of() const { return of_; }
+  const isoline_component& table() const { return *of_.table; }
+  void* self() const { return self_; }
+
+ private:
+  const PluginComponent of_;
+  void* self_ = nullptr;
+};
+
+}  // namespace isoline

@@ -1,0 +1,241 @@
+// A method by the functions of a shared library, which asks the meter through functions of its own.
+// No exception crosses the library: it is kept, and thrown again when the library has returned.
+#include "optimizers/plugin_method.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+#include <stdexcept>
+
+#include "clients/c/isoline.h"
+
+namespace isoline::optimizers {
+namespace {
+
+using Eigen::Map;
+
+// The problem as the library sees it.
+struct Questions : isoline_oracles {
+  Meter& f;
+  const bool is_whole_solve;
+  bool is_linearized = false;
+  Linearization at;
+  std::exception_ptr error = nullptr;
+  Vector theta, wide;  // (n), (m·B): what comes from the library, aligned as ours is
+  Matrix narrow;       // (m, B)
+
+  Questions(Meter& meter, bool solves);
+
+  // r and J are divided by it: √B.
+  Real root() const { return std::sqrt(static_cast<Real>(f.samples())); }
+  // Products are of a point.
+  Linearization& point() {
+    require(is_linearized, "the oracles but loss() and report() come after linearize()");
+    return at;
+  }
+  bool is_over() const {
+    if (error || f.status() != Status::running) return true;
+    return is_whole_solve && f.is_spent();
+  }
+  BatchOut taken(const double* y) {
+    const Matrix& like = f.target();
+    narrow = Map<const Matrix>(y, like.rows(), like.cols());
+    return narrow;
+  }
+};
+
+// Answers one question; 1 where the run is over.
+template <class Answer>
+int answer(isoline_oracles* asked, const Answer& of) noexcept {
+  Questions& all = static_cast<Questions&>(*asked);
+  if (all.is_over()) return 1;
+  try {
+    of(all);
+    return 0;
+  } catch (...) {
+    all.error = std::current_exception();
+    return 1;
+  }
+}
+
+int linearize(isoline_oracles* asked, const double* theta, double* loss) {
+  return answer(asked, [&](Questions& all) {
+    all.theta = Map<const Vector>(theta, all.theta.size());
+    all.f.linearize(all.theta, all.at);
+    all.is_linearized = true;
+    *loss = all.at.loss();
+  });
+}
+
+int loss_at(isoline_oracles* asked, const double* theta, double* loss) {
+  return answer(asked, [&](Questions& all) {
+    all.theta = Map<const Vector>(theta, all.theta.size());
+    *loss = all.f.loss(all.theta);
+  });
+}
+
+int gradient(isoline_oracles* asked, double* g) {
+  return answer(asked, [&](Questions& all) {
+    all.point().gradient(all.theta);
+    Map<Vector>(g, all.theta.size()) = all.theta;
+  });
+}
+
+int residual(isoline_oracles* asked, double* r) {
+  return answer(asked, [&](Questions& all) {
+    all.point().residual(all.wide);
+    Map<Vector>(r, all.wide.size()) = all.wide;
+  });
+}
+
+int pushforward(isoline_oracles* asked, const double* v, double* Jv) {
+  return answer(asked, [&](Questions& all) {
+    all.theta = Map<const Vector>(v, all.theta.size());
+    all.narrow.resize(all.f.target().rows(), all.f.target().cols());
+    all.point().pushforward(all.theta, all.narrow);
+    Map<Vector>(Jv, all.narrow.size()) = all.narrow.reshaped() / all.root();
+  });
+}
+
+int pullback(isoline_oracles* asked, const double* u, double* JTu) {
+  return answer(asked, [&](Questions& all) {
+    all.point().pullback(all.taken(u), all.theta);
+    Map<Vector>(JTu, all.theta.size()) = all.theta / all.root();
+  });
+}
+
+int jacobian(isoline_oracles* asked, double* J) {
+  return answer(asked, [&](Questions& all) {
+    const Matrix& found = all.point().jacobian();
+    Map<Matrix>(J, found.rows(), found.cols()) = found / all.root();
+  });
+}
+
+int inverse(isoline_oracles* asked, const double* y, double* x) {
+  return answer(asked, [&](Questions& all) {
+    const Success success =
+        all.point().local_inverse(all.taken(y), Map<Matrix>(x, all.theta.size(), 1));
+    if (!success.all()) Map<Vector>(x, all.theta.size()).setConstant(std::nan(""));
+  });
+}
+
+int report(isoline_oracles* asked, const double* theta) {
+  return answer(asked,
+                [&](Questions& all) {
+                  require(all.is_whole_solve,
+                          "report() is for ISOLINE_SOLVE: each step() is an iteration");
+                  all.theta = Map<const Vector>(theta, all.theta.size());
+                  all.f.iterate(all.theta);
+                }) != 0 ||
+         static_cast<Questions&>(*asked).is_over();
+}
+
+Questions::Questions(Meter& meter, bool solves)
+    : isoline_oracles{}, f(meter), is_whole_solve(solves), theta(meter.unknowns()) {
+  unknowns = static_cast<std::uint64_t>(f.unknowns());
+  residuals = static_cast<std::uint64_t>(f.residuals());
+  isoline_oracles::linearize = optimizers::linearize;
+  loss = loss_at;
+  isoline_oracles::gradient = optimizers::gradient;
+  isoline_oracles::residual = optimizers::residual;
+  isoline_oracles::pushforward = optimizers::pushforward;
+  isoline_oracles::pullback = optimizers::pullback;
+  isoline_oracles::jacobian = optimizers::jacobian;
+  isoline_oracles::inverse = optimizers::inverse;
+  isoline_oracles::report = optimizers::report;
+}
+
+class PluginMethod final : public Optimizer {
+ public:
+  PluginMethod(PluginComponent component, OptionValues options)
+      : component_(std::move(component)), options_(std::move(options)) {}
+
+  void start(Meter& f, const Vector& theta) override {
+    instance_ = std::make_unique<PluginInstance>(component_, options_, 0);
+    questions_ = std::make_unique<Questions>(f, reports_iterations());
+    if (table().start == nullptr) return;
+    refresh(f);
+    const int told = table().start(instance_->self(), questions_.get(), theta.data());
+    throw_what_was_kept();
+    if (told != 0) throw std::runtime_error(component_.words() + ": start() failed");
+  }
+
+  Status step(Meter& f, Vector& theta) override {
+    refresh(f);
+    const int told = table().step(instance_->self(), questions_.get(), theta.data());
+    throw_what_was_kept();
+    if (reports_iterations()) {
+      if (f.status() != Status::running) return f.status();
+      if (f.is_spent()) return Status::budget;
+    }
+    return status_of(told);
+  }
+
+  bool reports_iterations() const override { return component_.can(ISOLINE_SOLVE); }
+
+ private:
+  const isoline_component& table() const { return *component_.table; }
+  void refresh(Meter& f) { questions_->target = f.target().data(); }  // fresh samples have others
+  void throw_what_was_kept() {
+    if (questions_->error) std::rethrow_exception(questions_->error);
+  }
+
+  Status status_of(int told) const {
+    switch (told) {
+      case ISOLINE_RUNNING:
+        return reports_iterations() ? Status::stalled : Status::running;
+      case ISOLINE_CONVERGED:
+        return Status::converged;
+      case ISOLINE_STALLED:
+        return Status::stalled;
+      case ISOLINE_FAILED:
+        throw std::runtime_error(component_.words() + ": step() failed");
+      default:
+        throw std::runtime_error(fmt::format(
+            "{}: step() must return from ISOLINE_RUNNING, 0, to ISOLINE_FAILED, {}, got {}",
+            component_.words(), static_cast<int>(ISOLINE_FAILED), told));
+    }
+  }
+
+  const PluginComponent component_;
+  const OptionValues options_;
+  std::unique_ptr<PluginInstance> instance_;
+  std::unique_ptr<Questions> questions_;
+};
+
+OracleSet needs_of(const PluginComponent& component) {
+  OracleSet needs{Oracle::forward};
+  if (component.can(ISOLINE_PUSHFORWARD)) needs.add(Oracle::pushforward);
+  if (component.can(ISOLINE_PULLBACK)) needs.add(Oracle::pullback);
+  if (component.can(ISOLINE_JACOBIAN)) needs.add(Oracle::jacobian);
+  if (component.can(ISOLINE_INVERSE)) needs.add(Oracle::inverse);
+  return needs;
+}
+
+}  // namespace
+
+void add_plugin_method(OptimizerRegistry& registry, const PluginComponent& component) {
+  OptimizerEntry entry{
+      .name = component.name,
+      .title = component.title,
+      .family = Family::foreign,
+      .formula = component.formula,
+      .source = component.source,
+      .note = component.note,
+      .needs = needs_of(component),
+      .needs_same_samples = component.can(ISOLINE_COMPARES) || component.can(ISOLINE_SOLVE),
+      .options = component.options,
+      .tunable = {.option = component.tuned}};
+  entry.introduce = [foreign = component.foreign](const OptionValues&) { return foreign; };
+  entry.objection = [component](const OptionValues&, const Problem& problem) -> std::string {
+    const bool fits = !component.can(ISOLINE_INVERSE) || problem.has_identity_network();
+    return fits ? "" : "a library's method inverts the physics and sees no network";
+  };
+  entry.make = [component](const OptionValues& options, const OptimizerRegistry&) {
+    return std::make_unique<PluginMethod>(component, options);
+  };
+  registry.add(std::move(entry));
+}
+
+}  // namespace isoline::optimizers

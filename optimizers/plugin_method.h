@@ -1,0 +1,11 @@
+// Methods that shared libraries bring (clients/c/isoline.h), as entries of the registry.
+#pragma once
+
+#include "core/foreign/plugin_library.h"
+#include "optimizers/optimizer.h"
+
+namespace isoline::optimizers {
+
+void add_plugin_method(OptimizerRegistry& registry, const PluginComponent& component);
+
+}  // namespace isoline::optimizers

@@ -1,0 +1,188 @@
+// A physics by the functions of a shared library. Its products get the x that they are at and what
+// forward() kept of it, so that a rejected trial costs no forward pass more. Where it gives the
+// Jacobian, products that it lacks follow from that.
+#include "problems/plugin_physics.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "clients/c/isoline.h"
+
+namespace isoline::problems {
+namespace {
+
+constexpr std::uint64_t kMostSize = std::uint64_t{1} << 27;  // a vector of 1 GiB
+
+constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
+
+// What a function wrote, or not a number where it said that it has no answer.
+void judge(int told, BatchOut out) {
+  if (told != 0) out.setConstant(kNan);
+}
+
+isoline_sizes sizes_of(const PluginInstance& instance) {
+  isoline_sizes sizes{};
+  sizes.minimum = kNan;
+  const std::string words = instance.of().words();
+  if (instance.table().dimension(instance.self(), &sizes) != 0)
+    throw std::runtime_error(words + ": dimension() has no answer");
+  const auto hold = [&](const char* name, std::uint64_t least, std::uint64_t size) {
+    require(size >= least && size <= kMostSize, [&] {
+      return fmt::format("{}: dimension() must give {} from {} to {}, got {}", words, name, least,
+                         kMostSize, size);
+    });
+  };
+  hold("inputs", 1, sizes.inputs);
+  hold("outputs", 1, sizes.outputs);
+  hold("kept", 0, sizes.kept);
+  const bool has_inverse = instance.of().can(ISOLINE_INVERSE);
+  const bool is_known = sizes.inverse >= ISOLINE_EXACT && sizes.inverse <= ISOLINE_APPROXIMATE;
+  require(!has_inverse || is_known, [&] {
+    return fmt::format(
+        "{}: dimension() must say what its inverse is, from ISOLINE_EXACT to "
+        "ISOLINE_APPROXIMATE, got {}",
+        words, sizes.inverse);
+  });
+  return sizes;
+}
+
+Inverse kind_of(const PluginInstance& instance, std::uint32_t told) {
+  if (!instance.of().can(ISOLINE_INVERSE)) return Inverse::none;
+  switch (told) {
+    case ISOLINE_EXACT:
+      return Inverse::exact;
+    case ISOLINE_DAMPED:
+      return Inverse::damped;
+    case ISOLINE_ESTIMATE:
+      return Inverse::estimate;
+    default:
+      return Inverse::approximate;
+  }
+}
+
+class PluginPhysics final : public Physics {
+ public:
+  PluginPhysics(const PluginComponent& component, const OptionValues& options, std::uint64_t seed)
+      : instance_(component, options, seed), sizes_(sizes_of(instance_)) {}
+
+  const PluginInstance& instance() const { return instance_; }
+  const isoline_sizes& sizes() const { return sizes_; }
+  Index inputs() const override { return static_cast<Index>(sizes_.inputs); }
+  Index outputs() const override { return static_cast<Index>(sizes_.outputs); }
+  Products products() const override {
+    const PluginComponent& of = instance_.of();
+    return {.has_pushforward = of.can(ISOLINE_PUSHFORWARD) || of.can(ISOLINE_JACOBIAN),
+            .has_pullback = of.can(ISOLINE_PULLBACK) || of.can(ISOLINE_JACOBIAN)};
+  }
+  Inverse inverse_kind() const override { return kind_of(instance_, sizes_.inverse); }
+
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
+    w.saved.resize(2);
+    w.saved[0].resize(static_cast<Index>(sizes_.kept), x.cols());
+    for (Index b = 0; b < x.cols(); ++b)
+      judge(table().forward(self(), x.col(b).data(), y.col(b).data(), w.saved[0].col(b).data()),
+            y.col(b));
+  }
+
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
+    if (!instance_.of().can(ISOLINE_PUSHFORWARD)) {
+      const Matrix& J = saved_jacobian(w);
+      for (Index b = 0; b < v.cols(); ++b)
+        Jv.col(b).noalias() = J.middleCols(b * inputs(), inputs()) * v.col(b);
+      return;
+    }
+    for (Index b = 0; b < v.cols(); ++b)
+      judge(table().pushforward(self(), w.x.col(b).data(), kept(w, b), v.col(b).data(),
+                                Jv.col(b).data()),
+            Jv.col(b));
+  }
+
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
+    if (!instance_.of().can(ISOLINE_PULLBACK)) {
+      const Matrix& J = saved_jacobian(w);
+      for (Index b = 0; b < u.cols(); ++b)
+        JTu.col(b).noalias() = J.middleCols(b * inputs(), inputs()).transpose() * u.col(b);
+      return;
+    }
+    for (Index b = 0; b < u.cols(); ++b)
+      judge(table().pullback(self(), w.x.col(b).data(), kept(w, b), u.col(b).data(),
+                             JTu.col(b).data()),
+            JTu.col(b));
+  }
+
+  void jacobian(BatchOut J, Workspace& w) const override {
+    if (instance_.of().can(ISOLINE_JACOBIAN))
+      J = saved_jacobian(w);
+    else
+      Physics::jacobian(J, w);
+  }
+
+  Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
+    Success success(y.cols());
+    for (Index b = 0; b < y.cols(); ++b)
+      success[b] = table().inverse(self(), y.col(b).data(), x0.col(b).data(), x.col(b).data()) == 0;
+    return success;
+  }
+
+ private:
+  const isoline_component& table() const { return instance_.table(); }
+  void* self() const { return instance_.self(); }
+  const double* kept(const Workspace& w, Index b) const { return w.saved[0].col(b).data(); }
+
+  const Matrix& saved_jacobian(Workspace& w) const {  // (m, k·B) at w.x, computed once a forward
+    Matrix& J = w.saved[1];
+    if (w.saved_is_current) return J;
+    J.setZero(outputs(), inputs() * w.x.cols());
+    for (Index b = 0; b < w.x.cols(); ++b) {
+      BatchOut of_sample = J.middleCols(b * inputs(), inputs());
+      judge(table().jacobian(self(), w.x.col(b).data(), kept(w, b), of_sample.data()), of_sample);
+    }
+    w.saved_is_current = true;
+    return J;
+  }
+
+  PluginInstance instance_;
+  isoline_sizes sizes_;
+};
+
+ProblemParts parts_of(const PluginComponent& component, const OptionValues& options,
+                      const Draw& draw) {
+  auto physics = std::make_unique<PluginPhysics>(component, options, draw.seed());
+  const Index k = physics->inputs();
+  const bool has_truth = component.can(ISOLINE_TRUTH);
+  Vector start = Vector::Zero(k);
+  Matrix target = Matrix::Zero(physics->outputs(), 1), truth = Matrix::Zero(has_truth ? k : 0, 1);
+  const PluginInstance& instance = physics->instance();
+  if (instance.table().instance(instance.self(), start.data(), target.data(),
+                                has_truth ? truth.data() : nullptr) != 0)
+    throw std::runtime_error(component.words() + ": instance() has no answer");
+  const Real minimum = physics->sizes().minimum;
+  ProblemParts parts{
+      .physics = std::move(physics), .start = draw.start(start), .target = std::move(target)};
+  if (!std::isnan(minimum)) parts.minimum = minimum;
+  if (!has_truth) return parts;
+  parts.truth = truth;
+  parts.x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); };
+  return parts;
+}
+
+}  // namespace
+
+void add_plugin_physics(ProblemRegistry& registry, const PluginComponent& component) {
+  ProblemEntry entry{.name = component.name,
+                     .title = component.title,
+                     .formula = component.formula,
+                     .source = component.source,
+                     .note = component.note,
+                     .options = component.options};
+  entry.introduce = [foreign = component.foreign](const OptionValues&) { return foreign; };
+  entry.make = [component](const OptionValues& options, const Draw& draw) {
+    return Problem(parts_of(component, options, draw));
+  };
+  registry.add(std::move(entry));
+}
+
+}  // namespace isoline::problems
