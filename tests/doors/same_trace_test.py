@@ -1,0 +1,63 @@
+"""One problem through every door: the tree, a child process, UM-Bridge and a C library give the same
+trace, bit for bit, since their arithmetic is the same. Called with the program, the folder of the
+examples in Python, and the library of the example in C."""
+
+import glob
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, EXAMPLES, LIBRARY = sys.argv[1:4]
+TIMES = {"wall_seconds", "processor_seconds"}
+
+
+class Doors(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def record(self, name, problem, optimizer, *more):
+        run = subprocess.run(
+            [PROGRAM, "run", "--problem", problem, "--optimizer", optimizer, "--out", name,
+             "--iterations", "60", "--target", "0", "--no-report", *more],
+            cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        (path,) = glob.glob(f"{self.folder}/{name}/runs/*.json")
+        return json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+
+    def serve(self):
+        server = subprocess.Popen([PROGRAM, "serve", "rosenbrock", "--port", "0"],
+                                  cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(server.wait)
+        self.addCleanup(server.terminate)
+        self.addCleanup(server.stdout.close)
+        words = server.stdout.readline().split()
+        return next(word for word in words if word.startswith("http://"))
+
+    def test_levenberg_marquardt_takes_the_same_steps_through_all_of_them(self):
+        doors = {
+            "tree": ["rosenbrock"],
+            "process": [f'process[command="{sys.executable} {EXAMPLES}/rosenbrock.py"]'],
+            "umbridge": [f'umbridge[url="{self.serve()}",model="rosenbrock",start="[-1.2, 1]",'
+                         'target="[0, 0]",truth="[1, 1]",minimum=0]'],
+            "plugin": ["rosenbrock-c", "--plugin", LIBRARY],
+        }
+        for optimizer in ["levenberg-marquardt", "gd[rate=1e-3]"]:
+            records = {door: self.record(f"{door}-{optimizer[:2]}", words[0], optimizer, *words[1:])
+                       for door, words in doors.items()}
+            tree = records.pop("tree")
+            self.assertGreater(len(tree["curve"]["loss"]), 5)
+            self.assertNotIn("foreign", tree)
+            for door, record in records.items():
+                with self.subTest(door=door, optimizer=optimizer):
+                    self.assertEqual(record["foreign"]["problem"]["door"], door)
+                    self.assertEqual(record["counts"], tree["counts"])
+                    self.assertEqual(record["found"], tree["found"])
+                    for name in set(tree["curve"]) - TIMES:
+                        self.assertEqual(record["curve"][name], tree["curve"][name], name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
