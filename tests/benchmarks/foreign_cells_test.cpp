@@ -58,7 +58,7 @@ TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("a-huge-frame", "answers linearize with 9223372036854775808 bytes, where 16 are");
   expect_failed("a-huge-complaint", "sends a text of 9223372036854775808 bytes, and at most 65536");
   expect_failed("another-verb", "answers linearize with a frame of verb 99");
-  expect_failed("two-answers", "sends more than the head of its frame says");
+  expect_failed("two-answers", "sends what it was not asked for");
   expect_failed("raises", "failed at linearize: ValueError: the mesh is tangled");
 }
 
@@ -88,8 +88,8 @@ TEST_F(ForeignCells, TakeWhatTheirProgramStartedWithThem) {
 }
 
 TEST_F(ForeignCells, WhereSomethingIsNotFiniteEndAsAnyOthers) {
-  const Record record = record_of(
-      request_of(process_of(misbehaving("misbehaving.py is-not-finite")), "gd[rate=1e-2]"));
+  const Record record =
+      record_of(request_of(process_of(misbehaving("misbehaving.py is-not-finite")), "gd[rate=1]"));
   EXPECT_EQ(record.status, Status::diverged) << record.message;
 }
 
@@ -98,7 +98,10 @@ TEST_F(ForeignCells, WithoutAProductAreInapplicableWithTheReason) {
   const Record gradient = record_of(request_of(alone, "gd"));
   EXPECT_EQ(gradient.status, Status::inapplicable);
   EXPECT_EQ(gradient.message, "the problem offers no gradients");
-  EXPECT_EQ(record_of(request_of(alone, "nlopt-neldermead")).status, Status::budget);
+  const Record simplex = record_of(request_of(alone, "nlopt-neldermead"));
+  EXPECT_NE(simplex.status, Status::inapplicable);
+  EXPECT_FALSE(is_failure(simplex.status)) << simplex.message;
+  EXPECT_LT(simplex.summary.loss, simplex.summary.start_loss);
   const std::string pulls = process_of(misbehaving("offers.py vjp"));
   EXPECT_NE(record_of(request_of(pulls, "gauss-newton")).status, Status::inapplicable);
 }
