@@ -53,5 +53,6 @@ void register_networks();
 void register_isolation();
 void register_unet();
 void register_spectral();
+void register_bridging();
 
 }  // namespace isoline::benchmarks::micro

@@ -1,13 +1,11 @@
 // The run of a whole plan: workers filled, watched, collected and stored.
 #include "benchmarks/run/runner.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <malloc.h>
 #include <poll.h>
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 
 #include "benchmarks/run/execute.h"
@@ -16,6 +14,7 @@
 #include "benchmarks/run/pending.h"
 #include "benchmarks/run/prediction.h"
 #include "benchmarks/run/same_result.h"
+#include "benchmarks/run/started.h"
 #include "core/clock.h"
 #include "core/records/provenance.h"
 #include "core/text.h"
@@ -115,8 +114,7 @@ class Runner {
   }
 
   RunProvenance run_provenance() const {
-    const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    return {.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
+    return {.started = time_now(),
             .concurrent_jobs = jobs_,
             .is_exclusive = options_.exclusive,
             .command = options_.command};
