@@ -44,6 +44,7 @@ def split(values):
 
 class Answers(http.server.BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
+    disable_nagle_algorithm = True  # head and body are two packets
 
     def do_GET(self):
         self.give({"protocolVersion": 1.0, "models": ["valley"]})
