@@ -15,11 +15,6 @@ namespace {
 constexpr Index kMostNumbers = 1 << 27;  // of all vectors of a model: 1 GiB
 constexpr std::size_t kMostVectors = 1 << 16, kMostQuoted = 80;
 
-Numbers numbers_of(const Json& list, const char* what) {
-  require(list.is_array(), [&] { return fmt::format("{} is no list of numbers", what); });
-  return reals_of(list);
-}
-
 Json answer_of(const std::string& text, const char* key) {
   Json tree = bridge_json(text, "the answer");
   require(tree.is_object() && tree.contains(key), [&] {
@@ -115,13 +110,11 @@ std::vector<Numbers> outputs_in(const std::string& answer) {
   const Json list = answer_of(answer, "output");
   require(list.is_array(), "the output of Evaluate is no list of lists of numbers");
   std::vector<Numbers> outputs;
-  for (const Json& each : list) outputs.push_back(numbers_of(each, "an output of Evaluate"));
+  for (const Json& each : list) outputs.push_back(numbers_of(each));
   return outputs;
 }
 
-Numbers output_in(const std::string& answer) {
-  return numbers_of(answer_of(answer, "output"), "the output");
-}
+Numbers output_in(const std::string& answer) { return numbers_of(answer_of(answer, "output")); }
 
 std::string error_in(const std::string& answer) {
   Json tree;
@@ -140,7 +133,7 @@ std::string error_in(const std::string& answer) {
 }
 
 Numbers numbers_in(const std::string& json, const std::string& origin) {
-  return numbers_of(bridge_json(json, origin), origin.c_str());
+  return numbers_of(bridge_json(json, origin));
 }
 
 std::string config_in(const std::string& json, const std::string& origin) {

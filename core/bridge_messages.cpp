@@ -28,8 +28,7 @@ Numbers vector_at(const Json& tree, const char* key, Index size) {
   expect(tree.contains(key), [&] { return fmt::format("{} is missing", key); });
   Numbers values;
   try {
-    require(tree.at(key).is_array(), "a list of numbers was expected");
-    values = reals_of(tree.at(key));
+    values = numbers_of(tree.at(key));
   } catch (const UsageError& error) {
     refuse(fmt::format("{}: {}", key, error.what()));
   }
@@ -62,7 +61,7 @@ std::vector<Numbers> input_at(const Json& tree, const std::vector<Index>& sizes)
     expect(each.is_array() && static_cast<Index>(each.size()) == sizes[i],
            [&] { return fmt::format("input {} must be a list of {} numbers", i, sizes[i]); });
     try {
-      input.push_back(reals_of(each));
+      input.push_back(numbers_of(each));
     } catch (const UsageError& error) {
       refuse(fmt::format("input {}: {}", i, error.what()));
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/errors.h"
+
 namespace isoline {
 namespace {
 
@@ -15,7 +17,7 @@ bool is_word(char letter) {
 // What some servers write where a number is not finite, as a text that real_of() reads; empty where
 // the word is none of these.
 std::string_view named(std::string_view word) {
-  if (word == "NaN" || word == "nan" || word == "null") return "\"nan\"";
+  if (word == "NaN" || word == "nan") return "\"nan\"";
   if (word == "Infinity" || word == "inf" || word == "Inf") return "\"inf\"";
   if (word == "-Infinity" || word == "-inf" || word == "-Inf") return "\"-inf\"";
   if (word == "-NaN" || word == "-nan") return "\"nan\"";
@@ -50,6 +52,14 @@ std::string with_named_numbers(std::string_view text) {
 
 Json bridge_json(std::string_view text, const std::string& origin) {
   return parse_json(with_named_numbers(text), origin);
+}
+
+Numbers numbers_of(const Json& list) {
+  require(list.is_array(), "a list of numbers was expected");
+  Numbers numbers;
+  numbers.reserve(list.size());
+  for (const Json& each : list) numbers.push_back(each.is_null() ? std::nan("") : real_of(each));
+  return numbers;
 }
 
 void append_number(std::string& out, Real value) {

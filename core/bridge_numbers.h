@@ -18,8 +18,9 @@ void append_number(std::string& out, Real value);
 void append_numbers(std::string& out, const Numbers& values);
 void append_vectors(std::string& out, const std::vector<Numbers>& vectors);
 
-// The tree of a text whose numbers may be no JSON: real_of() reads them. UsageError names the
-// origin.
+// The tree of a text whose numbers may be no JSON, by its origin's name in a UsageError; and the
+// numbers of a list in it.
 Json bridge_json(std::string_view text, const std::string& origin);
+Numbers numbers_of(const Json& list);
 
 }  // namespace isoline

@@ -19,6 +19,7 @@ namespace isoline {
 namespace {
 
 constexpr const char* kJson = "application/json";
+constexpr int kTooLong = 413;
 constexpr std::size_t kMostDrained = std::size_t{2} << 30;  // bytes of a body that is refused
 constexpr double kKeptSeconds = 60;   // that a connection may be silent between two requests
 constexpr double kStopSeconds = 0.1;  // after which a silent connection sees that all is over
@@ -97,19 +98,19 @@ class HttpServer::Connections final : public httplib::Server {
     else
       Post(route.path, [this, answer = route.answer](const httplib::Request&, auto& reply,
                                                      const httplib::ContentReader& read) {
-        std::string body;
-        const bool is_whole = read([&](const char* bytes, std::size_t size) {
-          if (size > limits_.body_bytes - body.size()) {
-            reply.status = 413;
-            return false;
-          }
-          body.append(bytes, size);
-          return true;
-        });
-        if (is_whole)
-          give(reply, answer, body);
-        else
-          refuse(reply, reply.status == 413 ? 413 : 400, "the body did not arrive whole");
+             std::string body;
+             bool is_too_long = false;
+             const bool is_whole = read([&](const char* bytes, std::size_t size) {
+               is_too_long = size > limits_.body_bytes - body.size();
+               if (!is_too_long) body.append(bytes, size);
+               return !is_too_long;
+             });
+             if (is_whole)
+               give(reply, answer, body);
+             else if (is_too_long || reply.status == kTooLong)
+               refuse(reply, kTooLong, "");
+             else
+               refuse(reply, 400, "the body did not arrive whole");
       });
   }
 
@@ -162,19 +163,21 @@ class HttpServer::Connections final : public httplib::Server {
     return false;
   }
 
-  // Whether the connection may go on. One whose body was not read to its end may not: what is left
-  // of it would be taken for a request.
+  // Whether the connection may go on. One that was no request may not, nor one whose body was not
+  // read to its end: what is left of it would be taken for a request.
   bool process_one(BoundedSocket& socket, BoundedStream& stream) {
     socket.allow(limits_.head_bytes, limits_.request_seconds, limits_.idle_seconds);
-    bool is_closed = false, is_chunked = false;
+    bool is_closed = false, is_chunked = false, has_head = false;
     const auto read_head = [&](httplib::Request& request) {
+      has_head = true;
       request.headers.erase("Accept-Encoding");  // to compress takes longer than to send
       request.ranges.clear();
       is_chunked = request.has_header("Transfer-Encoding");
       socket.allow_bytes(announced(request, limits_));
     };
     const bool is_good = process_request(stream, false, is_closed, read_head);
-    return socket.flush() && is_good && !is_closed && !is_chunked && socket.bytes_left() == 0;
+    return socket.flush() && is_good && has_head && !is_closed && !is_chunked &&
+           socket.bytes_left() == 0;
   }
 
   const std::string host_;

@@ -18,7 +18,7 @@ _isoline() {
   case $before in
     --problem) list=$("$program" list problems --names 2>/dev/null) ;;
     --optimizer) list=$("$program" list optimizers --names 2>/dev/null) ;;
-    --out|--from) COMPREPLY=($(compgen -d -- "$word")); return ;;
+    --out|--from|--record) COMPREPLY=($(compgen -d -- "$word")); return ;;
     --plugin) COMPREPLY=($(compgen -f -- "$word")); return ;;
     --retry) list="@STATUSES@" ;;
     --rates) COMPREPLY=($(compgen -W "builtin none" -- "$word") $(compgen -f -- "$word")); return ;;
@@ -37,7 +37,7 @@ _isoline() {
     *) case $verb in
          run|plan|submit) list=$("$program" list suites --names 2>/dev/null) ;;
          describe) list=$("$program" list all --names 2>/dev/null) ;;
-         check) list=$("$program" list problems --names 2>/dev/null) ;;
+         check|serve) list=$("$program" list problems --names 2>/dev/null) ;;
          claims) list=$("$program" claims --list --all 2>/dev/null | grep -oE '^  [a-z0-9-]+') ;;
          help) list="@VERBS@" ;;
          new) list="problem optimizer" ;;

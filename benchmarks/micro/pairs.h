@@ -54,5 +54,6 @@ void register_isolation();
 void register_round_trips();
 void register_unet();
 void register_spectral();
+void register_bridging();
 
 }  // namespace isoline::benchmarks::micro

@@ -6,7 +6,6 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 
 #include "benchmarks/run/execute.h"

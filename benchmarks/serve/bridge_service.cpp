@@ -89,7 +89,9 @@ std::string BridgeService::answered(const std::string& path, const std::string& 
   if (verb == kBridgeVerbs.end()) throw BridgeRefusal("InvalidInput", "there is no such path");
   const auto asked = static_cast<BridgeVerb>(verb - kBridgeVerbs.begin());
   models->require_offered(view, asked);
-  return models->answer(view, request.call(asked, sizes));
+  const BridgeCall call = request.call(asked, sizes);
+  const std::lock_guard lock(computing_);
+  return models->answer(view, call);
 }
 
 std::string BridgeService::refusal(int status, const std::string& reason) {

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ class BridgeService {
   std::deque<ServedModels> served_;  // they stay where they are
   std::map<std::string, Model> models_;
   std::vector<std::string> names_;  // in the order of the command line
+  std::mutex computing_;            // plans of transforms and the like are shared by problems
 };
 
 }  // namespace isoline::benchmarks

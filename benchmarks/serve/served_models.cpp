@@ -61,7 +61,6 @@ void ServedModels::require_offered(View view, BridgeVerb verb) const {
 }
 
 std::string ServedModels::answer(View view, const BridgeCall& call) {
-  const std::lock_guard lock(mutex_);
   switch (call.verb) {
     case BridgeVerb::gradient:
       return output_text(gradient(view, call));

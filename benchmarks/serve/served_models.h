@@ -6,7 +6,6 @@
 //   P.data       nothing ↦ (y*, x₀): what is sought, and where every method begins
 #pragma once
 
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -28,8 +27,7 @@ class ServedModels {
 
   void require_offered(View view, BridgeVerb verb) const;  // BridgeRefusal where it is not
 
-  // The answer's text. Callers may be several threads: one is answered at a time. BridgeRefusal
-  // where the model has no value there.
+  // The answer's text; one at a time. BridgeRefusal where the model has no value there.
   std::string answer(View view, const BridgeCall& call);
 
  private:
@@ -41,7 +39,6 @@ class ServedModels {
 
   ServedRun& run_;
   const Problem& problem_;
-  std::mutex mutex_;
 };
 
 }  // namespace isoline::benchmarks

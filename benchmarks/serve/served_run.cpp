@@ -1,15 +1,14 @@
 // The run loop turned inside out: the method is elsewhere, and calls.
 #include "benchmarks/serve/served_run.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
 #include <utility>
 
 #include "benchmarks/run/execute.h"
 #include "core/clock.h"
+#include "core/records/instant.h"
 
 namespace isoline::benchmarks {
 
@@ -26,11 +25,6 @@ Problem problem_of(const Catalog& catalog, const Request& request) {
   require(problem.samples() == 1 && problem.has_identity_network(),
           [&] { return fmt::format("{} has several samples; only one x is served", spec); });
   return problem;
-}
-
-std::string now() {
-  const auto seconds = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(seconds));
 }
 
 // Of the oracles that were asked.
@@ -51,7 +45,7 @@ ServedRun::ServedRun(const Catalog& catalog, Request request)
 
 void ServedRun::begin() {
   begun_ = monotonic_nanoseconds();
-  provenance_ = {.started = now(), .concurrent_jobs = 1};
+  provenance_ = {.started = instant_text(seconds_now()), .concurrent_jobs = 1};
   best_ = problem_.start();
   const Status status = meter_.begin(best_);
   best_loss_ = trace_->start_loss;

@@ -46,11 +46,16 @@ BridgeServer::~BridgeServer() {
 void BridgeServer::drain() {
   constexpr int kMilliseconds = 50;  // after which the end of the problem is seen
   while (!is_over_) {
-    pollfd waiting{child_.output(), POLLIN, 0};  // −1 once it is closed, which is waited for alone
+    pollfd waiting{output(), POLLIN, 0};  // −1 once it is closed, which is no event
     ::poll(&waiting, 1, kMilliseconds);
     const std::lock_guard lock(mutex_);
     child_.drain();
   }
+}
+
+int BridgeServer::output() {
+  const std::lock_guard lock(mutex_);
+  return child_.output();
 }
 
 bool BridgeServer::has_ended() {

@@ -27,6 +27,7 @@ class BridgeServer {
   BridgeServer(const std::string& command, int port, double seconds);
   void await(double seconds);
   void drain();
+  int output();
   bool has_ended();
 
   const std::string url_;

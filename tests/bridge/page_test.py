@@ -57,8 +57,9 @@ class Page(unittest.TestCase):
             self.assertLess(record["summary"]["loss"], 1e-10, record["message"])
 
     def test_the_options_are_those_that_there_are(self):
-        run = subprocess.run([sys.argv[1], "describe", "umbridge", "--json"], capture_output=True,
-                             text=True, check=True)
+        spec = re.search(r"check '(.*)'", block("shell model")).group(1)
+        run = subprocess.run([sys.argv[1], "describe", spec, "--json"], cwd=self.folder,
+                             capture_output=True, text=True, check=True)
         options = {option["name"] for option in json.loads(run.stdout)["options"]}
         text = PAGE.read_text(encoding="utf-8")
         for option in options:

@@ -122,8 +122,9 @@ class Protocol(unittest.TestCase):
 
     def test_numbers_are_the_functions_own(self):
         x = [-1.2, 1.0]
-        self.assertEqual(self.models.evaluate("rosenbrock", [x]),
-                         [[10 * (x[1] - x[0] * x[0]), 1 - x[0]]])
+        (y,) = self.models.evaluate("rosenbrock", [x])
+        self.assertAlmostEqual(y[0], 10 * (x[1] - x[0] * x[0]), delta=1e-14)  # x1² may be fused
+        self.assertEqual(y[1], 1 - x[0])
         self.assertEqual(self.models.gradient("rosenbrock", [x], [1.0, 0.0]), [-20 * x[0], 10.0])
         self.assertEqual(self.models.evaluate("rosenbrock.data", []), [[0.0, 0.0], x])
         loss = self.models.evaluate("rosenbrock.loss", [x])[0][0]

@@ -46,8 +46,8 @@ class Recorded(unittest.TestCase):
                 as models:
             descend(models, 20)
         (record,) = self.records()  # nobody asked the other
-        self.assertEqual(record["problem"]["name"], "square")
-        self.assertEqual(record["optimizer"]["options"]["client"], "my-descent")
+        self.assertEqual(record["request"]["problem"]["name"], "square")
+        self.assertEqual(record["request"]["optimizer"]["options"]["client"], "my-descent")
         self.assertEqual(record["foreign"]["optimizer"]["label"], "my-descent")
         self.assertEqual(record["counts"]["forward"], 21)
         self.assertEqual(record["counts"]["pullback"], 20)

@@ -58,7 +58,9 @@ def serving(program, *arguments, cwd=None, said=None):
         line = process.stdout.readline()
         found = re.search(r"http://\S+$", line.strip())
         assert found, f"no address: {line!r}, {process.poll()}"
-        yield Models(found.group())
+        models = Models(found.group())
+        yield models
+        models.connection.close()
         process.send_signal(signal.SIGTERM)
         rest, _ = process.communicate(timeout=PATIENCE)
         assert process.returncode == 0, process.returncode
