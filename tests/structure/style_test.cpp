@@ -187,6 +187,7 @@ TEST(Style, TheTopHasTheRoomsAndTheUsualFilesAlone) {
                                        "README.md",
                                        "LICENSE",
                                        "CHANGELOG.md",
+                                       "CITATION.cff",
                                        "CONTRIBUTING.md",
                                        "CMakeLists.txt",
                                        "CMakePresets.json",
