@@ -26,6 +26,8 @@ isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package 
 isoline_library(Isoline::random123 "" Random123/philox.h)
 isoline_library(Isoline::simdjson "simdjson" simdjson.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
+isoline_library(Isoline::archive "archive" archive.h)
+isoline_library(Isoline::nettle "nettle" nettle/sha2.h)
 
 # Ceres' own CMake target is the static library. Built for other vector instructions than ours, its
 # inline Eigen functions would be merged with ours at link time; the shared library keeps its own.
