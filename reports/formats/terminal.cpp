@@ -39,7 +39,7 @@ std::string name_of_spec(const std::string& spec) {
 }
 
 std::string label_of(const OptimizerAxis& optimizer) {
-  return name_of_spec(optimizer.label) + (optimizer.privileges.empty() ? "" : " †");
+  return name_of_spec(optimizer.label) + marks_of(optimizer);
 }
 
 std::size_t widest_label(const Comparison& c) {
@@ -289,6 +289,7 @@ std::string terminal_table(const Document& document) {
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
   if (has_privileges) text += "† uses privileged information.\n";
+  if (is_any_imported(c)) text += fmt::format("{}\n", kImportedLegend);
   return text + failure_lines(c);
 }
 
