@@ -63,6 +63,9 @@ void declare(VerbArguments& verb, ValidateArguments& given);
 void declare(VerbArguments& verb, TuneArguments& given);
 void declare(VerbArguments& verb, TrainArguments& given);
 void declare(VerbArguments& verb, InferArguments& given);
+void declare(VerbArguments& verb, ExportArguments& given);
+void declare(VerbArguments& verb, ImportArguments& given);
+void declare(VerbArguments& verb, ArchiveArguments& given);
 void declare(VerbArguments& verb, CompletionArguments& given);
 
 }  // namespace isoline::benchmarks

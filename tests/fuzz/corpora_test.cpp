@@ -16,8 +16,16 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::map<std::string, void (*)(std::string_view)> kTargets = {
-    {"spec", spec},     {"command_line", command_line}, {"suite", suite},     {"record", record},
-    {"claims", claims}, {"checkpoint", checkpoint},     {"network", network}, {"npy", npy}};
+    {"spec", spec},
+    {"command_line", command_line},
+    {"suite", suite},
+    {"record", record},
+    {"claims", claims},
+    {"checkpoint", checkpoint},
+    {"network", network},
+    {"npy", npy},
+    {"foreign_curve", foreign_curve},
+    {"packed_results", packed_results}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";
 
