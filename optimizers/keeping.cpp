@@ -5,6 +5,7 @@
 
 #include "core/decompose.h"
 #include "core/frames.h"
+#include "core/kept_iterations.h"
 #include "core/picture.h"
 #include "optimizers/meter.h"
 
@@ -18,18 +19,6 @@ bool has_spectrum(const Problem& problem) {
   const Index rows = problem.residuals(), columns = problem.unknowns();
   return problem.offers().contains(Oracle::jacobian) &&
          std::min(rows, columns) <= Trace::Spectra::kValues && rows * columns <= kMostNumbers;
-}
-
-// Iterations 0 to 100, then 32 a decade.
-std::int64_t next_kept_after(std::int64_t iteration) {
-  constexpr std::int64_t kEvery = 100;
-  constexpr Real kPerDecade = 32;
-  if (iteration < kEvery) return iteration + 1;
-  const Real passed = std::floor(kPerDecade * std::log10(static_cast<Real>(iteration)) + 1e-9);
-  std::int64_t next = iteration;
-  for (Real step = passed; next <= iteration; ++step)
-    next = std::llround(std::pow(10.0, step / kPerDecade));
-  return next;
 }
 
 }  // namespace

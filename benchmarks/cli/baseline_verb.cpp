@@ -41,7 +41,8 @@ std::vector<Study> perturbed_studies(const BaselineArguments& given, Session& se
 }  // namespace
 
 int baseline_verb(const BaselineArguments& given, Session& session) {
-  const Study study = read_study({given.folders.begin(), given.folders.end()});
+  Study study = read_study({given.folders.begin(), given.folders.end()});
+  std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
   require(!study.runs.empty(), "there are no records to remember");
   const std::vector<Study> perturbed = perturbed_studies(given, session, study);
   if (perturbed.size() < static_cast<std::size_t>(given.perturbations)) {

@@ -247,6 +247,9 @@ void CommandLine::add_verbs_on_results() {
   add("status", "Tell how far a run is, while it goes on", status_verb);
   add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
   add("claims", "Judge what papers claim by runs; what is missing is run first", claims_verb);
+  add("export", "Write curves as CSV, as data of COCO, or as metrics of Bencher", export_verb);
+  add("import", "Take a curve that others computed as a record, by its own claims", import_verb);
+  add("archive", "Pack results into one file that others can cite and read", archive_verb);
 }
 
 void CommandLine::add_verbs_on_components() {

@@ -133,6 +133,25 @@ constexpr const char* kServeNotes =
     "P.data, of no input, gives y* and the start. With --record what was asked of each is a record:\n"
     "a new best evaluation is an iteration. Exit code: 0 once it is stopped by Ctrl-C or a kill.";
 
+constexpr const char* kExport =
+    "  isoline export results/quick --out curves.csv             a row a kept point of each run\n"
+    "  isoline export results/quick --format coco --out exdata   for COCO's post-processing\n"
+    "  isoline export results.tar.gz --format bencher --out metrics.json";
+constexpr const char* kExportNotes =
+    "Numbers read back as the same numbers; inf, -inf and nan are written so. Bencher's format has no\n"
+    "infinity: what half of the runs never reach is left out there, and reached-1e-6 tells how many do.";
+
+constexpr const char* kImportNotes =
+    "The description names the problem, the optimizer, the seed, the source, the date, and for each\n"
+    "quantity its column: loss, and work or calls of oracles; iteration, wall_seconds, x_error and others\n"
+    "where they are known. The record stands in every table, marked §: it is judged by its own figures\n"
+    "and never verified.";
+
+constexpr const char* kArchiveNotes =
+    "The same folder gives the same bytes. The archive begins with manifest.json, which names each file\n"
+    "with its size and SHA-256, and the commits that computed the records. `report`, `merge`,\n"
+    "`compare`, `validate` and `export` read an archive as the folder, once every digest is right.";
+
 const std::map<std::string_view, Notes>& notes() {
   static const std::map<std::string_view, Notes> all = {
       {"run", {kRun, kRunNotes}},
@@ -159,6 +178,15 @@ const std::map<std::string_view, Notes>& notes() {
       {"train", {"  isoline train 'sine[xi=32]' --optimizer sip --iterations 1000 --out net.json"}},
       {"infer", {"  isoline infer net.json --input observed.csv --output x.csv"}},
       {"serve", {kServe, kServeNotes}},
+      {"export", {kExport, kExportNotes}},
+      {"import",
+       {"  isoline import curve.csv --out results/quick\n"
+        "  isoline import curve.csv --description theirs.json --out results/quick",
+        kImportNotes}},
+      {"archive",
+       {"  isoline archive results/quick --out quick.tar.gz\n"
+        "  isoline report quick.tar.gz --out report",
+        kArchiveNotes}},
       {"completion", {"  isoline completion bash > ~/.isoline-completion"}},
       {"help", {"  isoline help\n  isoline help run"}},
       {"version", {"  isoline version"}}};

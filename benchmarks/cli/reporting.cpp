@@ -31,13 +31,13 @@ std::string format_names() {
 }
 
 void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,
-                     bool quiet, const reports::Yardstick& yardstick) {
+                     const Reporting& how) {
   std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
   std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
-  Document document = document_of(compare_optimizers(study, yardstick), std::move(claims));
-  document.out = out.string();
+  Document document = document_of(compare_optimizers(study, how.yardstick), std::move(claims));
+  if (!how.is_of_archive) document.out = out.string();
   write_report(document, out);
-  if (!quiet)
+  if (!how.is_quiet)
     say(stdout,
         fmt::format("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string()));
 }

@@ -13,9 +13,13 @@ namespace isoline::benchmarks {
 
 class Session;
 
+struct Reporting {
+  bool is_quiet = false;
+  bool is_of_archive = false;  // whose folder does not last: the page leads to no record
+  reports::Yardstick yardstick = {};
+};
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
-                     Session& session, bool quiet = false,
-                     const reports::Yardstick& yardstick = {});
+                     Session& session, const Reporting& how = {});
 
 std::string format_names();  // "index.html, report.csv, …"
 

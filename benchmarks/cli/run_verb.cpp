@@ -76,7 +76,7 @@ void report_on(const fs::path& out, bool quiet, Session& session) {
   study.audits = audit_of(session.catalog(), study);
   write_audit(study.audits, out / "audit.json");
   if (!quiet) say(stdout, "\n");
-  write_and_print(study, out / "report", session, quiet);
+  write_and_print(study, out / "report", session, {.is_quiet = quiet});
 }
 
 // Without isolation and without records: what a debugger looks at.

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "benchmarks/cli/on_terminal.h"
+#include "benchmarks/cli/opened_results.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/merge/contradictions.h"
 #include "benchmarks/plan/resources.h"
@@ -128,7 +129,8 @@ std::vector<std::string> files_under(const std::vector<std::string>& paths, Wron
 
 int validate_verb(const ValidateArguments& given, Session&) {
   Wrong wrong;
-  const std::vector<std::string> files = files_under(given.paths, wrong);
+  const OpenedResults results(given.paths);
+  const std::vector<std::string> files = files_under(results.folders(), wrong);
   std::vector<Examined> all(files.size());
   share(
       files.size(), [&](std::size_t i) { all[i] = examined(files[i]); }, on_terminal("files"));
@@ -141,7 +143,7 @@ int validate_verb(const ValidateArguments& given, Session&) {
     wrong[record.file].push_back(std::move(record.violation));
   for (const auto& [file, violations] : wrong)
     for (const std::string& violation : violations)
-      say(stdout, fmt::format("{}: {}\n", file, violation));
+      say(stdout, results.by_given_names(fmt::format("{}: {}\n", file, violation)));
   say(stdout, fmt::format("{}, {} wrong\n", counted(files.size(), "file"), wrong.size()));
   return wrong.empty() ? kGood : kWorse;
 }

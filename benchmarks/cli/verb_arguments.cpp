@@ -2,11 +2,13 @@
 #include "benchmarks/cli/verb_arguments.h"
 
 #include "benchmarks/cli/reporting.h"
+#include "reports/exports/exports.h"
 
 namespace isoline::benchmarks {
 namespace {
 
 constexpr WholeLaw kJobs{1, 1024}, kThreads{1, 256}, kShards{1, 100'000};
+constexpr const char* kFolders = "Result folders of `isoline run`, or archives of them";
 
 void declare_plugins(VerbArguments& verb, std::vector<std::string>& plugins) {
   verb.texts("--plugin", plugins,
@@ -96,8 +98,9 @@ void declare(VerbArguments& verb, PlanArguments& given) {
 }
 
 void declare(VerbArguments& verb, ReportArguments& given) {
-  verb.texts("DIR", given.folders, "Result folders of `isoline run`").required();
-  verb.text("--out", given.out, "Where to write (default: report/ in the first DIR)");
+  verb.texts("DIR", given.folders, kFolders).required();
+  verb.text("--out", given.out,
+            "Where to write (default: report/ in the first DIR; beside an archive)");
   verb.text("--by", given.by, "What is counted, in orders, tables and plots")
       .one_of({reports::kMeasureNames.begin(), reports::kMeasureNames.end()})
       .shown();
@@ -108,8 +111,8 @@ void declare(VerbArguments& verb, ReportArguments& given) {
 }
 
 void declare(VerbArguments& verb, CompareArguments& given) {
-  verb.text("BASE", given.before, "Result folder, baseline, or a report.json").required();
-  verb.text("NEW", given.after, "Result folder, or a report.json").required();
+  verb.text("BASE", given.before, "Result folder, archive, baseline, or a report.json").required();
+  verb.text("NEW", given.after, "Result folder, archive, or a report.json").required();
   verb.real("--tolerance", given.tolerance, between(0, 1),
             "Relative tolerance of figures (default: equal bit for bit)");
   verb.texts("--time-cells", given.timed,
@@ -146,7 +149,7 @@ void declare(VerbArguments& verb, ReplayArguments& given) {
 }
 
 void declare(VerbArguments& verb, MergeArguments& given) {
-  verb.texts("DIR", given.folders, "Result folders of `isoline run`").required();
+  verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--out", given.out, "The new result folder").required();
 }
 
@@ -171,7 +174,7 @@ void declare(VerbArguments& verb, StatusArguments& given) {
 }
 
 void declare(VerbArguments& verb, BestArguments& given) {
-  verb.texts("DIR", given.folders, "Result folders of `isoline run`").required();
+  verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--out", given.out, "Table of best losses; of two losses the lesser is kept").shown();
 }
 
@@ -217,7 +220,7 @@ void declare(VerbArguments& verb, AuditArguments& given) {
 }
 
 void declare(VerbArguments& verb, ValidateArguments& given) {
-  verb.texts("PATH", given.paths, "Files, or folders to search for *.json").required();
+  verb.texts("PATH", given.paths, "Files, folders to search for *.json, or archives").required();
 }
 
 void declare(VerbArguments& verb, TuneArguments& given) {
@@ -288,6 +291,28 @@ void declare(VerbArguments& verb, ServeArguments& given) {
   verb.text("--record", given.folder,
             "Result folder that keeps what was asked, as a run's records");
   verb.text("--client", given.client, "What tables call whoever asks");
+}
+
+void declare(VerbArguments& verb, ExportArguments& given) {
+  verb.texts("DIR", given.folders, kFolders).required();
+  verb.text("--format", given.format,
+            "csv: a row a kept point; coco: data folders for its post-processing; bencher: Bencher "
+            "Metric Format")
+      .one_of({reports::kExportNames.begin(), reports::kExportNames.end()})
+      .shown();
+  verb.text("--out", given.out, "Where to write: a file; of coco a new folder").required();
+}
+
+void declare(VerbArguments& verb, ImportArguments& given) {
+  verb.text("CURVE", given.curve, "The curve: a CSV file, a row a point").required();
+  verb.text("--description", given.description,
+            "What it is, isoline.import/1 (default: CURVE with .json for its ending)");
+  verb.text("--out", given.out, "Result folder that the record joins").required();
+}
+
+void declare(VerbArguments& verb, ArchiveArguments& given) {
+  verb.text("DIR", given.folder, "Result folder").required();
+  verb.text("--out", given.out, "The archive: a file that ends in .tar.gz").required();
 }
 
 void declare(VerbArguments& verb, CompletionArguments& given) {

@@ -182,6 +182,22 @@ struct ServeArguments {
 };
 int serve_verb(const ServeArguments& given, Session& session);
 
+struct ExportArguments {
+  std::vector<std::string> folders;
+  std::string format = "csv", out;
+};
+int export_verb(const ExportArguments& given, Session& session);
+
+struct ImportArguments {
+  std::string curve, description, out;  // the second: beside the first where empty
+};
+int import_verb(const ImportArguments& given, Session& session);
+
+struct ArchiveArguments {
+  std::string folder, out;
+};
+int archive_verb(const ArchiveArguments& given, Session& session);
+
 struct CompletionArguments {
   std::string shell = "bash";
   std::vector<std::string> verbs;  // filled in by the command line, which knows them

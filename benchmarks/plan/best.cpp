@@ -77,7 +77,8 @@ std::string BestLosses::text_of(const Component& problem) const {
 
 bool BestLosses::add(const Record& record) {
   const Real loss = record.summary.best_loss;
-  if (!std::isfinite(loss) || record.status == Status::inapplicable) return false;
+  if (record.imported || !std::isfinite(loss) || record.status == Status::inapplicable)
+    return false;
   const Component& problem = record.request.problem;
   const std::size_t place = place_of(problem);
   if (place == rows_.size()) rows_.push_back({problem.name, without_empty(problem.options), {}});

@@ -14,6 +14,7 @@
 #include "core/real.h"
 #include "core/records/exhibit.h"
 #include "core/records/field_frames.h"
+#include "core/records/imported.h"
 #include "core/records/provenance.h"
 #include "core/records/request.h"
 #include "core/status.h"
@@ -101,6 +102,7 @@ struct Record {
   bool is_nondeterministic = false;       // ended by a clock or a kill
   std::vector<Real> repeat_wall_seconds;  // one a run of this very cell and build, sorted
   Provenance provenance;
+  std::optional<Imported> imported;  // of a run that others made: its figures are their claims
 
   std::string file_name() const { return record_file_name(cell, build); }
 };

@@ -90,6 +90,13 @@ void fields(Like<ForeignParts> auto& parts, auto& field) {
   field.optional("optimizer", parts.optimizer);
 }
 
+void fields(Like<Imported> auto& imported, auto& field) {
+  field("source", imported.source, R"({"minLength": 1})");
+  field("program", imported.program);
+  field("curve", imported.curve);
+  field("sha256", imported.sha256, R"({"pattern": "^[0-9a-f]{64}$"})");
+}
+
 void fields(Like<Record> auto& record, auto& field) {
   field.constant("schema", kRunSchema);
   field("cell", record.cell, kDigestLaw);
@@ -127,6 +134,9 @@ void fields(Like<Record> auto& record, auto& field) {
   field("nondeterministic", record.is_nondeterministic);
   field("repeat_wall_seconds", record.repeat_wall_seconds);
   field("provenance", record.provenance);
+  field.optional(
+      "imported", record.imported,
+      R"({"description": "Where it is from, if others ran it: its figures are theirs"})");
   if constexpr (std::remove_cvref_t<decltype(field)>::kReads) record.request.cell = record.cell;
 }
 

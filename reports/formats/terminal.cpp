@@ -39,8 +39,7 @@ std::string name_of_spec(const std::string& spec) {
 }
 
 std::string label_of(const OptimizerAxis& optimizer) {
-  return name_of_spec(optimizer.label) + (optimizer.is_foreign ? " ‡" : "") +
-         (optimizer.privileges.empty() ? "" : " †");
+  return name_of_spec(optimizer.label) + (optimizer.is_foreign ? " ‡" : "") + marks_of(optimizer);
 }
 
 std::string label_of(const ProblemAxis& problem) {
@@ -296,6 +295,7 @@ std::string terminal_table(const Document& document) {
     text += wrapped(terminal_text(sentence.text));
   if (has_privileges) text += "† uses privileged information.\n";
   if (const std::string legend = foreign_legend(c); !legend.empty()) text += legend + "\n";
+  if (is_any_imported(c)) text += fmt::format("{}\n", kImportedLegend);
   return text + failure_lines(c);
 }
 

@@ -88,7 +88,7 @@ std::string found_html(const Comparison& c, const FoundFields& all, const FoundF
       "<figure data-s={}><div class=two>{}</div><figcaption>{}<b>{}</b>{} {}: iteration <output "
       "class=at>{}</output>{}</figcaption></figure>",
       found.optimizer, pictures, swatch(), html_text(name),
-      dagger(c.optimizers[found.optimizer].privileges),
+      marks_html(c.optimizers[found.optimizer]),
       html_text(kind_title(c.optimizers[found.optimizer].mathematics())),
       found.frames.iterations[last], apart);
 }

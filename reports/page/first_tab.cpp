@@ -59,10 +59,13 @@ std::string endings_html(const Comparison& c) {
   return "<ul class=tiles>" + html + "</ul>";
 }
 
-std::string dagger(const std::vector<std::string>& privileges) {
-  if (privileges.empty()) return "";
-  return fmt::format("<sup><a href=\"#privileges\" title=\"given: {}\">†</a></sup>",
-                     html_text(joined(privileges)));
+std::string marks_html(const OptimizerAxis& axis) {
+  std::string marks;
+  if (!axis.privileges.empty())
+    marks = fmt::format("<sup><a href=\"#privileges\" title=\"given: {}\">†</a></sup>",
+                        html_text(joined(axis.privileges)));
+  if (axis.is_imported) marks += "<sup title=\"imported: by its own figures\">§</sup>";
+  return marks;
 }
 
 }  // namespace isoline::reports

@@ -159,7 +159,7 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
   std::string html = fmt::format(
       "<article class=\"optimizer one\" id=optimizer-{0} data-s={0}><noscript><h3>{1}{2}</h3>{3}"
       "<p class=reading>{4}</p><dl>",
-      s, html_text(shown_spec(axis.label)), dagger(axis.privileges), sheet_html(axis),
+      s, html_text(shown_spec(axis.label)), marks_html(axis), sheet_html(axis),
       html_text(reading(c, s)));
   html += row("kind", kind_title(axis.mathematics()));
   if (axis.sheet != nullptr) html += row("asks for", list_html(axis.sheet->oracles));

@@ -24,14 +24,14 @@ function drawStandings(table) {
     setText(wins, standing.wins === 0 ? '·' : String(standing.wins));
     setText(typical, multiple(standing.typical));
     setText(runs, String(standing.reached), `/${standing.runs}`);
-    row.classList.toggle('rest', place >= 12);
+    row.classList.toggle('rest', place >= DATA.shownAtFirst);
     table.tBodies[0].append(row);
   });
   for (const head of table.tHead.rows[0].cells) head.removeAttribute('aria-sort');
 }
 
-// How far from the best, as a class of the style sheet: by factors of two.
-const heatOf = (value, low) => `h${Math.min(7, Math.ceil(Math.log2(value / low)))}`;
+// How far from the best, as a class of the style sheet: how many of the report's steps are passed.
+const heatOf = (value, low) => `h${DATA.shades.filter((step) => value / low > step).length}`;
 
 function drawHeatCell(place, cell, low) {
   if (!isMeasured(cell)) return;  // not applicable, or missing: to every tolerance

@@ -1,4 +1,5 @@
-// The page: template, style, scripts and Chart.js from reports/page, filled with tables and data.
+// The page: its sections in the frame of outer.html, with style, scripts and Chart.js, filled with
+// tables and data.
 // One file that asks nothing of the network.
 #include "reports/page/page.h"
 
@@ -18,6 +19,7 @@
 
 namespace isoline::reports {
 
+std::string_view embedded_outer_html();
 std::string_view embedded_page_html();
 std::string_view embedded_comparison_html();
 std::string_view embedded_page_css();
@@ -76,7 +78,8 @@ std::string head_html(const Document& document) {
   for (const Run& run : c.runs) {
     const Provenance& from = run.record->provenance;
     day = std::max(day, from.run.started.substr(0, kDay));
-    if (!from.build->commit.empty()) commits.insert(from.build->commit.substr(0, kShort));
+    if (!run.record->imported && !from.build->commit.empty())
+      commits.insert(from.build->commit.substr(0, kShort));
   }
   if (!day.empty()) parts.push_back(day);
   if (commits.size() == 1) parts.push_back(*commits.begin());
@@ -84,6 +87,9 @@ std::string head_html(const Document& document) {
   parts.push_back(document.headline);
   return html_text(joined(parts, " · "));
 }
+
+constexpr const char* kImportedMark =
+    " ·\n  <b>§</b>: imported from others, by their own figures, never verified";
 
 // The plot itself stands among the statistics.
 std::string profile_html(const Comparison& c) {
@@ -93,32 +99,52 @@ std::string profile_html(const Comparison& c) {
   return html_text(profile_reading(c, kTightest));
 }
 
-struct Script {
-  const char* name;
-  std::string_view (*text)();
-};
-constexpr Script kScripts[] = {
-    {"chart-js", embedded_chart_js},       {"lines-js", embedded_lines_js},
-    {"view-js", embedded_view_js},         {"cells-js", embedded_cells_js},
-    {"tabs-js", embedded_tabs_js},         {"bar-js", embedded_bar_js},
-    {"charts-js", embedded_charts_js},     {"planes-js", embedded_planes_js},
-    {"figures-js", embedded_figures_js},   {"tables-js", embedded_tables_js},
-    {"overview-js", embedded_overview_js}, {"pair-js", embedded_pair_js},
-    {"sides-js", embedded_sides_js},       {"problem-js", embedded_problem_js},
-    {"fields-js", embedded_fields_js},     {"page-js", embedded_page_js},
+constexpr std::string_view (*kScripts[])() = {
+    embedded_chart_js,   embedded_lines_js,   embedded_view_js,     embedded_cells_js,
+    embedded_tabs_js,    embedded_bar_js,     embedded_charts_js,   embedded_planes_js,
+    embedded_figures_js, embedded_tables_js,  embedded_overview_js, embedded_pair_js,
+    embedded_sides_js,   embedded_problem_js, embedded_fields_js,   embedded_page_js,
 };
 
-// Style and scripts, and what the bar of filters says before they run.
+std::string scripts_html() {
+  std::string html;
+  for (const auto script : kScripts) html.append("<script>").append(script()).append("</script>\n");
+  return html;
+}
+
+// A link to each section of a page, by the name that it bears there.
+std::string tabs_html(std::string_view sections) {
+  constexpr std::string_view kOpening = "<section id=\"", kNamed = "\" class=\"tab\" aria-label=\"";
+  std::string html;
+  for (std::size_t at = sections.find(kOpening); at != std::string_view::npos;
+       at = sections.find(kOpening, at)) {
+    at += kOpening.size();
+    const std::size_t named = sections.find(kNamed, at), name = named + kNamed.size();
+    html += fmt::format("  <a href=\"#{}\">{}</a>\n", sections.substr(at, named - at),
+                        sections.substr(name, sections.find('"', name) - name));
+  }
+  return html;
+}
+
+// A page of these sections in the frame that all pages share.
+std::string framed(std::string_view sections, const char* title, const char* about, Parts parts) {
+  parts["sections"] = filled(sections, parts);
+  parts["tabs"] = tabs_html(sections);
+  parts["scripts"] = scripts_html();
+  parts["title"] = title;
+  parts["about"] = about;
+  return filled(embedded_outer_html(), parts);
+}
+
+// Style, and what the bar of filters says before scripts run.
 Parts common_parts(const Comparison& c, const AllFields& fields) {
-  Parts parts = {{"style", std::string(embedded_page_css())
-                               .append(embedded_parts_css())
-                               .append(embedded_plots_css())
-                               .append(embedded_fields_css())},
-                 {"kinds", kind_rules(c)},
-                 {"tau", tau_name(c)},
-                 {"problems", problems_html(c, fields)}};
-  for (const Script& script : kScripts) parts.emplace(script.name, script.text());
-  return parts;
+  return {{"style", std::string(embedded_page_css())
+                        .append(embedded_parts_css())
+                        .append(embedded_plots_css())
+                        .append(embedded_fields_css())},
+          {"kinds", kind_rules(c)},
+          {"tau", tau_name(c)},
+          {"problems", problems_html(c, fields)}};
 }
 
 }  // namespace
@@ -143,10 +169,11 @@ std::string html_report(const Document& document) {
                     {"claims", claims_html(document)},
                     {"methods", methods_html(c)},
                     {"optimizers", optimizers_html(c)},
+                    {"imported", is_any_imported(c) ? kImportedMark : ""},
                     {"data", page_data(document, intervals, fields)}});
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
-  return filled(embedded_page_html(), parts);
+  return framed(embedded_page_html(), "Isoline report", "The page of a report.", std::move(parts));
 }
 
 std::string comparison_page(const Comparison& sides, const Section& changes,
@@ -159,7 +186,8 @@ std::string comparison_page(const Comparison& sides, const Section& changes,
                     {"verdict", html_text(changes.title)},
                     {"changes", section_html(changes)},
                     {"data", page_data(document, none, fields)}});
-  return filled(embedded_comparison_html(), parts);
+  return framed(embedded_comparison_html(), "Isoline: two results compared",
+                "The page of two results compared.", std::move(parts));
 }
 
 }  // namespace isoline::reports

@@ -39,10 +39,12 @@ std::string claims_html(const Document& document);  // verdicts, and each claim 
 // What the charts draw, as JSON that is safe inside a script element.
 std::string page_data(const Document& document, const std::vector<Interval>& intervals,
                       const AllFields& fields);
+inline constexpr std::size_t kShownAtFirst = 12;  // of the standings; the others on demand
 std::string figures_json(const std::vector<Figure>& figures);
 std::string json_quoted(const std::string& text);
 
-// A dagger that tells what an optimizer sees; empty where it sees no more than others.
-std::string dagger(const std::vector<std::string>& privileges);
+// † tells what an optimizer sees that others do not, § that its figures are claims of others; empty
+// where neither holds.
+std::string marks_html(const OptimizerAxis& axis);
 
 }  // namespace isoline::reports

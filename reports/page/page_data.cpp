@@ -103,7 +103,7 @@ std::string axes_json(const Comparison& c) {
   };
   return fmt::format(
       "\"optimizers\":{},\"labels\":{},\"methods\":{},\"kinds\":{},\"styles\":{},"
-      "\"privileges\":{},\"asks\":{}",
+      "\"privileges\":{},\"marks\":{},\"asks\":{}",
       of_optimizers(c, [](const OptimizerAxis& axis) { return optimizer_name(axis); }),
       of_optimizers(c,
                     [](const OptimizerAxis& axis) {
@@ -113,7 +113,7 @@ std::string axes_json(const Comparison& c) {
       of_optimizers(c, [](const OptimizerAxis& axis) { return kind_title(axis.mathematics()); }),
       list(c.optimizers, style),
       of_optimizers(c, [](const OptimizerAxis& axis) { return joined(axis.privileges); }),
-      of_optimizers(c, asks));
+      of_optimizers(c, marks_of), of_optimizers(c, asks));
 }
 
 // name, what is counted, its unit, whether medians are whole or halves, the least that counts.
@@ -144,9 +144,10 @@ std::string page_data(const Document& document, const std::vector<Interval>& int
   const Comparison& c = document.comparison;
   const Ladders ladders(c);
   std::string text = fmt::format(
-      "{{\"by\":\"{}\",\"measures\":{},\"isTimedTogether\":{},\"rungs\":{},\"targets\":{},{},\"given\":{},"
+      "{{\"by\":\"{}\",\"shownAtFirst\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},\"rungs\":{},\"targets\":{},{},\"given\":{},"
       "\"ranked\":{},\"claims\":{},\"figures\":{},\"standings\":{},\"problems\":[",
-      name_of(c.yardstick.by), measures_json(c), c.is_any_timed_together,
+      name_of(c.yardstick.by), kShownAtFirst, list(kShades, exact_figure), measures_json(c),
+      c.is_any_timed_together,
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c, intervals), indices(c.order.methods),

@@ -80,7 +80,7 @@ function pairSelect(key, redraw) {
   return select;
 }
 
-const named = (s) => element('b', {}, swatch(s), DATA.optimizers[s], DATA.privileges[s] === '' ? '' : ' †');
+const named = (s) => element('b', {}, swatch(s), DATA.optimizers[s], DATA.marks[s]);
 
 // What both take on the problems that both solve: medians, so that "dear" has a size.
 function priceRows() {

@@ -52,7 +52,7 @@ function legendRow(problem, s, ends, state, chart) {
   });
   button.className = 'name';
   button.prepend(swatch(s));
-  if (DATA.privileges[s] !== '') button.append(' †');
+  button.append(DATA.marks[s]);
   for (const [event, lit] of [['pointerenter', s], ['pointerleave', undefined], ['focus', s], ['blur', undefined]])
     button.addEventListener(event, () => chart(lit));
   const row = element('tr', {}, element('th', {scope: 'row'}, button, ...originOf(cellOf(problem, s))), ...figuresOf(problem, s, ends));

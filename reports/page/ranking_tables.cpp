@@ -18,12 +18,10 @@
 namespace isoline::reports {
 namespace {
 
-constexpr std::size_t kShownAtFirst = 12;  // rows; the others on demand
-
 std::string name_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& optimizer = c.optimizers[s];
   return fmt::format("<a href=\"#optimizer-{}\">{}{}</a>{}", s, swatch(),
-                     html_text(optimizer_name(optimizer)), dagger(optimizer.privileges));
+                     html_text(optimizer_name(optimizer)), marks_html(optimizer));
 }
 
 // Its score as a dot on a track from 0 to 1, with the interval where problems are enough for one.

@@ -184,8 +184,13 @@ std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLab
     for (const std::string& whole : label.wholes(problem, spec))
       labels.emplace(label.meaning(problem, whole), Known{spec, whole});
   };
-  for (const Record& record : study.runs)
-    know(record.request.problem.spec, record.request.optimizer.spec);
+  std::set<std::string> imported;  // labels
+  for (const Record& record : study.runs) {
+    const std::string &problem = record.request.problem.spec, &spec = record.request.optimizer.spec;
+    know(problem, spec);
+    if (!record.imported) continue;
+    for (std::string& name : label.of(problem, spec)) imported.insert(std::move(name));
+  }
   for (const PlannedCell& cell : study.plan.cells) know(cell.problem, cell.optimizer);
   std::vector<OptimizerAxis> axis;
   for (const auto& [name, known] : labels)
@@ -195,7 +200,8 @@ std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLab
                     .is_meaning = label.has_meanings(known.whole),
                     .is_foreign = label.is_foreign(known.spec),
                     .sheet = sheet_of(study, "optimizer", known.spec, label.method(known.spec)),
-                    .privileges = {}});
+                    .privileges = {},
+                    .is_imported = imported.contains(name)});
   return axis;
 }
 

@@ -94,6 +94,7 @@ struct OptimizerAxis {
   std::string side;         // "BASE" or "NEW", where two results are compared (read/both_sides.h)
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
+  bool is_imported = false;                              // some run of it is a claim of others
   std::size_t planned = 0, applicable = 0;               // problems asked of it; that it can treat
   std::size_t runs = 0, failed = 0;                      // inapplicable ones left out
   std::array<Standing, kTolerances.size()> standings{};  // by tolerance

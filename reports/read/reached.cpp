@@ -53,6 +53,7 @@ Real median_at(const std::vector<std::vector<Reached>>& runs, std::size_t j, Mea
 
 BestKnown::BestKnown(const Study& study) {
   for (const Record& record : study.runs) {
+    if (record.imported) continue;  // what others say of theirs moves nobody's targets
     const auto key = std::pair(record.request.problem.spec, record.request.seed);
     Real& least = least_.emplace(key, kNever).first->second;
     const Real best = record.summary.best_loss;
@@ -63,7 +64,8 @@ BestKnown::BestKnown(const Study& study) {
 Real BestKnown::minimum(const Record& record) const {
   if (record.minimum) return *record.minimum;
   const auto found = least_.find({record.request.problem.spec, record.request.seed});
-  return found == least_.end() ? std::nan("") : found->second;
+  if (found != least_.end()) return found->second;
+  return record.imported ? record.summary.best_loss : std::nan("");
 }
 
 bool returns(const Run& run, Real tau) {

@@ -73,8 +73,9 @@ Table table_of(const Comparison& c, std::size_t problem, const std::vector<Learn
               .topic = {.problem = problem}};
   for (const LearnedRow& row : rows) {
     const bool is_privileged = !c.cell(problem, row.optimizer).privileges.empty();
-    table.rows.push_back({label(c, row) + (is_privileged ? " †" : ""), figure(row.x_error),
-                          figure(row.loss), figure(row.iterations),
+    table.rows.push_back({label(c, row) + (is_privileged ? " †" : "") +
+                              (c.optimizers[row.optimizer].is_imported ? " §" : ""),
+                          figure(row.x_error), figure(row.loss), figure(row.iterations),
                           (row.is_timed_alone ? "" : "≈ ") + figure(row.milliseconds_each),
                           std::to_string(row.runs), std::to_string(row.failed)});
     table.row_topics.push_back({.optimizer = row.optimizer});

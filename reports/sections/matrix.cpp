@@ -27,8 +27,9 @@ Section problems_section(const Comparison& c) {
               .caption = fmt::format(
                   "Median {}. Bold: the least of its problem. ✗: not reached by half of the "
                   "runs. (k/n): k of n runs reached it. n/a: not applicable. Empty: "
-                  "never planned.",
-                  counted_to_tau(c)),
+                  "never planned.{}{}",
+                  counted_to_tau(c), is_any_imported(c) ? " " : "",
+                  is_any_imported(c) ? kImportedLegend : ""),
               .columns = {"optimizer"},
               .is_folded = c.problems.size() > kMostColumns,
               .most_columns = kMostColumns};

@@ -142,6 +142,21 @@ std::string headline(const Comparison& c) {
                      counted(c.seeds.size(), "seed"), counted(c.study->runs.size(), "run"));
 }
 
+// Whose claims stand among the runs: "Imported, marked §: theirs (Table 2 of …). …".
+std::string imported_text(const Comparison& c) {
+  std::map<std::string, std::set<std::string>> sources;  // by method
+  for (const Run& run : c.runs)
+    if (run.record->imported)
+      sources[run.record->request.optimizer.name].insert(run.record->imported->source);
+  std::vector<std::string> named;
+  for (const auto& [method, those] : sources)
+    named.push_back(fmt::format("{} ({})", method, joined({those.begin(), those.end()}, "; ")));
+  return fmt::format(
+      "Imported, marked §: {}. They are judged by their own figures; nothing of them was run or verified "
+      "here, and their times are those of other machines.",
+      joined(named));
+}
+
 std::vector<std::string> remarks(const Comparison& c) {
   std::vector<std::string> all;
   const Study& study = *c.study;
@@ -160,6 +175,7 @@ std::vector<std::string> remarks(const Comparison& c) {
                               counted(study.unreadable.size(), "file")));
   if (c.is_any_timed_together)
     all.push_back("Times marked ≈ were taken while other runs shared the machine: not comparable.");
+  if (is_any_imported(c)) all.push_back(imported_text(c));
   for (const ProblemAxis& problem : c.problems)
     if (!problem.is_minimum_declared)
       all.push_back(fmt::format(

@@ -38,9 +38,10 @@ Table standings_table(const Comparison& c) {
           "place. Solved: {}s whose median run reaches the tolerance. Best on: with the least {} of these "
           "methods. × least: the middle of its {} over the least, in logarithms; ✗ if it solves "
           "fewer than half. Runs: those that reach it. Failed: errors, crashes, time or memory limits, "
-          "on all that it was given. †: uses privileged information.{}",
+          "on all that it was given. †: uses privileged information.{}{}{}",
           counted(c.order.settings.size(), common_noun(c)), common_noun(c), counted_name(c),
-          counted_name(c), legend.empty() ? "" : " " + legend),
+          counted_name(c), legend.empty() ? "" : " " + legend, is_any_imported(c) ? " " : "",
+          is_any_imported(c) ? kImportedLegend : ""),
       .columns = {"", "optimizer", "solved", "best on", "× least", "runs", "failed"},
       .align = "rlrrrrrrr",
       .names = 2};

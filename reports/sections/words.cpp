@@ -99,8 +99,8 @@ std::string shown_spec(std::string_view spec) {
 std::string multiple(Real ratio) { return fmt::format("{:.3g}×", ratio); }
 
 int shade_of(Real value, Real least) {
-  constexpr Real kDarkest = 7;
-  return static_cast<int>(std::min(std::ceil(std::log2(value / least)), kDarkest));
+  const auto is_passed = [ratio = value / least](Real step) { return ratio > step; };
+  return static_cast<int>(std::ranges::count_if(kShades, is_passed));
 }
 
 std::string joined(const std::vector<std::string>& words, std::string_view between) {
@@ -136,7 +136,7 @@ std::string optimizer_name(const OptimizerAxis& optimizer) {
 }
 
 std::string optimizer_text(const Comparison& c, std::size_t s) {
-  return optimizer_name(c.optimizers[s]) + (c.optimizers[s].privileges.empty() ? "" : " †");
+  return optimizer_name(c.optimizers[s]) + marks_of(c.optimizers[s]);
 }
 
 std::string foreign_legend(const Comparison& c) {
@@ -144,6 +144,15 @@ std::string foreign_legend(const Comparison& c) {
   const bool is_any =
       std::ranges::any_of(c.problems, is_foreign) || std::ranges::any_of(c.optimizers, is_foreign);
   return is_any ? "‡: computed by another program." : "";
+}
+
+std::string marks_of(const OptimizerAxis& optimizer) {
+  return std::string(optimizer.privileges.empty() ? "" : " †") +
+         (optimizer.is_imported ? " §" : "");
+}
+
+bool is_any_imported(const Comparison& c) {
+  return std::ranges::any_of(c.optimizers, &OptimizerAxis::is_imported);
 }
 
 std::string status_meaning(Status status) {

@@ -1,6 +1,7 @@
 // How figures, counts and commands are written, the same way in every format.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
@@ -21,7 +22,9 @@ std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for wha
 std::string range_figure(const Spread& spread, std::string (*written)(Real));
 std::string percent(Real share);
 std::string multiple(Real ratio);  // "1.3×"
-// Of a heat map: 0 the least, then a step for each factor of two, to 7. Both are above 0.
+// Of a heat map: 0 the least, then a step for each factor of two, to 7: so many of these steps does
+// value / least pass. Both are above 0.
+inline constexpr std::array<Real, 7> kShades = {1, 2, 4, 8, 16, 32, 64};
 int shade_of(Real value, Real least);
 
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
@@ -37,6 +40,11 @@ std::string problem_name(const ProblemAxis& problem);
 std::string optimizer_name(const OptimizerAxis& optimizer);
 std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"
 std::string foreign_legend(const Comparison& comparison);  // what ‡ means, where any is marked
+// " †" of a method that sees what others do not, " §" of one whose figures are claims of others.
+std::string marks_of(const OptimizerAxis& optimizer);
+bool is_any_imported(const Comparison& comparison);
+inline constexpr std::string_view kImportedLegend =
+    "§: imported from others, by their own figures: nothing of it is verified.";
 
 std::string status_meaning(Status status);  // "used up their work or iterations"
 std::string status_text(const std::map<Status, std::size_t>& statuses);  // "target 3, budget 2"

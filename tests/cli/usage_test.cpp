@@ -14,9 +14,10 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run",    "plan",   "report", "compare",  "baseline", "merge",      "submit", "status",
-        "best",   "claims", "list",   "describe", "check",    "audit",      "new",    "validate",
-        "replay", "tune",   "train",  "infer",    "serve",    "completion", "help",   "version"}) {
+       {"run",    "plan",    "report", "compare", "baseline", "merge",      "submit",
+        "status", "best",    "claims", "list",    "describe", "check",      "audit",
+        "new",    "replay",  "tune",   "train",   "infer",    "completion", "help",
+        "serve",  "version", "export", "import",  "archive",  "validate"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
@@ -29,11 +30,11 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
 
 TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   const std::string completion = Shell()("./isoline completion bash").out;
-  EXPECT_TRUE(
-      contains(completion,
-               "\"run plan report compare baseline replay merge submit status best claims list "
-               "describe check audit new "
-               "validate tune train infer serve completion help version  --help --version\""))
+  EXPECT_TRUE(contains(
+      completion,
+      "\"run plan report compare baseline replay merge submit status best claims export import archive list "
+      "describe check audit new "
+      "validate tune train infer serve completion help version  --help --version\""))
       << completion;
 }
 
@@ -171,6 +172,13 @@ const std::vector<Mistake> kMistakes = {
     {"claims notebok", "did you mean 'notebook'"},
     {"claims --no-run --out nowhere", "nowhere"},
     {"completion fish", "fish"},
+    {"export . --format tsv --out x", "tsv"},
+    {"export .", "--out"},
+    {"export . --out x.csv", "no records in .: `isoline run"},
+    {"export nowhere.tar.gz --out x.csv", "nowhere.tar.gz"},
+    {"import nowhere.csv --out results", "nowhere.csv"},
+    {"archive . --out x.tar.gz", "no records in .: `isoline run"},
+    {"archive . --out x.zip", "--out must be a file that ends in .tar.gz or .tgz, got x.zip"},
     {"list problms", "problms"}};
 
 TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {

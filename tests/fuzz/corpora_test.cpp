@@ -16,11 +16,18 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::map<std::string, void (*)(std::string_view)> kTargets = {
-    {"spec", spec},       {"command_line", command_line},
-    {"suite", suite},     {"record", record},
-    {"claims", claims},   {"checkpoint", checkpoint},
-    {"network", network}, {"npy", npy},
-    {"wire", wire},       {"bridge", bridge}};
+    {"spec", spec},
+    {"command_line", command_line},
+    {"suite", suite},
+    {"record", record},
+    {"claims", claims},
+    {"checkpoint", checkpoint},
+    {"network", network},
+    {"npy", npy},
+    {"wire", wire},
+    {"bridge", bridge},
+    {"foreign_curve", foreign_curve},
+    {"packed_results", packed_results}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";
 

@@ -102,6 +102,30 @@ class Page(InBrowser):
             self.assertGreaterEqual(place[1], -1, f"{address} is behind the bars")
             self.assertTrue(place[1] < 60 or place[3], f"{address}: {place[1]} px off")
 
+    def test_a_page_opened_at_a_tab_begins_at_its_top(self):
+        for tab in ("overview", "problems", "statistics"):
+            self.open(f"#{tab}")
+            self.browser.wait("return document.readyState === 'complete'")
+            self.browser.run("return new Promise((done) => requestAnimationFrame(() => "
+                             "requestAnimationFrame(done)))")
+            self.assertEqual(self.browser.run("return scrollY"), 0, tab)
+
+    def test_the_scripts_draw_the_first_tab_as_it_came(self):
+        """Rows at first, shades of the heat map: C++ has written both, the scripts by its numbers."""
+        first = ("return [[...document.querySelectorAll('#standings-table tbody tr')].map((row) => "
+                 "[row.dataset.s, row.classList.contains('rest')]), "
+                 "[...document.querySelectorAll('#heat td[data-p]')].map((cell) => cell.className)]")
+        came = self.browser.run(first)
+        shades = {name for cell in came[1] for name in cell.split() if name[0] == "h"}
+        self.assertGreater(len(shades), 3)
+        self.browser.run("document.querySelectorAll('#heat td[data-p]').forEach((cell) => {"
+                         "if (/^h\\d/.test(cell.className)) cell.className = ''; });"
+                         "document.querySelectorAll('#standings-table tbody tr').forEach((row) => "
+                         "row.classList.toggle('rest'));"
+                         "drawStandings(document.getElementById('standings-table'));"
+                         "drawHeat(document.getElementById('heat'))")
+        self.assertEqual(self.browser.run(first), came)
+
     def test_the_first_tab_says_who_leads_within_two_screens(self):
         verdict = self.browser.run("return document.querySelector('.verdict').innerText")
         self.assertIn(f"{self.json['leader']['optimizer']} stands first", verdict)

@@ -191,6 +191,7 @@ TEST(Style, TheTopHasTheRoomsAndTheUsualFilesAlone) {
                                        "README.md",
                                        "LICENSE",
                                        "CHANGELOG.md",
+                                       "CITATION.cff",
                                        "CONTRIBUTING.md",
                                        "CMakeLists.txt",
                                        "CMakePresets.json",
