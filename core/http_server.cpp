@@ -98,19 +98,19 @@ class HttpServer::Connections final : public httplib::Server {
     else
       Post(route.path, [this, answer = route.answer](const httplib::Request&, auto& reply,
                                                      const httplib::ContentReader& read) {
-             std::string body;
-             bool is_too_long = false;
-             const bool is_whole = read([&](const char* bytes, std::size_t size) {
-               is_too_long = size > limits_.body_bytes - body.size();
-               if (!is_too_long) body.append(bytes, size);
-               return !is_too_long;
-             });
-             if (is_whole)
-               give(reply, answer, body);
-             else if (is_too_long || reply.status == kTooLong)
-               refuse(reply, kTooLong, "");
-             else
-               refuse(reply, 400, "the body did not arrive whole");
+        std::string body;
+        bool is_too_long = false;
+        const bool is_whole = read([&](const char* bytes, std::size_t size) {
+          is_too_long = size > limits_.body_bytes - body.size();
+          if (!is_too_long) body.append(bytes, size);
+          return !is_too_long;
+        });
+        if (is_whole)
+          give(reply, answer, body);
+        else if (is_too_long || reply.status == kTooLong)
+          refuse(reply, kTooLong, "");
+        else
+          refuse(reply, 400, "the body did not arrive whole");
       });
   }
 
