@@ -45,7 +45,7 @@ ServedRun::ServedRun(const Catalog& catalog, Request request)
 
 void ServedRun::begin() {
   begun_ = monotonic_nanoseconds();
-  provenance_ = {.started = time_now(), .concurrent_jobs = 1};
+  provenance_ = {.started = time_now(), .concurrent_jobs = 1, .is_exclusive = false};
   best_ = problem_.start();
   const Status status = meter_.begin(best_);
   best_loss_ = trace_->start_loss;
