@@ -148,7 +148,7 @@ class HttpClient::Connection {
   const double seconds_;
   const std::size_t most_bytes_;
   bool is_kept_ = false;
-  httplib::ClientImpl client_;
+  httplib::Client client_;
 };
 
 HttpClient::HttpClient(const std::string& url, double seconds, std::size_t most_bytes)

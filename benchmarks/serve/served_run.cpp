@@ -45,7 +45,8 @@ ServedRun::ServedRun(const Catalog& catalog, Request request)
 
 void ServedRun::begin() {
   begun_ = monotonic_nanoseconds();
-  provenance_ = {.started = instant_text(seconds_now()), .concurrent_jobs = 1};
+  provenance_ = {
+      .started = instant_text(seconds_now()), .concurrent_jobs = 1, .is_exclusive = false};
   best_ = problem_.start();
   const Status status = meter_.begin(best_);
   best_loss_ = trace_->start_loss;

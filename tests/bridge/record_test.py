@@ -18,7 +18,7 @@ def descend(models, steps):
     _, x = models.evaluate("square.data", [])
     for _ in range(steps):
         slope = models.gradient("square.loss", [x], [1.0])
-        x = [x[i] - 0.1 * slope[i] for i in range(len(x))]
+        x = [x[i] - 0.02 * slope[i] for i in range(len(x))]
         models.evaluate("square.loss", [x])
     return x
 
@@ -64,7 +64,7 @@ class Recorded(unittest.TestCase):
         with self.served("square", "--record", "mine") as models:
             descend(models, 20)
         (record,) = self.records()
-        self.isoline("run", "--problem", "square", "--optimizer", "gd[rate=0.1]", "--iterations",
+        self.isoline("run", "--problem", "square", "--optimizer", "gd[rate=0.02]", "--iterations",
                      "20", "--target", "0", "--out", "own", "--no-report")
         (path,) = glob.glob(f"{self.folder}/own/runs/*.json")
         own = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))

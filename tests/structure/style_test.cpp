@@ -120,7 +120,9 @@ bool is_banned(const std::string& word) {
 
 // Names that others gave: members of libraries and of the operating system.
 bool is_given(const std::string& identifier) {
-  static const std::set<std::string> given = {"sa_handler", "set_new_handler", "error_handler_t"};
+  static const std::set<std::string> given = {
+      "sa_handler",        "set_new_handler",         "error_handler_t",
+      "set_error_handler", "set_pre_routing_handler", "HandlerResponse"};
   return given.contains(identifier);
 }
 
