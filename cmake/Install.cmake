@@ -10,6 +10,8 @@ foreach(library IN LISTS libraries)
 endforeach()
 set_target_properties(isoline_cli PROPERTIES EXPORT_NAME cli)  # its headers are benchmarks'
 install(TARGETS isoline_cli EXPORT IsolineTargets)
+install(DIRECTORY clients/python DESTINATION share/isoline COMPONENT program FILES_MATCHING
+        PATTERN "*.py")
 include(cmake/Package.cmake)
 
 set(package lib/cmake/Isoline)

@@ -26,17 +26,27 @@ struct Described {
   OptionValues options;  // as given, the rest at their defaults
 };
 
+Described described_as_problem(const Catalog& catalog, const Spec& spec) {
+  const Component problem = complete_problem(catalog, spec);
+  return {problem_sheet(catalog, problem), catalog.problems.at(spec.name).options, problem.options};
+}
+
+Described described_as_optimizer(const Catalog& catalog, const Spec& spec) {
+  const Component optimizer = complete_optimizer(catalog, spec);
+  return {optimizer_sheet(catalog, optimizer), catalog.optimizers.at(spec.name).options,
+          optimizer.options};
+}
+
 Described described(const Catalog& catalog, const Spec& spec) {
-  if (catalog.problems.contains(spec.name)) {
-    const Component problem = complete_problem(catalog, spec);
-    return {problem_sheet(catalog, problem), catalog.problems.at(spec.name).options,
-            problem.options};
-  }
-  if (catalog.optimizers.contains(spec.name)) {
-    const Component optimizer = complete_optimizer(catalog, spec);
-    return {optimizer_sheet(catalog, optimizer), catalog.optimizers.at(spec.name).options,
-            optimizer.options};
-  }
+  const bool is_problem = catalog.problems.contains(spec.name);
+  const bool is_optimizer = catalog.optimizers.contains(spec.name);
+  if (is_problem && is_optimizer) try {  // a door has one name for both, and the other side knows
+      return described_as_optimizer(catalog, spec);
+    } catch (const UsageError&) {
+      return described_as_problem(catalog, spec);
+    }
+  if (is_problem) return described_as_problem(catalog, spec);
+  if (is_optimizer) return described_as_optimizer(catalog, spec);
   std::vector<std::string> known = catalog.problems.names();
   for (const auto& names : {catalog.optimizers.names(), network_registry().names()})
     known.insert(known.end(), names.begin(), names.end());

@@ -15,6 +15,7 @@ int main(int count, char** arguments) {
   isoline::benchmarks::micro::register_fluid();
   isoline::benchmarks::micro::register_networks();
   isoline::benchmarks::micro::register_isolation();
+  isoline::benchmarks::micro::register_round_trips();
   isoline::benchmarks::micro::register_unet();
   isoline::benchmarks::micro::register_spectral();
   benchmark::Initialize(&count, arguments);

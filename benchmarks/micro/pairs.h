@@ -51,6 +51,7 @@ void register_transforms();
 void register_fluid();
 void register_networks();
 void register_isolation();
+void register_round_trips();
 void register_unet();
 void register_spectral();
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "benchmarks/run/certificate.h"
 #include "benchmarks/run/sheets.h"
 #include "benchmarks/run/soundness.h"
 #include "benchmarks/run/store.h"
@@ -45,6 +46,7 @@ Outcome run_plan(const Catalog& catalog, const WholePlan& whole,
   const std::int64_t begun = monotonic_nanoseconds();
   require_sound(catalog, requests);
   Store store(folder);
+  require_certified(catalog, requests, store);
   store.plan(whole.name, whole.cells);
   write_used_rates(whole.rates, requests, store);
   write_sheets(catalog, requests, store);

@@ -165,6 +165,7 @@ Sheet described_optimizer(const Catalog& catalog, const Component& component) {
 Sheet problem_sheet(const Catalog& catalog, const Component& component) {
   const Problem problem = make_problem(catalog, component, 0);
   Sheet sheet = described_problem(catalog, component);
+  sheet.aim = problem.aim();  // as its entry has it, or as another program says
   sheet.oracles = names_of(problem.offers());
   sheet.inverse = kInverseNames[static_cast<int>(problem.inverse_kind())];
   sheet.unknowns = problem.unknowns();

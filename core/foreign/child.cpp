@@ -213,7 +213,9 @@ std::string ChildProgram::end_in_words() {
 }
 
 std::string ChildProgram::last_words() const {
-  std::string_view words = tail_;
+  std::string text = tail_;
+  std::erase(text, '\0');  // who reads it may take that for its end
+  std::string_view words = text;
   const std::size_t end = words.find_last_not_of("\n\r\t ");
   if (end == std::string_view::npos) return "";
   words = words.substr(0, end + 1);

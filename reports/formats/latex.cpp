@@ -20,13 +20,25 @@ std::string marked_text(std::string_view text) {
   struct Mark {
     std::string_view letter, command;
   };
-  constexpr Mark kMarks[] = {
-      {"✗", "$\\times$"},  {"–", "--"},        {"≤", "$\\le$"},
-      {"≥", "$\\ge$"},     {"−", "$-$"},       {"†", "\\textsuperscript{\\textdagger}"},
-      {"₀", "$_0$"},       {"×", "$\\times$"}, {"é", "\\'e"},
-      {"µ", "$\\mu$"},     {"±", "$\\pm$"},    {"→", "$\\to$"},
-      {"≈", "$\\approx$"}, {"⁻¹", "$^{-1}$"},  {"…", "\\ldots{}"},
-      {"°", "$^\\circ$"},  {"α", "$\\alpha$"}, {"’", "'"}};
+  constexpr Mark kMarks[] = {{"✗", "$\\times$"},
+                             {"–", "--"},
+                             {"≤", "$\\le$"},
+                             {"≥", "$\\ge$"},
+                             {"−", "$-$"},
+                             {"†", "\\textsuperscript{\\textdagger}"},
+                             {"‡", "\\textsuperscript{\\textdaggerdbl}"},
+                             {"₀", "$_0$"},
+                             {"×", "$\\times$"},
+                             {"é", "\\'e"},
+                             {"µ", "$\\mu$"},
+                             {"±", "$\\pm$"},
+                             {"→", "$\\to$"},
+                             {"≈", "$\\approx$"},
+                             {"⁻¹", "$^{-1}$"},
+                             {"…", "\\ldots{}"},
+                             {"°", "$^\\circ$"},
+                             {"α", "$\\alpha$"},
+                             {"’", "'"}};
   std::string out, plain;
   while (!text.empty()) {
     const auto* mark =

@@ -39,7 +39,13 @@ std::string name_of_spec(const std::string& spec) {
 }
 
 std::string label_of(const OptimizerAxis& optimizer) {
-  return name_of_spec(optimizer.label) + (optimizer.privileges.empty() ? "" : " †");
+  return name_of_spec(optimizer.label) + (optimizer.is_foreign ? " ‡" : "") +
+         (optimizer.privileges.empty() ? "" : " †");
+}
+
+std::string label_of(const ProblemAxis& problem) {
+  return name_of_spec(problem.label.empty() ? problem.spec : problem.label) +
+         (problem.is_foreign ? " ‡" : "");
 }
 
 std::size_t widest_label(const Comparison& c) {
@@ -71,14 +77,14 @@ std::string best_of_each(const Comparison& c) {
   std::vector<std::string> lines;
   std::size_t width = 0, longest = 0;
   for (const ProblemAxis& problem : c.problems)
-    width = std::max(width, width_of(name_of_spec(problem.spec)));
+    width = std::max(width, width_of(label_of(problem)));
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::vector<std::size_t> order = ranking(c, p);
     const bool is_solved = !order.empty() && c.cell(p, order[0]).headline[kTightest].is_solved();
     const std::string best = is_solved ? fmt::format("{} {}", label_of(c.optimizers[order[0]]),
                                                      matrix_text(c, c.cell(p, order[0]), kTightest))
                                        : "none";
-    lines.push_back("  " + left(name_of_spec(c.problems[p].spec), width) + "  " + best);
+    lines.push_back("  " + left(label_of(c.problems[p]), width) + "  " + best);
     longest = std::max(longest, width_of(lines.back()));
   }
   const std::size_t half = 2 * longest + 2 <= kWidest ? (lines.size() + 1) / 2 : lines.size();
@@ -111,7 +117,7 @@ std::string every_cell(const Comparison& c) {
   std::string text;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     text +=
-        fmt::format("\n{}\n{}", terminal_text(shown_spec(c.problems[p].spec)), left("", width + 2));
+        fmt::format("\n{}\n{}", terminal_text(problem_name(c.problems[p])), left("", width + 2));
     text += "  runs";
     for (std::size_t t = 0; t < kTolerances.size(); ++t)
       text += right(fmt::format("{}{} ", t == 0 ? "to " : "", c.yardstick.tolerances[t].name), 8);
@@ -289,6 +295,7 @@ std::string terminal_table(const Document& document) {
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
   if (has_privileges) text += "† uses privileged information.\n";
+  if (const std::string legend = foreign_legend(c); !legend.empty()) text += legend + "\n";
   return text + failure_lines(c);
 }
 

@@ -180,7 +180,7 @@ std::string problem_data(const Comparison& c, const Ladders& ladders, std::size_
   std::string text = fmt::format(
       "{{\"spec\":{},\"asked\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
       "\"curves\":{}",
-      json_quoted(shown_spec(problem.spec)), json_quoted(problem.spec), json_quoted(problem.name),
+      json_quoted(problem_name(problem)), json_quoted(problem.spec), json_quoted(problem.name),
       problem.group(), is_ordered(c, p), cells_json(c, ladders, p), curves_json(c, p));
   text += origins_json(c, p) + goal_json(c, p) + learned_json(c, p);
   if (fields) text += ",\"fields\":" + fields_json(*fields);

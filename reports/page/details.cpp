@@ -60,9 +60,9 @@ std::string again_cell(const Comparison& c, const Cell& cell, std::size_t s,
 std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
                        std::vector<std::string>& budgets) {
   const Cell& cell = c.cell(p, s);
-  std::string row =
-      fmt::format("<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, shown_html(c.problems[p].spec),
-                  html_text(setting_text(c, p, s)), cell.privileges.empty() ? "" : "<sup>†</sup>");
+  std::string row = fmt::format(
+      "<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, html_text(problem_name(c.problems[p])),
+      html_text(setting_text(c, p, s)), cell.privileges.empty() ? "" : "<sup>†</sup>");
   if (!cell.is_measured()) {
     row += cell.runs.empty() ? "<td>" : "<td>n/a";
     for (int empty = 0; empty < 8; ++empty) row += "<td>";

@@ -76,7 +76,7 @@ std::string row_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
   std::string html = fmt::format(
       "<tr data-s={0}><th scope=row><a href=\"#optimizer-{0}\">{1}{2}</a>{3}<td class=text>{4}", s,
-      swatch(), html_text(shown_spec(axis.brief)), dagger(axis.privileges),
+      swatch(), html_text(optimizer_name(axis)), dagger(axis.privileges),
       kind_title(axis.mathematics()));
   for (const Property& property : kProperties) html += answer_html(property, audit_of(c, s));
   return html + fmt::format("<td class=text>{}<td class=text>{}\n",

@@ -19,7 +19,7 @@ std::string list_html(const std::vector<std::string>& words) { return html_text(
 
 std::string problem_link(const Comparison& c, std::size_t p, const std::string& remark) {
   return fmt::format("<li data-p={0}><a href=\"#problem-{0}\">{1}</a>{2}</li>", p,
-                     html_text(shown_spec(c.problems[p].spec)),
+                     html_text(problem_name(c.problems[p])),
                      remark.empty() ? "" : " <small>" + html_text(remark) + "</small>");
 }
 

@@ -104,8 +104,11 @@ std::string axes_json(const Comparison& c) {
   return fmt::format(
       "\"optimizers\":{},\"labels\":{},\"methods\":{},\"kinds\":{},\"styles\":{},"
       "\"privileges\":{},\"asks\":{}",
-      of_optimizers(c, [](const OptimizerAxis& axis) { return shown_spec(axis.brief); }),
-      of_optimizers(c, [](const OptimizerAxis& axis) { return shown_spec(axis.label); }),
+      of_optimizers(c, [](const OptimizerAxis& axis) { return optimizer_name(axis); }),
+      of_optimizers(c,
+                    [](const OptimizerAxis& axis) {
+                      return shown_spec(axis.label) + (axis.is_foreign ? " ‡" : "");
+                    }),
       of_optimizers(c, [](const OptimizerAxis& axis) { return axis.method; }),
       of_optimizers(c, [](const OptimizerAxis& axis) { return kind_title(axis.mathematics()); }),
       list(c.optimizers, style),

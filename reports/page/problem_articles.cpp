@@ -86,7 +86,7 @@ std::string problem_html(const Comparison& c, std::size_t p,
   const Sheet* sheet = problem.sheet;
   std::string html =
       fmt::format("<article class=\"problem one\" id=problem-{0} data-p={0}><noscript><h3>{1}</h3>",
-                  p, html_text(shown_spec(problem.spec)));
+                  p, html_text(problem_name(problem)));
   if (sheet != nullptr) html += about_html(*sheet);
   html += fmt::format(
       "<p class=reading>{}</p><div class=solve><div class=curves></div><div "
@@ -105,7 +105,7 @@ std::string problems_html(const Comparison& c, const AllFields& fields) {
   std::string index, html;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     groups[c.problems[p].group()] += fmt::format("<a href=\"#problem-{0}\" data-p={0}>{1}</a>\n", p,
-                                                 html_text(shown_spec(c.problems[p].spec)));
+                                                 html_text(problem_name(c.problems[p])));
     html += problem_html(c, p, fields[p]);
   }
   for (const char* group : {"toy", "physics", "classical", "learned", "other"})

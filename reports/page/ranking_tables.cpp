@@ -23,7 +23,7 @@ constexpr std::size_t kShownAtFirst = 12;  // rows; the others on demand
 std::string name_html(const Comparison& c, std::size_t s) {
   const OptimizerAxis& optimizer = c.optimizers[s];
   return fmt::format("<a href=\"#optimizer-{}\">{}{}</a>{}", s, swatch(),
-                     html_text(shown_spec(optimizer.brief)), dagger(optimizer.privileges));
+                     html_text(optimizer_name(optimizer)), dagger(optimizer.privileges));
 }
 
 // Its score as a dot on a track from 0 to 1, with the interval where problems are enough for one.
@@ -102,7 +102,7 @@ std::string heat_head(const Comparison& c) {
                           group == "learned" ? "learned: error in x" : group);
     for (const std::size_t p : problems)
       names += fmt::format("<th scope=col data-p={0}><a href=\"#problem-{0}\"><span>{1}</span></a>",
-                           p, html_text(shown_spec(c.problems[p].spec)));
+                           p, html_text(problem_name(c.problems[p])));
   }
   return "<thead>" + groups + "<tr>" + names + "<tbody>\n";
 }

@@ -50,6 +50,7 @@ std::string given_by(const std::set<std::string>& privileges) {
 
 OptimizerLabels::OptimizerLabels(const Study& study)
     : names_(names_by_spec(study, &Request::optimizer, &PlannedCell::optimizer)) {
+  find_foreign(study);
   std::set<std::pair<std::string, std::string>> seen;                // problem, optimizer spec
   std::map<std::pair<std::string, std::string>, std::size_t> specs;  // by problem and name
   for (const Record& record : study.runs) {
@@ -66,6 +67,21 @@ OptimizerLabels::OptimizerLabels(const Study& study)
     if (count > 1) by_name_.erase(where.second);
   find_both_ways(study);
   find_meanings(study);
+}
+
+void OptimizerLabels::find_foreign(const Study& study) {
+  std::set<std::string> taken;
+  for (const auto& [spec, name] : names_) taken.insert({spec, name});
+  for (const Record& record : study.runs) {
+    if (!record.foreign.optimizer) continue;
+    const std::string& spec = record.request.optimizer.spec;
+    if (foreign_.contains(spec)) continue;
+    const std::string& name = record.foreign.optimizer->label;
+    // Behind the options may stand the side of two results (read/both_sides.h).
+    const std::string label = name + spec.substr(std::min(spec.rfind(']'), spec.size() - 1) + 1);
+    const bool is_free = !name.empty() && taken.insert(label).second;
+    foreign_[spec] = is_free ? label : spec;
+  }
 }
 
 // Where one problem has a method both ways, with different options: at its defaults, and at the one
@@ -124,6 +140,7 @@ std::vector<std::string> OptimizerLabels::of(const std::string& problem,
 
 std::vector<std::string> OptimizerLabels::wholes(const std::string& problem,
                                                  const std::string& spec) const {
+  if (const auto foreign = foreign_.find(spec); foreign != foreign_.end()) return {foreign->second};
   const std::string& name = names_.at(spec);
   const std::string tuned = name + ", tuned";
   if (tuned_.contains({problem, spec})) return {tuned};
@@ -151,6 +168,9 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
     if (could_declare && !record.minimum) at->is_minimum_declared = false;
     if (record.aim == Aim::x && record.x_scale) at->aim = Aim::x;
     at->is_learned = record.request.problem.is_learned;
+    if (!record.foreign.problem) continue;
+    at->is_foreign = true;
+    at->label = record.foreign.problem->label;
   }
   return axis;
 }
@@ -173,6 +193,7 @@ std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLab
                     .method = label.method(known.spec),
                     .whole = known.whole,
                     .is_meaning = label.has_meanings(known.whole),
+                    .is_foreign = label.is_foreign(known.spec),
                     .sheet = sheet_of(study, "optimizer", known.spec, label.method(known.spec)),
                     .privileges = {}});
   return axis;

@@ -14,6 +14,7 @@ namespace isoline::reports {
 // then keeps one row under its name, unless some problem has two of that name. A method with tuned
 // rates stands beside itself, as "adam, tuned". A method that sees what others do not on some
 // problems and no more than they on others is two: "sip, given P⁻¹" and "sip".
+// What another program runs goes by the name that it gives itself, unless that is another's.
 // Where a study holds a method at its defaults and at the rates of tables, it is "gd" and "gd,
 // tuned"; on a problem where both are the same, its one run stands in both rows.
 class OptimizerLabels {
@@ -25,15 +26,18 @@ class OptimizerLabels {
   std::vector<std::string> wholes(const std::string& problem, const std::string& spec) const;
   std::string meaning(const std::string& problem, const std::string& whole) const;
   bool has_meanings(const std::string& whole) const { return meanings_.contains(whole); }
+  bool is_foreign(const std::string& spec) const { return foreign_.contains(spec); }
 
  private:
+  void find_foreign(const Study& study);
   void find_both_ways(const Study& study);
   void find_meanings(const Study& study);
 
   std::set<std::pair<std::string, std::string>> tuned_;  // problem and optimizer, as specs
   std::set<std::string> by_name_;                        // names that stand for all their specs
   std::map<std::string, std::string> names_;             // by spec, as records have them
-  std::set<std::string> both_ways_;                      // names at their defaults and with rates
+  std::map<std::string, std::string> foreign_;  // by spec: what other programs call themselves
+  std::set<std::string> both_ways_;             // names at their defaults and with rates
   std::set<std::pair<std::string, std::string>> rated_;  // problem and name, with another rate
   // By label of all meanings and problem: what is given there beyond the problem, or nothing.
   std::map<std::string, std::map<std::string, std::string>> meanings_;

@@ -56,8 +56,10 @@ struct Cell {
 
 struct ProblemAxis {
   std::string spec, name;
-  const Sheet* sheet = nullptr;     // none where the folder has none
-  Prices prices = {};               // measured only where the sheet is of this very spec
+  std::string label;             // of what another program computes: what it calls itself, or empty
+  bool is_foreign = false;       // another program computes it
+  const Sheet* sheet = nullptr;  // none where the folder has none
+  Prices prices = {};            // measured only where the sheet is of this very spec
   bool is_minimum_declared = true;  // otherwise f_L is the least loss any run of its seed reached
   Aim aim = Aim::loss;              // what its user wants, as its records say
   bool is_learned = false;
@@ -88,7 +90,8 @@ struct OptimizerAxis {
   // "sip, given P⁻¹" and "sip". Then all of them stand under this label.
   std::string whole;
   bool is_meaning = false;
-  std::string side;  // "BASE" or "NEW", where two results are compared (read/both_sides.h)
+  bool is_foreign = false;  // another program runs it
+  std::string side;         // "BASE" or "NEW", where two results are compared (read/both_sides.h)
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
   std::size_t planned = 0, applicable = 0;               // problems asked of it; that it can treat

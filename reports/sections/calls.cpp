@@ -170,7 +170,7 @@ Table prices_table(const Comparison& c) {
     const MeasuredPrices* prices = prices_of(c.problems[p]);
     if (prices == nullptr) continue;
     table.row_topics.push_back({.problem = p});
-    const std::string name = shown_spec(c.problems[p].spec);
+    const std::string name = problem_name(c.problems[p]);
     const Real microseconds = 1e6 * prices->forward_seconds;
     std::vector<TableCell> row = {name, {figure(microseconds), {{"microseconds", microseconds}}}};
     for (const std::string_view oracle : oracles) row.push_back(price_cell(*prices, oracle));

@@ -75,7 +75,7 @@ void add_panel(const Comparison& c, const std::string& name, const Panel& panel,
     return;
   }
   for (const std::size_t p : problems)
-    add(all, problem_figure(c, p, panel), shown_spec(c.problems[p].spec), panel);
+    add(all, problem_figure(c, p, panel), problem_name(c.problems[p]), panel);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ std::string reading_of(const Comparison& c, const std::vector<LearnedRow>& rows)
 Table table_of(const Comparison& c, std::size_t problem, const std::vector<LearnedRow>& rows) {
   const Sheet* sheet = c.problems[problem].sheet;
   Table table{.id = fmt::format("learned-{}", problem),
-              .title = shown_spec(c.problems[problem].spec),
+              .title = problem_name(c.problems[problem]),
               .reading = reading_of(c, rows),
               .caption = sheet == nullptr ? "" : sheet->note,
               .columns = {"optimizer", "error in x", "loss in y", "iterations", "ms each", "runs",

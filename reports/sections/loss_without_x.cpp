@@ -94,7 +94,7 @@ TableCell condition_cell(const ProblemAxis& problem) {
 
 // "heat[N=8] (1.2e9)".
 std::string with_condition(const ProblemAxis& problem) {
-  const std::string name = shown_spec(problem.spec), condition = condition_text(problem);
+  const std::string name = problem_name(problem), condition = condition_text(problem);
   return condition.empty() ? name : fmt::format("{} ({})", name, condition);
 }
 
@@ -197,7 +197,7 @@ SettingTally tally_of(const Comparison& c, std::size_t p) {
 std::vector<TableCell> row_of(const ProblemAxis& problem, const SettingTally& tally) {
   const bool is_known = problem.sheet != nullptr;
   std::vector<TableCell> row = {
-      shown_spec(problem.spec),
+      problem_name(problem),
       is_known ? count_cell(static_cast<std::size_t>(problem.sheet->unknowns)) : TableCell(""),
       condition_cell(problem)};
   add_tally(row, tally);

@@ -33,7 +33,7 @@ Section problems_section(const Comparison& c) {
               .is_folded = c.problems.size() > kMostColumns,
               .most_columns = kMostColumns};
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const std::string name = shown_spec(c.problems[p].spec);
+    const std::string name = problem_name(c.problems[p]);
     section.readings.push_back({name, curve_reading(c, p)});
     table.columns.push_back(name);
   }

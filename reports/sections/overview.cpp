@@ -30,7 +30,7 @@ std::string partial_rows(const Comparison& c) {
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::size_t planned = methods_of(c, p);
     if (planned < methods_of(c))
-      rows.push_back(fmt::format("{}: {}", shown_spec(c.problems[p].spec), planned));
+      rows.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), planned));
   }
   const std::size_t more = rows.size() > kNamed ? rows.size() - kNamed : 0;
   rows.resize(rows.size() - more);
@@ -116,7 +116,7 @@ std::vector<std::string> problem_sentences(const Comparison& c) {
   constexpr std::size_t kFew = 4;
   std::vector<std::string> all;
   for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
-    all.push_back(fmt::format("{}: {}", shown_spec(c.problems[p].spec), curve_reading(c, p)));
+    all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
   return all;
 }
 
@@ -164,7 +164,7 @@ std::vector<std::string> remarks(const Comparison& c) {
     if (!problem.is_minimum_declared)
       all.push_back(fmt::format(
           "{} declares no least loss: its tolerances refer to the best loss any run reached.",
-          shown_spec(problem.spec)));
+          problem_name(problem)));
   return all;
 }
 

@@ -203,7 +203,7 @@ Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel)
              .is_log_y = true,
              .is_relative = !panel.divided_by.empty()};
   for (const auto& [value, problem] : sweep)
-    out.places.emplace_back(shown_spec(c.problems[problem].spec), value);
+    out.places.emplace_back(problem_name(c.problems[problem]), value);
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
     FigureLine line{.optimizer = s};
     for (const auto& [value, problem] : sweep) {

@@ -92,8 +92,7 @@ TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
 template <class Text>
 void fill_matrix(const Comparison& c, Table& table, Text text) {
   const std::size_t problems = std::min(c.problems.size(), kMostProblems);
-  for (std::size_t p = 0; p < problems; ++p)
-    table.columns.push_back(shown_spec(c.problems[p].spec));
+  for (std::size_t p = 0; p < problems; ++p) table.columns.push_back(problem_name(c.problems[p]));
   table.columns.push_back("failed");
   for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
     std::vector<TableCell> row = {optimizer_text(c, s)};

@@ -143,7 +143,7 @@ Plots target_plot(const Comparison& c) {
   const std::size_t shown = shown_optimizers(c, kMostTargetLines);
   const std::size_t problems = std::min(c.problems.size(), kMostPlotRows);
   for (std::size_t p = 0; p < problems; ++p)
-    plot.rows.push_back({shown_spec(c.problems[p].spec), {.problem = p}});
+    plot.rows.push_back({problem_name(c.problems[p]), {.problem = p}});
   std::size_t dots = 0;
   Real widest = 1;
   std::string where;

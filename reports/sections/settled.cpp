@@ -109,7 +109,7 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
     const Real least = equal.methods[order[0]]->x_error.median;
     std::string text =
         fmt::format("{}, learned: at equal work {} is nearest in x, at {}",
-                    shown_spec(c.problems[p].spec), optimizer_text(c, order[0]), figure(least));
+                    problem_name(c.problems[p]), optimizer_text(c, order[0]), figure(least));
     if (order.size() > 1)
       text += fmt::format("; next {}, {} as far", optimizer_text(c, order[1]),
                           multiple(equal.methods[order[1]]->x_error.median / least));

@@ -62,7 +62,7 @@ PlotSeries values(std::string name, const std::vector<Real>& sigma) {
 Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
   Plot plot{.kind = Plot::Kind::lines,
             .id = fmt::format("plot-spectrum-{}", p),
-            .title = fmt::format("Singular values on {}", shown_spec(c.problems[p].spec)),
+            .title = fmt::format("Singular values on {}", problem_name(c.problems[p])),
             .reading = "",
             .caption =
                 "Of J = ∂y/∂θ over the batch of a step, the largest first, at the start and "
@@ -87,7 +87,7 @@ Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& se
 Plot conditions_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
   Plot plot{.kind = Plot::Kind::lines,
             .id = fmt::format("plot-conditioning-{}", p),
-            .title = fmt::format("Condition number on {}", shown_spec(c.problems[p].spec)),
+            .title = fmt::format("Condition number on {}", problem_name(c.problems[p])),
             .reading = "",
             .caption =
                 "The largest singular value of J over the smallest, along the same runs; a "
@@ -116,7 +116,7 @@ Plot conditions_plot(const Comparison& c, std::size_t p, const std::vector<Seen>
 // First and last, a row each.
 Table spectra_table(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
   Table table{.id = fmt::format("spectrum-{}", p),
-              .title = fmt::format("Spectra on {}", shown_spec(c.problems[p].spec)),
+              .title = fmt::format("Spectra on {}", problem_name(c.problems[p])),
               .reading = "",
               .caption =
                   "The largest and the smallest singular value of J over the batch of a "

@@ -30,6 +30,7 @@ std::vector<TableCell> standing_row(const Comparison& c, const std::string& plac
 }
 
 Table standings_table(const Comparison& c) {
+  const std::string legend = foreign_legend(c);
   Table table{
       .id = "standings-table",
       .caption = fmt::format(
@@ -37,9 +38,9 @@ Table standings_table(const Comparison& c) {
           "place. Solved: {}s whose median run reaches the tolerance. Best on: with the least {} of these "
           "methods. × least: the middle of its {} over the least, in logarithms; ✗ if it solves "
           "fewer than half. Runs: those that reach it. Failed: errors, crashes, time or memory limits, "
-          "on all that it was given. †: uses privileged information.",
+          "on all that it was given. †: uses privileged information.{}",
           counted(c.order.settings.size(), common_noun(c)), common_noun(c), counted_name(c),
-          counted_name(c)),
+          counted_name(c), legend.empty() ? "" : " " + legend),
       .columns = {"", "optimizer", "solved", "best on", "× least", "runs", "failed"},
       .align = "rlrrrrrrr",
       .names = 2};
@@ -97,7 +98,7 @@ Table orders_table(const Comparison& c) {
               .align = "lrl"};
   for (const Order& order : c.other_orders) {
     std::vector<std::string> settings;
-    for (const std::size_t p : order.settings) settings.push_back(shown_spec(c.problems[p].spec));
+    for (const std::size_t p : order.settings) settings.push_back(problem_name(c.problems[p]));
     table.rows.push_back(
         {joined(settings), std::to_string(order.methods.size()), podium_text(c, order)});
   }

@@ -126,8 +126,24 @@ std::string ordinal(std::size_t place) {
   return fmt::format("{}{}", place, tens == 1 || last >= kEnds.size() ? "th" : kEnds[last]);
 }
 
+std::string problem_name(const ProblemAxis& problem) {
+  return shown_spec(problem.label.empty() ? problem.spec : problem.label) +
+         (problem.is_foreign ? " ‡" : "");
+}
+
+std::string optimizer_name(const OptimizerAxis& optimizer) {
+  return shown_spec(optimizer.brief) + (optimizer.is_foreign ? " ‡" : "");
+}
+
 std::string optimizer_text(const Comparison& c, std::size_t s) {
-  return shown_spec(c.optimizers[s].brief) + (c.optimizers[s].privileges.empty() ? "" : " †");
+  return optimizer_name(c.optimizers[s]) + (c.optimizers[s].privileges.empty() ? "" : " †");
+}
+
+std::string foreign_legend(const Comparison& c) {
+  const auto is_foreign = [](const auto& axis) { return axis.is_foreign; };
+  const bool is_any =
+      std::ranges::any_of(c.problems, is_foreign) || std::ranges::any_of(c.optimizers, is_foreign);
+  return is_any ? "‡: computed by another program." : "";
 }
 
 std::string status_meaning(Status status) {

@@ -32,7 +32,11 @@ std::string ordinal(std::size_t place);  // "1st", "13th"
 
 // A spec as people read it: "newton[rate=0.3333]", its long numbers cut to four digits.
 std::string shown_spec(std::string_view spec);
+// What another program computes is marked, and goes by its own name: "spring ‡".
+std::string problem_name(const ProblemAxis& problem);
+std::string optimizer_name(const OptimizerAxis& optimizer);
 std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"
+std::string foreign_legend(const Comparison& comparison);  // what ‡ means, where any is marked
 
 std::string status_meaning(Status status);  // "used up their work or iterations"
 std::string status_text(const std::map<Status, std::size_t>& statuses);  // "target 3, budget 2"

@@ -100,4 +100,11 @@ run(begun-build/mine run --problem my-chain --optimizer levenberg-marquardt,my-m
     --quiet --no-report)
 run(${CC} -I${work}/prefix/include -shared -fPIC -o rosenbrock.so ${TREE}/clients/c/rosenbrock.c)
 run(begun-build/mine check rosenbrock-c --plugin ./rosenbrock.so)
+
+# The client of Python is found beside the installed program.
+find_program(python python3)
+if(python)
+  run(prefix/bin/isoline check
+      "process[command=\"python3 prefix/share/isoline/python/examples/rosenbrock.py\"]")
+endif()
 file(REMOVE_RECURSE ${work})

@@ -50,6 +50,20 @@ std::vector<std::string> commands(const std::string& page) {
   return all;
 }
 
+// The scripts of a page, by the names in their first lines.
+std::map<std::string, std::string> scripts(const std::string& page) {
+  std::map<std::string, std::string> all;
+  std::string* script = nullptr;
+  bool begins = false;
+  for (const std::string& line : lines_of_page(page)) {
+    if (begins) script = line.starts_with("# ") ? &all[line.substr(2)] : nullptr;
+    begins = line == "```python";
+    if (begins || line == "```") script = nullptr;
+    if (script != nullptr) *script += line + "\n";
+  }
+  return all;
+}
+
 // These two need the whole machine; continuous integration runs them from a clean clone.
 const std::vector<std::string> kMainCommands = {"./isoline run", "./isoline test"};
 
@@ -60,6 +74,7 @@ class Page : public testing::TestWithParam<std::string> {};
 // A page needs no other: its commands run in a folder of its own.
 TEST_P(Page, EveryCommandRunsInTheOrderOfThePage) {
   const Shell shell;
+  for (const auto& [name, text] : scripts(GetParam())) write_text(shell.folder() / name, text);
   for (const std::string& command : commands(GetParam())) {
     if (std::ranges::find(kMainCommands, command) != kMainCommands.end()) continue;
     const Finished result = shell(command);

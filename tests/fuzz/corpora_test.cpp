@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 const std::map<std::string, void (*)(std::string_view)> kTargets = {
     {"spec", spec},     {"command_line", command_line}, {"suite", suite},     {"record", record},
-    {"claims", claims}, {"checkpoint", checkpoint},     {"network", network}, {"npy", npy}};
+    {"claims", claims}, {"checkpoint", checkpoint},     {"network", network}, {"npy", npy},
+    {"wire", wire}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";
 

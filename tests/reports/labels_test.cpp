@@ -6,6 +6,7 @@
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/origins.h"
+#include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -92,6 +93,38 @@ TEST(Labels, TellValueAndOriginWhereATableChose) {
   ASSERT_EQ(section.plots.size(), 1U);
   // One of two values gets there: half, and with both all.
   EXPECT_EQ(section.plots[0].series[0].y, (std::vector<Real>{0.5, 1}));
+}
+
+Record foreign_run(const char* problem, const std::string& spec, const std::string& name) {
+  Record record = record_of({.problem = problem, .optimizer = spec});
+  record.foreign.optimizer = Foreign{.door = "process", .command = "mine", .label = name};
+  return record;
+}
+
+// What another program calls itself is its name, unless somebody has that already.
+TEST(Labels, OfOtherProgramsAreTheirOwnNamesAndMarked) {
+  const std::string first = "process[command=\"python3 a.py lm\"]", second = "process[command=b]";
+  Study study;
+  study.runs = {run_of("p", "gd", ""), foreign_run("p", first, "scipy-lm"),
+                foreign_run("p", second, "gd")};
+  study.runs[0].foreign.problem = Foreign{.door = "process", .command = "mine", .label = "spring"};
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(labels_of(c), (std::vector<std::string>{"gd", second, "scipy-lm"}));
+  EXPECT_EQ(problem_name(c.problems[0]), "spring ‡");
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    EXPECT_EQ(optimizer_text(c, s).ends_with(" ‡"), c.optimizers[s].label != "gd");
+  const Document document = document_of(c);
+  for (const std::string& text :
+       {html_report(document), markdown_report(document), terminal_table(document)}) {
+    EXPECT_NE(text.find("scipy-lm ‡"), std::string::npos);
+    EXPECT_NE(text.find("‡: computed by another program."), std::string::npos);
+  }
+}
+
+TEST(Labels, WithoutOtherProgramsSayNothingOfThem) {
+  Study study;
+  study.runs = {run_of("p", "gd", ""), run_of("p", "adam", "")};
+  EXPECT_EQ(terminal_table(document_of(compare_optimizers(study))).find("‡"), std::string::npos);
 }
 
 }  // namespace

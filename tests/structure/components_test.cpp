@@ -101,7 +101,7 @@ const std::string kProblems =
     "scaling square exponential sine poisson heat rosenbrock powell-singular beale "
     "helical-valley brown-badly-scaled box3d wood brown-dennis broyden-tridiagonal "
     "variably-dimensioned hig-toy linear-chain coupled-oscillators quantum-dipole poisson-hig "
-    "burgers wave-packet navier-stokes";
+    "burgers wave-packet navier-stokes process";
 const std::string kOptimizers =
     "gd momentum nesterov adagrad adadelta rmsprop adam adamw newton saddle-free-newton "
     "gauss-newton levenberg-marquardt inverse-gradient sip sip-theorem-3 sip-newton hig supervised "
@@ -109,7 +109,7 @@ const std::string kOptimizers =
     "adahessian hessian-free kfac ceres-gauss-newton ceres-lm ceres-dogleg "
     "ceres-subspace-dogleg ceres-bfgs ceres-lbfgs ceres-ncg ceres-steepest-descent "
     "nlopt-lbfgs nlopt-var2 nlopt-tnewton nlopt-slsqp nlopt-mma nlopt-ccsaq nlopt-bobyqa "
-    "nlopt-cobyla nlopt-neldermead nlopt-sbplx levenberg-marquardt-cg";
+    "nlopt-cobyla nlopt-neldermead nlopt-sbplx levenberg-marquardt-cg process";
 
 TEST(Components, AllThatWereFoundedAreThere) {
   std::istringstream problems(kProblems), optimizers(kOptimizers);

@@ -1,0 +1,7 @@
+#!/usr/bin/env python3
+# y = x of so many numbers, by the client: what a forward of the door costs around the function.
+import sys
+
+import isoline
+
+isoline.problem(lambda x: x, [0.0] * int(sys.argv[1]), vjp=lambda x, u: u, name="echo")

@@ -1,0 +1,19 @@
+// What another program computes is certified before it is run, as the tests certify the problems of
+// this tree: its products by Taylor's slopes, the adjoint identity and its Jacobian, its inverse by
+// the way back, and that the same call gives the same bits.
+#pragma once
+
+#include <vector>
+
+#include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/store.h"
+
+namespace isoline::benchmarks {
+
+// UsageError with the first law that a problem of these requests breaks, and the measured figure.
+// Only what the store has no record of is looked at, each problem at the first of its seeds, in a
+// process of its own.
+void require_certified(const Catalog& catalog, const std::vector<Request>& requests,
+                       const Store& store);
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,20 @@
+"""torch.optim.LBFGS with its line search of strong Wolfe conditions."""
+import torch
+
+import isoline
+
+torch.set_num_threads(1)
+p = isoline.optimizer(["pullback"], "torch-lbfgs", reports=True, source="torch.optim.LBFGS")
+x = torch.tensor(p.x0, dtype=torch.float64, requires_grad=True)
+method = torch.optim.LBFGS([x], max_iter=1, line_search_fn="strong_wolfe")
+
+
+def closure():
+    loss, gradient = p.value_and_grad(x)
+    x.grad = torch.as_tensor(gradient)
+    return torch.tensor(loss, dtype=torch.float64)
+
+
+while True:  # until the run is over, which leaves the script
+    method.step(closure)
+    p.report(x)

@@ -1,0 +1,516 @@
+"""Isoline from Python: a simulator as a problem, a method as an optimizer.
+
+One file, the standard library, and NumPy where it is installed. A script that imports it is
+started by Isoline, as in
+
+    isoline run --problem 'process[command="python3 mine.py"]'
+
+and speaks with it over a socket of its own: what it prints does not matter. docs/wire-format.md
+has the frames, docs/bring-a-simulator.md and docs/bring-an-optimizer.md the way there.
+"""
+
+import array
+import json
+import os
+import platform
+import socket
+import struct
+import sys
+
+try:
+    import numpy
+except ImportError:  # then numbers are lists
+    numpy = None
+
+PROTOCOL = 1
+HELLO, LINEARIZE, PUSHFORWARD, PULLBACK, JACOBIAN, INVERSE = 1, 2, 3, 4, 5, 6
+BEGIN, VALUE, GRADIENT, VALUE_AND_GRADIENT, RESIDUAL = 16, 17, 18, 19, 20
+RESIDUAL_JACOBIAN, RESIDUAL_PUSHFORWARD, RESIDUAL_PULLBACK, HESSIAN_PRODUCT = 21, 22, 23, 24
+REPORT, FINISH, CLAIM = 32, 33, 34
+DONE, FAILED, STOP = 0, 1, 2
+HEAD = struct.Struct("<IIQ")
+
+
+class Stop(SystemExit):
+    """The run is over: its budget is spent, or its target met. Leaves the script, quietly."""
+
+    def __init__(self):
+        super().__init__(0)
+
+
+class Refused(RuntimeError):
+    """What was asked is not given, and why."""
+
+
+# --- numbers: arrays of NumPy, or lists
+
+
+def _column(values):
+    """Something one-dimensional of floats, as bytes can be made of."""
+    if hasattr(values, "detach"):  # a tensor of torch
+        values = values.detach().cpu().numpy()
+    if numpy is not None:
+        return numpy.asarray(values, dtype=numpy.float64).reshape(-1)
+    return array.array("d", _flat(values))
+
+
+def _flat(values):
+    for each in values if hasattr(values, "__iter__") else [values]:
+        if hasattr(each, "__iter__"):
+            yield from _flat(each)
+        else:
+            yield float(each)
+
+
+def _vector(buffer):
+    """A copy of the numbers in some bytes."""
+    if numpy is not None:
+        return numpy.frombuffer(bytes(buffer), dtype=numpy.float64).copy()
+    return array.array("d", bytes(buffer)).tolist()
+
+
+def _by_columns(matrix, rows, columns):
+    """A matrix column by column, whoever made it."""
+    if hasattr(matrix, "detach"):
+        matrix = matrix.detach().cpu().numpy()
+    if numpy is not None:
+        return numpy.asarray(matrix, dtype=numpy.float64).reshape(rows, columns).T.reshape(-1)
+    flat = list(_flat(matrix))
+    return array.array("d", (flat[i * columns + j] for j in range(columns) for i in range(rows)))
+
+
+def _json_numbers(values):
+    return [x if x - x == 0 else str(x) for x in (float(each) for each in _column(values))]
+
+
+# --- the socket
+
+
+class _Line:
+    def __init__(self, descriptor):
+        self.socket = socket.socket(fileno=descriptor)
+        self.buffer = bytearray(1 << 16)
+        self.view = memoryview(self.buffer)
+
+    def send(self, verb, status, *parts):
+        views = [memoryview(part).cast("B") for part in parts if len(part)]
+        head = HEAD.pack(verb, status, sum(map(len, views)))
+        whole = HEAD.size + sum(map(len, views))
+        sent = self.socket.sendmsg([head, *views])
+        if sent < whole:
+            self.socket.sendall(b"".join([head, *views])[sent:])
+
+    def receive(self):
+        """The verb, the status and the payload of a frame, until the next one."""
+        got = self.socket.recv_into(self.buffer)
+        while got < HEAD.size:
+            got += self._more(got)
+        verb, status, count = HEAD.unpack_from(self.buffer)
+        whole = HEAD.size + count
+        if whole > len(self.buffer):
+            self.view.release()
+            self.buffer.extend(bytes(whole - len(self.buffer)))
+            self.view = memoryview(self.buffer)
+        while got < whole:
+            got += self._more(got)
+        return verb, status, self.view[HEAD.size : whole]
+
+    def _more(self, got):
+        more = self.socket.recv_into(self.view[got:]) if got else 0
+        if more == 0:
+            raise Stop  # whoever started this has hung up
+        return more
+
+
+_line, _greeting = None, None
+
+
+def _greeted():
+    """The line, and what was said first; connects at the first call."""
+    global _line, _greeting
+    if _line is not None:
+        return _line, _greeting
+    descriptor = os.environ.get("ISOLINE_FD")
+    if descriptor is None:
+        script = sys.argv[0] or "mine.py"
+        sys.exit(
+            "This script is started by Isoline, as in\n"
+            f"  isoline check 'process[command=\"python3 {script}\"]'"
+        )
+    _line = _Line(int(descriptor))
+    _, _, payload = _line.receive()
+    _greeting = json.loads(bytes(payload))
+    return _line, _greeting
+
+
+def seed():
+    """The seed of this run; of 0 is the instance as published."""
+    return int(_greeted()[1].get("seed", 0))
+
+
+def _introduce(line, greeting, role, said):
+    if greeting["role"] != role:
+        article = "an" if role == "optimizer" else "a"
+        wrong = f"this script is {article} {role}, and was asked as {greeting['role']}"
+        line.send(HELLO, FAILED, wrong.encode())
+        sys.exit(0)
+    packages = {}
+    for name in ("numpy", "scipy", "torch", "jax"):
+        module = sys.modules.get(name)
+        if module is not None:
+            packages[name] = str(getattr(module, "__version__", "unknown"))
+    said.update(
+        protocol=PROTOCOL,
+        role=role,
+        interpreter=f"{platform.python_implementation()} {platform.python_version()}",
+        packages=packages,
+    )
+    line.send(HELLO, DONE, json.dumps({k: v for k, v in said.items() if v is not None}).encode())
+
+
+# --- problems
+
+
+class _Point:
+    """A forward pass and what its products need."""
+
+    def __init__(self, problem, x):
+        self.problem, self.x, self.matrix = problem, x, None
+        self.y = problem.forward_at(self, x)
+
+    def pullback(self, u):
+        return self.problem.pull(self, u)
+
+    def pushforward(self, v):
+        return self.problem.push(self, v)
+
+    def jacobian(self):
+        if self.matrix is None:
+            self.matrix = self.problem.matrix(self)
+        return self.matrix
+
+
+class _Given:
+    """Products that the caller wrote."""
+
+    differences, pushforward_price, pullback_price = False, 1, 1
+
+    def __init__(self, forward, vjp, jvp, jacobian):
+        self.forward, self.vjp, self.jvp, self.jac = forward, vjp, jvp, jacobian
+        given = {"pullback": vjp, "pushforward": jvp, "jacobian": jacobian}
+        self.oracles = [name for name, function in given.items() if function is not None]
+
+    def forward_at(self, _, x):
+        return _column(self.forward(x))
+
+    def pull(self, point, u):
+        return _column(self.vjp(point.x, u))
+
+    def push(self, point, v):
+        return _column(self.jvp(point.x, v))
+
+    def matrix(self, point):
+        return self.jac(point.x)
+
+
+class _Torch(_Given):
+    """Products by torch.autograd from the graph of the one forward."""
+
+    def __init__(self, forward):
+        super().__init__(forward, True, True, None)
+        self.torch = sys.modules["torch"]
+
+    def forward_at(self, point, x):
+        point.leaf = self.torch.tensor(x, dtype=self.torch.float64, requires_grad=True)
+        point.graph = self.forward(point.leaf).reshape(-1)
+        return _column(point.graph)
+
+    def pull(self, point, u):
+        weight = self.torch.as_tensor(u, dtype=self.torch.float64)
+        return _column(self._gradient(point.graph, point.leaf, weight, point.x))
+
+    def push(self, point, v):  # Jᵀ u is linear in u: its own pullback is J
+        u = self.torch.zeros_like(point.graph, requires_grad=True)
+        pulled = self._gradient(point.graph, point.leaf, u, point.x, True)
+        weight = self.torch.as_tensor(v, dtype=self.torch.float64)
+        return _column(self._gradient(pulled, u, weight, point.y))
+
+    def _gradient(self, of, by, weight, like, graph=False):
+        found = self.torch.autograd.grad(
+            of, by, weight, retain_graph=True, create_graph=graph, allow_unused=True
+        )[0]
+        return self.torch.zeros(len(like), dtype=self.torch.float64) if found is None else found
+
+
+class _Jax(_Given):
+    """Products by jax.linearize and its transpose."""
+
+    def __init__(self, forward):
+        super().__init__(forward, True, True, None)
+        self.jax = sys.modules["jax"]
+        self.jax.config.update("jax_enable_x64", True)
+
+    def forward_at(self, point, x):
+        point.at = self.jax.numpy.asarray(x)
+        flat = lambda z: self.jax.numpy.ravel(self.forward(z))
+        y, point.push = self.jax.linearize(flat, point.at)
+        return _column(y)
+
+    def pull(self, point, u):
+        transpose = self.jax.linear_transpose(point.push, point.at)
+        return _column(transpose(self.jax.numpy.asarray(u))[0])
+
+    def push(self, point, v):
+        return _column(point.push(self.jax.numpy.asarray(v)))
+
+
+class _Differences(_Given):
+    """Products by central differences, and their price in forwards."""
+
+    differences = True
+
+    def __init__(self, forward, n):
+        super().__init__(forward, True, True, True)
+        self.pushforward_price, self.pullback_price = 2, 2 * n
+
+    def push(self, point, v):
+        size = max(map(abs, v), default=0) or 1
+        h = 6e-6 * max(1, max(map(abs, point.x))) / size  # the cube root of rounding
+        ahead, behind = ([a + s * h * b for a, b in zip(point.x, v)] for s in (1, -1))
+        ahead, behind = self.forward(self._like(ahead)), self.forward(self._like(behind))
+        return _column([(a - b) / (2 * h) for a, b in zip(_column(ahead), _column(behind))])
+
+    def matrix(self, point):
+        columns = []
+        for i in range(len(point.x)):
+            columns.append(self.push(point, [float(i == j) for j in range(len(point.x))]))
+        return list(zip(*columns))
+
+    def pull(self, point, u):
+        return _column([sum(a * b for a, b in zip(column, u)) for column in zip(*point.jacobian())])
+
+    @staticmethod
+    def _like(values):
+        return values if numpy is None else numpy.asarray(values)
+
+
+def _products_of(forward, start, vjp, jvp, jacobian, differences):
+    if differences:
+        return _Differences(forward, len(start))
+    if vjp or jvp or jacobian:
+        return _Given(forward, vjp, jvp, jacobian)
+    for name, kind in (("torch", _Torch), ("jax", _Jax)):
+        if name not in sys.modules:
+            continue
+        try:
+            kind(forward).forward_at(_Empty(), start)
+        except (TypeError, AttributeError, RuntimeError):
+            continue  # its numbers are not that package's
+        return kind(forward)
+    return _Given(forward, None, None, None)
+
+
+class _Empty:
+    pass
+
+
+def problem(
+    forward,
+    start,
+    target=None,
+    truth=None,
+    vjp=None,
+    jvp=None,
+    jacobian=None,
+    inverse=None,
+    inverse_kind="exact",
+    differences=False,
+    drawn=None,
+    minimum=None,
+    aim=None,
+    name=None,
+    note=None,
+    source=None,
+):
+    """Is a problem from here on: find x with forward(x) = target, from `start`. Never returns.
+
+    forward(x) -> y. Products with its Jacobian come from torch or jax, where the numbers are
+    theirs; from vjp(x, u) -> Jᵀu, jvp(x, v) -> Jv, jacobian(x) -> (m, n), where they are given; or
+    with differences=True from differences of forward, marked and priced as such. Without any of
+    them the problem offers losses alone. inverse(y, x0) -> x, or None where there is none.
+    truth: the x that the target was made of. drawn: a start of this seed() instead of one that
+    Isoline draws around `start`. aim="x" where x is sought, and not a small loss alone.
+    """
+    line, greeting = _greeted()
+    start = _vector(_column(start))
+    products = _products_of(forward, start, vjp, jvp, jacobian, differences)
+    y = _Point(products, start).y
+    if target is None and truth is not None:
+        target = _Point(products, _vector(_column(truth))).y
+        minimum = 0.0 if minimum is None else minimum
+    target = [0.0] * len(y) if target is None else target
+    _introduce(
+        line,
+        greeting,
+        "problem",
+        {
+            "name": name,
+            "note": note,
+            "source": source,
+            "inputs": len(start),
+            "outputs": len(y),
+            "oracles": ["forward"] + products.oracles + (["inverse"] if inverse else []),
+            "differences": products.differences,
+            "pushforward_price": products.pushforward_price,
+            "pullback_price": products.pullback_price,
+            "inverse": inverse_kind if inverse else None,
+            "start": _json_numbers(start),
+            "drawn": None if drawn is None else _json_numbers(drawn),
+            "target": _json_numbers(target),
+            "truth": None if truth is None else _json_numbers(truth),
+            "minimum": minimum,
+            "aim": aim,
+        },
+    )
+    _serve(line, products, inverse, len(start), len(y))
+
+
+def _serve(line, products, inverse, n, m):
+    points = {}
+    while True:
+        verb, number, payload = line.receive()
+        try:
+            answer = _answer(verb, number, payload, points, products, inverse, n, m)
+        except Exception as error:  # the cell fails with this text, and its output has the rest
+            import traceback
+
+            traceback.print_exc()
+            line.send(verb, FAILED, f"{type(error).__name__}: {error}".encode())
+            continue
+        line.send(verb, DONE, *answer)
+
+
+def _answer(verb, number, payload, points, products, inverse, n, m):
+    if verb == LINEARIZE:
+        if len(payload) == 8 * n:
+            points[number] = (_Point(products, _vector(payload)),)
+        else:
+            points[number] = tuple(_Point(products, x) for x in _samples(payload, n))
+        return [_sized(point.y, m, "forward") for point in points[number]]
+    if verb == PULLBACK:
+        each = zip(points[number], _samples(payload, m))
+        return [_sized(point.pullback(u), n, "vjp") for point, u in each]
+    if verb == PUSHFORWARD:
+        each = zip(points[number], _samples(payload, n))
+        return [_sized(point.pushforward(v), m, "jvp") for point, v in each]
+    if verb == JACOBIAN:
+        return [_by_columns(point.jacobian(), m, n) for point in points[number]]
+    if verb == INVERSE:
+        return _inverted(payload, inverse, n, m)
+    raise Refused(f"verb {verb} is not known")
+
+
+def _sized(values, count, name):
+    if len(values) != count:
+        raise Refused(f"{name} gave {len(values)} numbers, and {count} are due")
+    return values
+
+
+def _samples(payload, size):
+    """Each sample of a batch, a column each."""
+    if len(payload) == 8 * size:
+        return (_vector(payload),)
+    return [_vector(payload[i : i + 8 * size]) for i in range(0, len(payload), 8 * size)]
+
+
+def _inverted(payload, inverse, n, m):
+    samples = len(payload) // (8 * (n + m))
+    targets = _samples(payload[: 8 * m * samples], m)
+    starts = _samples(payload[8 * m * samples :], n)
+    found = [inverse(y, x0) for y, x0 in zip(targets, starts)]
+    xs = [_column(x0 if x is None else x) for x, x0 in zip(found, starts)]
+    return [_sized(x, n, "inverse") for x in xs] + [_column([float(x is not None) for x in found])]
+
+
+# --- optimizers
+
+
+class optimizer:
+    """Is an optimizer from here on: its x0, and what it may ask of L and of r = (y − y*)/√B.
+
+    needs: which of "pullback", "jacobian", "pushforward", "hessian_product" it will ask; forward
+    always. least_squares=True where it descends ½‖r‖² whatever the loss. reports=True where it
+    calls report(x) once an iteration; else each new best point counts as one. Every question
+    raises Stop when the run is over, which leaves the script.
+    """
+
+    def __init__(
+        self, needs=(), name=None, least_squares=False, reports=False, note=None, source=None
+    ):
+        self._line, greeting = _greeted()
+        said = {"name": name, "note": note, "source": source, "needs": list(needs)}
+        said.update(least_squares=least_squares, reports=reports)
+        _introduce(self._line, greeting, "optimizer", said)
+        verb, _, payload = self._line.receive()  # whoever only wanted to know has hung up by now
+        begun = _vector(payload)
+        self.n, self.residuals, self.x0 = int(begun[0]), int(begun[1]), begun[2:]
+
+    def value(self, x):
+        """L"""
+        return float(self._ask(VALUE, x)[0])
+
+    def gradient(self, x):
+        """∇L"""
+        return self._ask(GRADIENT, x)
+
+    def value_and_grad(self, x):
+        """L and ∇L, by one forward and one pullback"""
+        both = self._ask(VALUE_AND_GRADIENT, x)
+        return float(both[0]), both[1:]
+
+    def residual(self, x):
+        """r = (y − y*)/√B, of which L is half the square where it is least squares"""
+        return self._ask(RESIDUAL, x)
+
+    def jacobian(self, x):
+        """∂r/∂x"""
+        columns = self._ask(RESIDUAL_JACOBIAN, x)
+        if numpy is not None:
+            return columns.reshape(self.n, self.residuals).T
+        rows = self.residuals
+        return [[columns[j * rows + i] for j in range(self.n)] for i in range(rows)]
+
+    def jvp(self, x, v):
+        """(∂r/∂x) v"""
+        return self._ask(RESIDUAL_PUSHFORWARD, x, v)
+
+    def vjp(self, x, w):
+        """(∂r/∂x)ᵀ w"""
+        return self._ask(RESIDUAL_PULLBACK, x, w)
+
+    def hvp(self, x, v):
+        """∇²L v"""
+        return self._ask(HESSIAN_PRODUCT, x, v)
+
+    def report(self, x, *_, **__):
+        """An iteration has come to x. Fits where SciPy wants a callback."""
+        self._ask(REPORT, x)
+
+    def finish(self, x, message=""):
+        """The x to be judged, and what the method says of its own success."""
+        if message:
+            self._line.send(CLAIM, DONE, str(message).encode()[:1000])
+            self._answer()
+        self._ask(FINISH, x)
+
+    def _ask(self, verb, *vectors):
+        self._line.send(verb, DONE, *(_column(each) for each in vectors))
+        return self._answer()
+
+    def _answer(self):
+        _, status, payload = self._line.receive()
+        if status == STOP:
+            raise Stop
+        if status == FAILED:
+            raise Refused(bytes(payload).decode(errors="replace"))
+        return _vector(payload)

@@ -1,0 +1,213 @@
+// Handshakes read member by member: what is missing, of another type or out of its law is refused
+// with what was said.
+#include "core/foreign/handshake.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "core/errors.h"
+#include "core/json.h"
+
+namespace isoline {
+namespace {
+
+constexpr std::int64_t kMostSize = std::int64_t{1} << 27;  // of x or y: a GiB of doubles
+constexpr std::int64_t kMostPrice = std::int64_t{1} << 31;
+constexpr std::array<std::string_view, 4> kInverses = {"exact", "damped", "estimate",
+                                                       "approximate"};
+constexpr std::size_t kMostQuoted = 80;  // bytes
+
+// The members of one answer.
+class Said {
+ public:
+  Said(const std::string& text, std::string who)
+      : json_(parse_json(text, who + "'s handshake")), who_(std::move(who)) {
+    if (!json_.is_object()) fail("answers with", json_, "an object");
+    const std::int64_t protocol = whole("protocol", 0, 1'000'000, {});
+    require(protocol == kWireProtocol, [&] {
+      return fmt::format("{} speaks protocol {}, and this program {}", who_, protocol,
+                         kWireProtocol);
+    });
+  }
+
+  void expect_role(std::string_view role) const {
+    const std::string said = text("role");
+    require(said == role, [&] {
+      return fmt::format("{} is {} {}, and is asked as {} {}", who_, article(said), quoted(said),
+                         article(role), role);
+    });
+  }
+  bool has(const char* name) const { return json_.contains(name) && !json_[name].is_null(); }
+
+  std::string text(const char* name) const {
+    if (!has(name)) return "";
+    if (!json_[name].is_string()) refuse(name, "text");
+    return json_[name].get<std::string>();
+  }
+  bool flag(const char* name) const {
+    if (!has(name)) return false;
+    if (!json_[name].is_boolean()) refuse(name, "true or false");
+    return json_[name].get<bool>();
+  }
+  // `standard`: where it is not said; nothing where it must be.
+  std::int64_t whole(const char* name, std::int64_t least, std::int64_t most,
+                     std::optional<std::int64_t> standard) const {
+    const std::string law = fmt::format("a whole number in [{}, {}]", least, most);
+    if (!has(name) && standard) return *standard;
+    if (!has(name)) refuse(name, law);
+    const Json& value = json_[name];
+    const bool fits =
+        value.is_number_integer() &&
+        (value.is_number_unsigned() ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(most)
+                                    : value.get<std::int64_t>() <= most);
+    if (!fits || value.get<std::int64_t>() < least) refuse(name, law);
+    return value.get<std::int64_t>();
+  }
+  std::vector<Real> numbers(const char* name, std::int64_t count, bool is_required) const {
+    const std::string law = fmt::format("a list of {} numbers", count);
+    if (!has(name) && !is_required) return {};
+    if (!has(name) || !json_[name].is_array() ||
+        json_[name].size() != static_cast<std::size_t>(count))
+      refuse(name, law);
+    try {
+      return reals_of(json_[name]);
+    } catch (const UsageError&) {
+      refuse(name, law);
+    }
+  }
+  std::optional<Real> number(const char* name) const {
+    if (!has(name)) return std::nullopt;
+    if (!json_[name].is_number()) refuse(name, "a number");
+    return json_[name].get<Real>();
+  }
+  template <class Names>
+  std::string choice(const char* name, const Names& names) const {
+    const std::string said = text(name);
+    if (said.empty() || std::ranges::find(names, said) != names.end()) return said;
+    std::string law = "one of";
+    for (const auto& each : names) law += fmt::format(" {}", each);
+    refuse(name, law);
+  }
+  OracleSet oracles(const char* name, std::initializer_list<Oracle> known) const {
+    OracleSet set{Oracle::forward};
+    std::string law = "a list of some of";
+    for (const Oracle oracle : known) law += fmt::format(" {}", name_of(oracle));
+    if (!has(name) || !json_[name].is_array()) refuse(name, law);
+    for (const Json& each : json_[name]) {
+      const auto* const found = std::ranges::find_if(known, [&](Oracle oracle) {
+        return each.is_string() && each.get_ref<const std::string&>() == name_of(oracle);
+      });
+      if (found == known.end()) refuse(name, law);
+      set.add(*found);
+    }
+    return set;
+  }
+  std::map<std::string, std::string> texts(const char* name) const {
+    std::map<std::string, std::string> all;
+    if (!has(name)) return all;
+    if (!json_[name].is_object()) refuse(name, "an object of texts");
+    for (const auto& [key, value] : json_[name].items()) {
+      if (!value.is_string()) refuse(name, "an object of texts");
+      all[key] = value.get<std::string>();
+    }
+    return all;
+  }
+  void expect_none(const char* name, std::string_view why) const {
+    require(!has(name), [&] { return fmt::format("{} declares {}, {}", who_, name, why); });
+  }
+
+ private:
+  static std::string_view article(std::string_view noun) {
+    return noun.starts_with('o') ? "an" : "a";
+  }
+  static std::string quoted(std::string text) {
+    if (text.size() > kMostQuoted) text = text.substr(0, kMostQuoted) + "…";
+    return text;
+  }
+  [[noreturn]] void fail(std::string_view what, const Json& value, std::string_view law) const {
+    throw UsageError(
+        fmt::format("{} {} {}, which must be {}", who_, what, quoted(json_text(value)), law));
+  }
+  [[noreturn]] void refuse(const char* name, const std::string& law) const {
+    if (!has(name)) throw UsageError(fmt::format("{} does not say {}, {}", who_, name, law));
+    fail(fmt::format("says {} =", name), json_[name], law);
+  }
+
+  const Json json_;
+  const std::string who_;
+};
+
+Foreign words_of(const Said& said) {
+  Foreign foreign;
+  foreign.label = said.text("name");
+  foreign.interpreter = said.text("interpreter");
+  foreign.packages = said.texts("packages");
+  foreign.note = said.text("note");
+  foreign.source = said.text("source");
+  return foreign;
+}
+
+// What it answers to our greeting. How it broke off is the caller's to know, as a wrong argument
+// is.
+std::string answer_to(Line& line, const Json& greeting, double seconds) {
+  try {
+    line.send_text(Verb::hello, 0, json_text(greeting));
+    return line.receive_text(Verb::hello, kMostHandshake, seconds);
+  } catch (const LineError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+}  // namespace
+
+ProblemHandshake problem_handshake(const std::string& text, const std::string& who) {
+  const Said said(text, who);
+  said.expect_role("problem");
+  said.expect_none("bounds", "which no method here keeps: leave them out, or map x onto them");
+  ProblemHandshake problem{.foreign = words_of(said)};
+  problem.inputs = said.whole("inputs", 1, kMostSize, {});
+  problem.outputs = said.whole("outputs", 1, kMostSize, {});
+  problem.oracles = said.oracles("oracles", {Oracle::forward, Oracle::pushforward, Oracle::pullback,
+                                             Oracle::jacobian, Oracle::inverse});
+  problem.pushforward_price = said.whole("pushforward_price", 1, kMostPrice, 1);
+  problem.pullback_price = said.whole("pullback_price", 1, kMostPrice, 1);
+  problem.inverse_price = said.whole("inverse_price", 1, kMostPrice, 1);
+  problem.are_differences = said.flag("differences");
+  problem.inverse = said.choice("inverse", kInverses);
+  require(problem.oracles.contains(Oracle::inverse) == !problem.inverse.empty(),
+          [&] { return who + " has an inverse where, and only where, it says of which kind"; });
+  problem.start = said.numbers("start", problem.inputs, true);
+  problem.drawn = said.numbers("drawn", problem.inputs, false);
+  problem.target = said.numbers("target", problem.outputs, true);
+  problem.truth = said.numbers("truth", problem.inputs, false);
+  problem.minimum = said.number("minimum");
+  problem.aim = said.choice("aim", kAimNames) == name_of(Aim::x) ? Aim::x : Aim::loss;
+  require(problem.aim == Aim::loss || !problem.truth.empty(),
+          [&] { return who + " seeks x, and does not say which: truth is missing"; });
+  return problem;
+}
+
+MethodHandshake method_handshake(const std::string& text, const std::string& who) {
+  const Said said(text, who);
+  said.expect_role("optimizer");
+  return {.foreign = words_of(said),
+          .needs = said.oracles("needs", {Oracle::forward, Oracle::pullback, Oracle::pushforward,
+                                          Oracle::jacobian, Oracle::hessian_product}),
+          .is_least_squares = said.flag("least_squares"),
+          .reports = said.flag("reports")};
+}
+
+ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds) {
+  const Json greeting{{"protocol", kWireProtocol}, {"role", "problem"}, {"seed", seed}};
+  return problem_handshake(answer_to(line, greeting, seconds), line.who());
+}
+
+MethodHandshake greet_method(Line& line, double seconds) {
+  const Json greeting{{"protocol", kWireProtocol}, {"role", "optimizer"}};
+  return method_handshake(answer_to(line, greeting, seconds), line.who());
+}
+
+}  // namespace isoline

@@ -1,0 +1,220 @@
+// Frames over a socket of the Unix domain: whole in one call where the system lets it, waited for
+// by a short spin and then by poll.
+#include "core/foreign/line.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "core/clock.h"
+#include "core/errors.h"
+#include "core/text.h"
+
+namespace isoline {
+namespace {
+
+// An answer that comes soon is met awake: to be woken takes as long as it does itself.
+constexpr std::int64_t kSpinNanoseconds = 20'000;
+constexpr std::size_t kMostPieces = 4;
+
+double seconds_since(std::int64_t begin) {
+  return 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin);
+}
+
+std::span<char> bytes_of(std::span<Real> numbers) {
+  return {reinterpret_cast<char*>(numbers.data()), numbers.size_bytes()};
+}
+
+}  // namespace
+
+struct Line::Deadline {
+  double seconds;
+  std::int64_t begin = monotonic_nanoseconds();
+
+  int milliseconds_left() const {  // −1: for ever
+    if (seconds == kNoDeadline) return -1;
+    return std::max(0, static_cast<int>(1e3 * (seconds - seconds_since(begin)) + 1));
+  }
+  bool is_over() const { return seconds != kNoDeadline && seconds_since(begin) > seconds; }
+};
+
+Line::Line(ChildProgram::Start start) : who_("`" + start.command + "`") {
+  int ends[2];
+  require(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0,
+          "there is no socket left for another program");
+  socket_ = ends[0];
+  start.descriptor = ends[1];
+  start.environment.emplace_back("ISOLINE_FD", std::to_string(ends[1]));
+  try {
+    child_ = std::make_unique<ChildProgram>(start);
+  } catch (...) {
+    close(ends[0]);
+    close(ends[1]);
+    throw;
+  }
+  close(ends[1]);
+}
+
+Line::Line(int socket) : socket_(socket), who_("the other program") {}
+
+Line::~Line() { close(socket_); }
+
+void Line::fail(const std::string& what) {
+  std::string text = fmt::format("{} {}", who_, what);
+  if (child_) {
+    text += fmt::format("; {}", child_->end_in_words());
+    const std::string words = child_->last_words();
+    text += words.empty() ? ", and printed nothing" : ", and last printed: " + words;
+  }
+  throw LineError(text);
+}
+
+// While it waits it takes what the other prints, who may be held up by that.
+void Line::wait(short events, const Deadline& deadline) {
+  std::array<pollfd, 2> watched{
+      {{socket_, events, 0}, {child_ ? child_->output() : -1, POLLIN, 0}}};
+  poll(watched.data(), watched.size(), deadline.milliseconds_left());
+  if (child_ && watched[1].revents != 0) child_->drain();
+  if (watched[0].revents == 0 && deadline.is_over())
+    fail(fmt::format("did not answer within {} s", deadline.seconds));
+}
+
+void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
+  std::array<iovec, kMostPieces> parts{};
+  std::size_t count = 0;
+  parts[count++] = {const_cast<FrameHead*>(&head), sizeof head};
+  for (const Piece& piece : pieces)
+    if (piece.count > 0) parts[count++] = {const_cast<void*>(piece.bytes), piece.count};
+  const Deadline forever{kNoDeadline};
+  for (std::size_t first = 0; first < count;) {
+    msghdr message{};
+    message.msg_iov = &parts[first];
+    message.msg_iovlen = count - first;
+    const ssize_t sent = sendmsg(socket_, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && (errno == EAGAIN || errno == EINTR)) {
+      wait(POLLOUT, forever);
+      continue;
+    }
+    if (sent < 0) fail("closed its socket");
+    auto left = static_cast<std::size_t>(sent);
+    for (; first < count && left >= parts[first].iov_len; ++first) left -= parts[first].iov_len;
+    if (left == 0) continue;
+    parts[first].iov_base = static_cast<char*>(parts[first].iov_base) + left;
+    parts[first].iov_len -= left;
+  }
+}
+
+void Line::send(Verb verb, std::uint32_t status, std::span<const std::span<const Real>> numbers) {
+  std::array<Piece, kMostPieces - 1> pieces{};
+  FrameHead head{static_cast<std::uint32_t>(verb), status, 0};
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    pieces.at(i) = {numbers[i].data(), numbers[i].size_bytes()};
+    head.bytes += numbers[i].size_bytes();
+  }
+  send_pieces(head, std::span(pieces).first(numbers.size()));
+}
+
+void Line::send_text(Verb verb, std::uint32_t status, std::string_view text) {
+  const Piece piece{text.data(), text.size()};
+  send_pieces({static_cast<std::uint32_t>(verb), status, text.size()}, std::span(&piece, 1));
+}
+
+// At least a byte of them.
+std::size_t Line::receive_some(std::span<const std::span<char>> parts, const Deadline& deadline) {
+  std::array<iovec, 2> room{};
+  for (std::size_t i = 0; i < parts.size(); ++i) room.at(i) = {parts[i].data(), parts[i].size()};
+  msghdr message{};
+  message.msg_iov = room.data();
+  message.msg_iovlen = parts.size();
+  const std::int64_t begin = monotonic_nanoseconds();
+  for (;;) {
+    const ssize_t got = recvmsg(socket_, &message, MSG_DONTWAIT);
+    if (got > 0) return static_cast<std::size_t>(got);
+    if (got == 0) fail("closed its socket");
+    if (errno != EAGAIN && errno != EINTR) fail("closed its socket");
+    if (monotonic_nanoseconds() - begin > kSpinNanoseconds) wait(POLLIN, deadline);
+  }
+}
+
+// The head, and what comes with it into `room`: `got` bytes of the payload.
+FrameHead Line::receive_head(void* room, std::size_t most, std::size_t& got,
+                             const Deadline& deadline) {
+  FrameHead head;
+  char* const bytes = reinterpret_cast<char*>(&head);
+  std::size_t read = 0;
+  while (read < sizeof head) {
+    const std::array<std::span<char>, 2> parts{
+        {{bytes + read, sizeof head - read}, {static_cast<char*>(room), most}}};
+    read += receive_some(std::span(parts).first(most > 0 ? 2 : 1), deadline);
+  }
+  got = read - sizeof head;
+  if (got > head.bytes) fail("sends more than the head of its frame says");
+  return head;
+}
+
+void Line::receive_rest(char* bytes, std::size_t count, const Deadline& deadline) {
+  while (count > 0) {
+    const std::array<std::span<char>, 1> part{{{bytes, count}}};
+    const std::size_t got = receive_some(part, deadline);
+    bytes += got;
+    count -= got;
+  }
+}
+
+std::string Line::text_of(const FrameHead& head, std::string begun, std::uint64_t most,
+                          const Deadline& deadline) {
+  if (head.bytes > most)
+    fail(fmt::format("sends a text of {} bytes, and at most {} are taken", head.bytes, most));
+  const std::size_t got = begun.size();
+  begun.resize(head.bytes);
+  receive_rest(begun.data() + got, begun.size() - got, deadline);
+  return valid_utf8(begun);
+}
+
+FrameHead Line::receive(std::span<Real> room, double seconds) {
+  const Deadline deadline{seconds};
+  const std::span<char> bytes = bytes_of(room);
+  std::size_t got = 0;
+  const FrameHead head = receive_head(bytes.data(), bytes.size(), got, deadline);
+  if (head.bytes > bytes.size())
+    fail(fmt::format("sends a frame of {} bytes, and at most {} are taken here", head.bytes,
+                     bytes.size()));
+  receive_rest(bytes.data() + got, head.bytes - got, deadline);
+  return head;
+}
+
+void Line::receive_answer(Verb verb, std::span<Real> numbers, double seconds) {
+  const Deadline deadline{seconds};
+  const std::span<char> bytes = bytes_of(numbers);
+  std::size_t got = 0;
+  const FrameHead head = receive_head(bytes.data(), bytes.size(), got, deadline);
+  if (head.verb != static_cast<std::uint32_t>(verb))
+    fail(fmt::format("answers {} with a frame of verb {}", name_of(verb), head.verb));
+  if (head.status != static_cast<std::uint32_t>(Answer::done))
+    fail(fmt::format("failed at {}: {}", name_of(verb),
+                     text_of(head, {bytes.data(), got}, kMostWireText, deadline)));
+  if (head.bytes != bytes.size())
+    fail(fmt::format("answers {} with {} bytes, where {} are the answer", name_of(verb), head.bytes,
+                     bytes.size()));
+  receive_rest(bytes.data() + got, bytes.size() - got, deadline);
+}
+
+std::string Line::receive_text(Verb verb, std::uint64_t most_bytes, double seconds) {
+  const Deadline deadline{seconds};
+  std::size_t got = 0;
+  const FrameHead head = receive_head(nullptr, 0, got, deadline);
+  if (head.verb != static_cast<std::uint32_t>(verb))
+    fail(fmt::format("answers {} with a frame of verb {}", name_of(verb), head.verb));
+  const std::string text = text_of(head, "", most_bytes, deadline);
+  if (head.status != static_cast<std::uint32_t>(Answer::done))
+    fail(fmt::format("failed at {}: {}", name_of(verb), text));
+  return text;
+}
+
+}  // namespace isoline

@@ -1,0 +1,280 @@
+// An optimizer that another program runs: process[command="python3 mine.py"]. Here the roles turn:
+// it asks the oracles over frames on a private socket (docs/wire-format.md), the meter counts them,
+// and what its handshake did not declare is refused. Questions at the same θ share one forward.
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "core/foreign/introductions.h"
+#include "optimizers/optimizer.h"
+
+namespace isoline::optimizers {
+namespace {
+
+struct Process {
+  std::string command;
+  std::string label;
+  Real startup = 30;
+};
+
+void fields(Process& o, auto& field) {
+  field("command", o.command, {}, "what is started: words as of a shell, nothing expanded");
+  field("label", o.label, {}, "what tables call it; empty: what it calls itself");
+  field("startup", o.startup, above(0), "seconds in which it must have introduced itself");
+}
+
+constexpr auto kDone = static_cast<std::uint32_t>(Answer::done);
+constexpr auto kStop = static_cast<std::uint32_t>(Answer::stop);
+
+std::span<const Real> numbers_of(const auto& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+// One run: questions answered until the other has finished or the harness has.
+class Service {
+ public:
+  Service(Meter& f, Line& line, const MethodHandshake& said, Vector& theta)
+      : f_(f),
+        line_(line),
+        said_(said),
+        theta_(theta),
+        room_(std::max({2 * f.unknowns(), f.unknowns() + f.residuals(), kLeastRoom})),
+        scale_(1 / std::sqrt(static_cast<Real>(f.samples()))) {}
+
+  Status run() {
+    for (;;) {
+      const FrameHead head = line_.receive({room_.data(), static_cast<std::size_t>(room_.size())});
+      const auto verb = static_cast<Verb>(head.verb);
+      if (verb == Verb::finish) return finish(head);
+      if (verb == Verb::claim) {
+        take_claim(head);
+        continue;
+      }
+      if (is_over()) {
+        open_ = verb;
+        break;
+      }
+      try {
+        answer(verb, head);
+      } catch (const std::exception& error) {
+        line_.send_text(verb, static_cast<std::uint32_t>(Answer::failed), error.what());
+        throw;
+      }
+    }
+    return f_.status() == Status::running ? Status::budget : f_.status();
+  }
+
+  std::optional<Verb> open() const { return open_; }
+
+ private:
+  static constexpr Index kLeastRoom = 512;  // numbers, for the text of a claim
+
+  bool is_over() const { return f_.is_spent() || f_.status() != Status::running; }
+
+  void expect(const FrameHead& head, Index numbers) {
+    if (head.bytes == static_cast<std::uint64_t>(numbers) * sizeof(Real)) return;
+    line_.fail("asks " + std::string(name_of(static_cast<Verb>(head.verb))) + " with " +
+               std::to_string(head.bytes) + " bytes, where " +
+               std::to_string(static_cast<std::size_t>(numbers) * sizeof(Real)) +
+               " are the question");
+  }
+  auto given_theta() const { return room_.head(f_.unknowns()); }
+  auto behind_theta(Index count) const { return room_.segment(f_.unknowns(), count); }
+  void reply(Verb verb, std::span<const Real> numbers) { line_.send(verb, kDone, numbers); }
+
+  // One forward a point, whatever is asked there.
+  Linearization& at_given() {
+    const bool is_same = point_theta_.size() > 0 &&
+                         std::memcmp(point_theta_.data(), room_.data(),
+                                     sizeof(Real) * static_cast<std::size_t>(f_.unknowns())) == 0;
+    if (is_same) return point_;
+    point_theta_ = given_theta();
+    f_.linearize(point_theta_, point_);
+    if (!said_.reports && point_.loss() < best_loss_) {  // what is better counts as an iteration
+      best_loss_ = point_.loss();
+      theta_ = point_theta_;
+      f_.iterate(theta_);
+    }
+    return point_;
+  }
+
+  void answer(Verb verb, const FrameHead& head) {
+    const Index n = f_.unknowns();
+    switch (verb) {
+      case Verb::value:
+      case Verb::gradient:
+      case Verb::value_and_gradient:
+        expect(head, n);
+        return answer_loss(verb);
+      case Verb::residual:
+      case Verb::jacobian_of_r:
+        expect(head, n);
+        return answer_residual(verb);
+      case Verb::pushforward_of_r:
+      case Verb::hessian_product:
+        expect(head, 2 * n);
+        return answer_along(verb);
+      case Verb::pullback_of_r:
+        expect(head, n + f_.residuals());
+        return answer_pullback();
+      case Verb::report:
+        expect(head, n);
+        theta_ = given_theta();
+        f_.iterate(theta_);
+        return reply(verb, {});
+      default:
+        line_.fail("asks by verb " + std::to_string(head.verb) + ", which is no question");
+    }
+  }
+
+  void answer_loss(Verb verb) {
+    Linearization& at = at_given();
+    const Real loss = at.loss();
+    if (verb == Verb::value) return reply(verb, {&loss, 1});
+    at.gradient(gradient_);
+    if (verb == Verb::gradient) return reply(verb, numbers_of(gradient_));
+    const std::array<std::span<const Real>, 2> both = {std::span(&loss, 1), numbers_of(gradient_)};
+    line_.send(verb, kDone, both);
+  }
+  void answer_residual(Verb verb) {
+    Linearization& at = at_given();
+    if (verb == Verb::residual) {
+      at.residual(residual_);
+      return reply(verb, numbers_of(residual_));
+    }
+    if (f_.samples() == 1) return reply(verb, numbers_of(at.jacobian()));
+    scaled_ = scale_ * at.jacobian();
+    reply(verb, numbers_of(scaled_));
+  }
+  void answer_along(Verb verb) {
+    const Vector v = behind_theta(f_.unknowns());
+    Linearization& at = at_given();
+    if (verb == Verb::hessian_product) {
+      gradient_.resize(f_.unknowns());
+      at.hessian_product(v, gradient_);
+      return reply(verb, numbers_of(gradient_));
+    }
+    scaled_.resize(f_.residuals() / f_.samples(), f_.samples());
+    at.pushforward(v, scaled_);
+    scaled_ *= scale_;
+    reply(verb, numbers_of(scaled_));
+  }
+  void answer_pullback() {
+    const Index samples = f_.samples(), outputs = f_.residuals() / samples;
+    const Matrix w = scale_ * behind_theta(f_.residuals()).reshaped(outputs, samples);
+    Linearization& at = at_given();
+    gradient_.resize(f_.unknowns());
+    at.pullback(w, gradient_);
+    reply(Verb::pullback_of_r, numbers_of(gradient_));
+  }
+
+  void take_claim(const FrameHead& head) {
+    f_.claim({reinterpret_cast<const char*>(room_.data()), head.bytes});
+    reply(Verb::claim, {});
+  }
+  Status finish(const FrameHead& head) {
+    expect(head, f_.unknowns());
+    theta_ = given_theta();
+    reply(Verb::finish, {});
+    return Status::converged;
+  }
+
+  Meter& f_;
+  Line& line_;
+  const MethodHandshake& said_;
+  Vector& theta_;
+  Vector room_;  // the last question
+  Real scale_;
+  Vector point_theta_;  // (n), where `point_` is; empty: nowhere yet
+  Linearization point_;
+  Real best_loss_ = std::numeric_limits<Real>::infinity();
+  Vector gradient_, residual_;
+  Matrix scaled_;
+  std::optional<Verb> open_;  // the question that came when the run was over
+};
+
+class ProcessMethod final : public Optimizer {
+ public:
+  explicit ProcessMethod(const Process& given)
+      : line_(door_to(given.command)), said_(greet_method(line_, given.startup)) {}
+  ~ProcessMethod() override {
+    if (has_begun_) end();
+  }
+  bool reports_iterations() const override { return true; }
+  void start(Meter& f, const Vector& theta) override {
+    const std::array<Real, 2> sizes = {static_cast<Real>(f.unknowns()),
+                                       static_cast<Real>(f.residuals())};
+    const std::array<std::span<const Real>, 2> told = {sizes, numbers_of(theta)};
+    has_begun_ = true;
+    line_.send(Verb::begin, 0, told);
+  }
+  Status step(Meter& f, Vector& theta) override {
+    Service service(f, line_, said_, theta);
+    const Status verdict = service.run();
+    open_ = service.open();
+    return verdict;
+  }
+
+ private:
+  // Off the clock. Whatever it asks from now on, it is told that there is no more: most leave then,
+  // and one that goes on is killed.
+  void end() {
+    constexpr int kMost = 100;
+    constexpr double kSeconds = 1;
+    std::array<Real, 1> room{};
+    try {
+      if (open_) line_.send(*open_, kStop, std::span<const Real>());
+      for (int i = 0; i < kMost; ++i)
+        line_.send(static_cast<Verb>(line_.receive(room, kSeconds).verb), kStop,
+                   std::span<const Real>());
+    } catch (const std::exception&) {  // it has left, or says nothing any more
+    }
+  }
+
+  Line line_;
+  MethodHandshake said_;
+  bool has_begun_ = false;
+  std::optional<Verb> open_;  // a question that nobody has answered
+};
+
+const MethodHandshake& introduced(const OptionValues& options) {
+  static Introductions<MethodHandshake> all;
+  const auto given = read_options<Process>(options);
+  return all.of(given.command, [&](Line& line) { return greet_method(line, given.startup); });
+}
+
+Foreign introduce(const OptionValues& options) {
+  Foreign foreign = introduced(options).foreign;
+  if (const std::string label = options.text("label"); !label.empty()) foreign.label = label;
+  return foreign;
+}
+
+std::string objection(const OptionValues& options, const Problem& problem) {
+  if (!introduced(options).is_least_squares || problem.is_least_squares()) return "";
+  return "the loss is no multiple of ‖y − y*‖², which least squares would descend instead";
+}
+
+}  // namespace
+
+void register_process(OptimizerRegistry& registry) {
+  registry.add({.name = "process",
+                .title = "An optimizer that another program runs",
+                .family = Family::foreign,
+                .formula = "θ as the program chooses it, from oracles that it asks for",
+                .source = "the program's own, which its record names",
+                .needs = {Oracle::forward},
+                .needs_same_samples = true,
+                .options = option_table<Process>(),
+                .in_all = false,
+                .needs_argument = "process[command=…]",
+                .introduce = introduce,
+                .needs_for = [](const OptionValues& options,
+                                const Problem&) { return introduced(options).needs; },
+                .objection = objection,
+                .make = [](const OptionValues& options,
+                           const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
+                  return std::make_unique<ProcessMethod>(read_options<Process>(options));
+                }});
+}
+
+}  // namespace isoline::optimizers

@@ -1,0 +1,212 @@
+// A problem that another program computes, over frames on a private socket (docs/wire-format.md):
+// process[command="python3 mine.py"]. Each problem that is made has a program of its own, which
+// ends with it. A forward is asked for once a point; products there come from what it left behind.
+#include <array>
+
+#include "core/foreign/introductions.h"
+#include "problems/problem.h"
+
+namespace isoline::problems {
+namespace {
+
+struct Process {
+  std::string command;
+  std::string label;
+  Real startup = 30;
+};
+
+void fields(Process& o, auto& field) {
+  field("command", o.command, {}, "what is started: words as of a shell, nothing expanded");
+  field("label", o.label, {}, "what tables call it; empty: what it calls itself");
+  field("startup", o.startup, above(0), "seconds in which it must have introduced itself");
+}
+
+Inverse inverse_of(const std::string& kind) {
+  if (kind == "exact") return Inverse::exact;
+  if (kind == "damped") return Inverse::damped;
+  if (kind == "estimate") return Inverse::estimate;
+  return kind.empty() ? Inverse::none : Inverse::approximate;
+}
+
+// The line to a program, and the points that it remembers, by number: one for every workspace that
+// is linearized at.
+struct Session {
+  explicit Session(const std::string& command) : line(door_to(command)) {}
+
+  std::uint32_t take_point() {
+    if (free_points.empty()) return points++;
+    const std::uint32_t point = free_points.back();
+    free_points.pop_back();
+    return point;
+  }
+
+  Line line;
+  std::uint32_t points = 0;
+  std::vector<std::uint32_t> free_points;
+};
+
+// Of a workspace: where its products are taken, and room for what does not lie in one piece.
+struct OwnPoint final : Scratch {
+  ~OwnPoint() override {
+    if (session) session->free_points.push_back(number);
+  }
+  std::shared_ptr<Session> session;
+  std::uint32_t number = 0;
+  Matrix in, out;
+};
+
+std::span<const Real> numbers_of(const Matrix& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+class ProcessPhysics final : public Physics {
+ public:
+  ProcessPhysics(std::shared_ptr<Session> session, const ProblemHandshake& said)
+      : session_(std::move(session)),
+        inputs_(said.inputs),
+        outputs_(said.outputs),
+        has_jacobian_(said.oracles.contains(Oracle::jacobian)),
+        products_{.has_pushforward = said.oracles.contains(Oracle::pushforward) || has_jacobian_,
+                  .has_pullback = said.oracles.contains(Oracle::pullback) || has_jacobian_,
+                  .pushforward_price = said.pushforward_price,
+                  .pullback_price = said.pullback_price,
+                  .are_differences = said.are_differences},
+        asks_pushforward_(said.oracles.contains(Oracle::pushforward)),
+        asks_pullback_(said.oracles.contains(Oracle::pullback)),
+        inverse_(inverse_of(said.inverse)),
+        inverse_price_(said.inverse_price) {}
+
+  Index inputs() const override { return inputs_; }
+  Index outputs() const override { return outputs_; }
+  Products products() const override { return products_; }
+  bool is_elsewhere() const override { return true; }
+  Inverse inverse_kind() const override { return inverse_; }
+  Index inverse_price() const override { return inverse_price_; }
+
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
+    ask(Verb::linearize, x, y, point_of(w));
+  }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
+    if (asks_pushforward_) return ask(Verb::pushforward, v, Jv, point_of(w));
+    const Matrix& J = saved_jacobian(w);
+    for (Index b = 0; b < v.cols(); ++b)
+      Jv.col(b).noalias() = J.middleCols(b * inputs_, inputs_) * v.col(b);
+  }
+  void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
+    if (asks_pullback_) return ask(Verb::pullback, u, JTu, point_of(w));
+    const Matrix& J = saved_jacobian(w);
+    for (Index b = 0; b < u.cols(); ++b)
+      JTu.col(b).noalias() = J.middleCols(b * inputs_, inputs_).transpose() * u.col(b);
+  }
+  void jacobian(BatchOut J, Workspace& w) const override {
+    if (!has_jacobian_) return Physics::jacobian(J, w);
+    J = saved_jacobian(w);
+  }
+
+  Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
+    const Matrix targets = y, starts = x0;  // each in one piece
+    Vector answer(x.size() + y.cols());     // x, then a verdict a sample
+    const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
+    session_->line.send(Verb::inverse, 0, given);
+    session_->line.receive_answer(Verb::inverse,
+                                  {answer.data(), static_cast<std::size_t>(answer.size())});
+    x = answer.head(x.size()).reshaped(x.rows(), x.cols());
+    return answer.tail(y.cols()).array() == 1;
+  }
+
+ private:
+  OwnPoint& point_of(Workspace& w) const {
+    OwnPoint& point = w.as<OwnPoint>();
+    if (!point.session) {
+      point.session = session_;
+      point.number = session_->take_point();
+    }
+    return point;
+  }
+
+  // Straight from the caller's arrays and into them, where each lies in one piece.
+  void ask(Verb verb, BatchRef given, BatchOut answer, OwnPoint& point) const {
+    const bool is_whole = given.outerStride() == given.rows();
+    if (!is_whole) point.in = given;
+    const Real* const from = is_whole ? given.data() : point.in.data();
+    Line& line = session_->line;
+    line.send(verb, point.number, std::span(from, static_cast<std::size_t>(given.size())));
+    const auto count = static_cast<std::size_t>(answer.size());
+    if (answer.outerStride() == answer.rows())
+      return line.receive_answer(verb, {answer.data(), count});
+    point.out.resize(answer.rows(), answer.cols());
+    line.receive_answer(verb, {point.out.data(), count});
+    answer = point.out;
+  }
+
+  const Matrix& saved_jacobian(Workspace& w) const {
+    w.saved.resize(1);
+    Matrix& J = w.saved[0];
+    if (w.saved_is_current) return J;
+    J.resize(outputs_, inputs_ * w.x.cols());
+    ask(Verb::jacobian, Matrix(0, 0), J, point_of(w));
+    w.saved_is_current = true;
+    return J;
+  }
+
+  std::shared_ptr<Session> session_;
+  Index inputs_, outputs_;
+  bool has_jacobian_;
+  Products products_;
+  bool asks_pushforward_, asks_pullback_;
+  Inverse inverse_;
+  Index inverse_price_;
+};
+
+Vector vector_of(const std::vector<Real>& numbers) {
+  return Eigen::Map<const Vector>(numbers.data(), static_cast<Index>(numbers.size()));
+}
+
+ProblemParts parts_of(const ProblemHandshake& said, std::shared_ptr<Session> session,
+                      const Draw& draw) {
+  const Vector standard = vector_of(said.start);
+  ProblemParts parts{.physics = std::make_unique<ProcessPhysics>(std::move(session), said),
+                     .start = draw.start(standard),
+                     .target = vector_of(said.target),
+                     .aim = said.aim,
+                     .minimum = said.minimum};
+  if (!said.drawn.empty()) parts.start = Start(vector_of(said.drawn), standard);
+  if (said.truth.empty()) return parts;
+  const Matrix truth = vector_of(said.truth);
+  parts.truth = truth;
+  parts.x_error = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); };
+  return parts;
+}
+
+Problem make_process(const OptionValues& options, const Draw& draw) {
+  const auto given = read_options<Process>(options);
+  auto session = std::make_shared<Session>(given.command);
+  const ProblemHandshake said = greet_problem(session->line, draw.seed(), given.startup);
+  return Problem(parts_of(said, std::move(session), draw));
+}
+
+Foreign introduce(const OptionValues& options) {
+  static Introductions<ProblemHandshake> all;
+  const auto given = read_options<Process>(options);
+  Foreign foreign =
+      all.of(given.command, [&](Line& line) { return greet_problem(line, 0, given.startup); })
+          .foreign;
+  if (!given.label.empty()) foreign.label = given.label;
+  return foreign;
+}
+
+}  // namespace
+
+void register_process(ProblemRegistry& registry) {
+  registry.add({.name = "process",
+                .title = "A problem that another program computes",
+                .formula = "y = P(x) and its products, by frames over a private socket",
+                .source = "the program's own, which its record names",
+                .options = option_table<Process>(),
+                .in_all = false,
+                .needs_argument = "process[command=…]",
+                .introduce = introduce,
+                .make = make_process});
+}
+
+}  // namespace isoline::problems

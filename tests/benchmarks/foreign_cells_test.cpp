@@ -1,0 +1,258 @@
+// Cells that another program computes: what it does wrong costs its own cell, what it is stands in
+// the record, and what it asks is counted.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/resources.h"
+#include "benchmarks/run/processes.h"
+#include "benchmarks/run/run_plan.h"
+#include "core/json.h"
+#include "core/records/schema.h"
+#include "tests/benchmarks/builtin.h"
+#include "tests/clients/programs.h"
+#include "tests/temporary_folder.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+const std::string kValley = process_of(example("rosenbrock.py"));
+
+class ForeignCells : public testing::Test {
+ protected:
+  static Request request_of(const std::string& problem, const std::string& optimizer,
+                            const Budget& budget = {.iterations = 50}) {
+    return named({.problem = complete_problem(catalog(), parse_spec(problem)),
+                  .optimizer = complete_optimizer(catalog(), parse_spec(optimizer)),
+                  .budget = budget});
+  }
+  Record record_of(const Request& request) {
+    run_all(catalog(), {request}, store, options);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "runs"))
+      if (entry.path().filename().string().starts_with(request.cell) &&
+          entry.path().extension() == ".json")
+        return read_record(entry.path());
+    ADD_FAILURE() << "there is no record";
+    return {};
+  }
+  Record record_after(const std::string& misdeed) {
+    return record_of(request_of(process_of(misbehaving("misbehaving.py " + misdeed)), "gd"));
+  }
+  void expect_failed(const std::string& misdeed, const std::string& part) {
+    const Record record = record_after(misdeed);
+    EXPECT_EQ(record.status, Status::failed) << misdeed << ": " << record.message;
+    EXPECT_NE(record.message.find(part), std::string::npos) << record.message;
+  }
+
+  TemporaryFolder folder;
+  Store store{folder.path()};
+  RunOptions options{.keeps_output = true};
+};
+
+TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
+  expect_failed("closes", "closed its socket; it still runs");
+  expect_failed("leaves", "left with exit code 3, and last printed: I have had enough");
+  expect_failed("half-a-frame", "closed its socket; it left with exit code 0");
+  expect_failed("a-huge-frame", "answers linearize with 9223372036854775808 bytes, where 16 are");
+  expect_failed("a-huge-complaint", "sends a text of 9223372036854775808 bytes, and at most 65536");
+  expect_failed("another-verb", "answers linearize with a frame of verb 99");
+  expect_failed("two-answers", "sends more than the head of its frame says");
+  expect_failed("raises", "failed at linearize: ValueError: the mesh is tangled");
+}
+
+TEST_F(ForeignCells, OfOneThatPrintsAGigabyteKeepItsBeginning) {
+  options.limits.hard_seconds = 60;
+  const Record record = record_after("floods");
+  EXPECT_EQ(record.status, Status::budget) << record.message;
+  EXPECT_GE(record.output.size(), CapturedOutput::kMost);
+  EXPECT_LT(record.output.size(), CapturedOutput::kMost + 100);
+  EXPECT_NE(record.output.find("bytes more"), std::string::npos);
+}
+
+TEST_F(ForeignCells, OfOneThatAnswersTooLateAreTimedOut) {
+  options.limits.hard_seconds = 0.4;  // of processor time; five times that on the wall
+  EXPECT_EQ(record_after("hangs").status, Status::timeout);
+}
+
+TEST_F(ForeignCells, TakeWhatTheirProgramStartedWithThem) {
+  const auto file = folder.path() / "process";
+  const Record record = record_after("forks " + file.string());
+  EXPECT_EQ(record.status, Status::budget) << record.message;
+  pid_t process = 0;
+  std::ifstream(file) >> process;
+  ASSERT_GT(process, 0);
+  const auto figures = figures_of(process);
+  EXPECT_FALSE(figures && figures->resident_bytes > 0);
+}
+
+TEST_F(ForeignCells, WhereSomethingIsNotFiniteEndAsAnyOthers) {
+  const Record record = record_of(
+      request_of(process_of(misbehaving("misbehaving.py is-not-finite")), "gd[rate=1e-2]"));
+  EXPECT_EQ(record.status, Status::diverged) << record.message;
+}
+
+TEST_F(ForeignCells, WithoutAProductAreInapplicableWithTheReason) {
+  const std::string alone = process_of(misbehaving("offers.py forward"));
+  const Record gradient = record_of(request_of(alone, "gd"));
+  EXPECT_EQ(gradient.status, Status::inapplicable);
+  EXPECT_EQ(gradient.message, "the problem offers no gradients");
+  EXPECT_EQ(record_of(request_of(alone, "nlopt-neldermead")).status, Status::budget);
+  const std::string pulls = process_of(misbehaving("offers.py vjp"));
+  EXPECT_NE(record_of(request_of(pulls, "gauss-newton")).status, Status::inapplicable);
+}
+
+// --- certificates
+
+TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
+  const auto complaint = [&](const std::string& misdeed) -> std::string {
+    const Request request = request_of(process_of(misbehaving("misbehaving.py " + misdeed)), "gd");
+    try {
+      run_plan(catalog(), "trial", {request}, folder.path(), options, {});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
+  EXPECT_NE(sign.find("is not certified, and not run: 'the remainder after J v is of second order' "
+                      "is broken"),
+            std::string::npos)
+      << sign;
+  EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
+  EXPECT_NE(complaint("raises").find("ValueError: the mesh is tangled"), std::string::npos);
+  EXPECT_EQ(complaint("is-sound"), "");
+}
+
+// --- records and builds
+
+TEST_F(ForeignCells, SayWhoComputedThem) {
+  const Record record = record_of(request_of(kValley, process_of(example("descent.py"))));
+  ASSERT_TRUE(record.foreign.problem && record.foreign.optimizer);
+  EXPECT_EQ(record.foreign.problem->door, "process");
+  EXPECT_EQ(record.foreign.problem->command, example("rosenbrock.py"));
+  EXPECT_EQ(record.foreign.problem->label, "rosenbrock-python");
+  EXPECT_TRUE(record.foreign.problem->interpreter.find("Python 3.") != std::string::npos);
+  EXPECT_EQ(record.foreign.optimizer->label, "descent-python");
+  const Json json = to_json(record);
+  const Json schema = parse_json(std::string(builtin_schemas().at("run")), "run");
+  EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>{});
+  EXPECT_EQ(to_json(record_from_json(json)), json);
+  EXPECT_FALSE(to_json(record_of(request_of("rosenbrock", "gd"))).contains("foreign"));
+}
+
+TEST_F(ForeignCells, OfAChangedScriptAreOfAnotherBuild) {
+  const auto script = folder.path() / "mine.py";
+  const std::string spec = process_of("python3 " + script.string());
+  const auto written = [&](const std::string& factor) {
+    std::ofstream(script) << "import isoline\nisoline.problem(lambda x: [" << factor
+                          << " * x[0]], [1], jacobian=lambda x: [[" << factor << "]])\n";
+    return request_of(spec, "gd");
+  };
+  const Request first = written("2"), again = written("2"), changed = written("3");
+  EXPECT_EQ(build_digest(first), build_digest(again));
+  EXPECT_EQ(first.cell, changed.cell) << "the same was asked";
+  const BuildParts before = build_parts(first), after = build_parts(changed);
+  for (const auto& [part, one] : before)
+    EXPECT_EQ(one == after.at(part), part != "problem") << part;
+}
+
+// --- optimizers
+
+TEST_F(ForeignCells, OfAnOptimizerAreCountedAndTraced) {
+  const Record record =
+      record_of(request_of("rosenbrock", process_of(example("descent.py")), {.iterations = 30}));
+  EXPECT_EQ(record.status, Status::budget) << record.message << record.output;
+  EXPECT_EQ(record.summary.iterations, 30);
+  const auto count = [&](Oracle oracle) { return record.counts[static_cast<std::size_t>(oracle)]; };
+  EXPECT_EQ(count(Oracle::forward), 31) << "the start, then one an iteration";
+  EXPECT_EQ(count(Oracle::pullback), 31);
+  EXPECT_LT(record.summary.loss, record.summary.start_loss);
+  EXPECT_EQ(record.curve.iteration.size(), 31U);
+}
+
+TEST_F(ForeignCells, OfAnOptimizerKeepWhatItClaimsAndPrints) {
+  const Record record =
+      record_of(request_of("rosenbrock", process_of(misbehaving("idle_optimizers.py talks"))));
+  EXPECT_EQ(record.status, Status::converged) << record.message;
+  EXPECT_EQ(record.claimed, "a small loss, I believe");
+  EXPECT_EQ(record.output, "what I think of it\n");
+  EXPECT_EQ(record.counts[0], 0) << "it asked nothing";
+}
+
+TEST_F(ForeignCells, OfAnOptimizerFailWithWhatItDid) {
+  const auto record_of_method = [&](const std::string& word) {
+    return record_of(
+        request_of("rosenbrock", process_of(misbehaving("idle_optimizers.py " + word))));
+  };
+  const Record refused = record_of_method("asks-what-it-did-not-declare");
+  EXPECT_EQ(refused.status, Status::failed);
+  EXPECT_EQ(refused.message,
+            "the method asked for the oracle 'jacobian', which it does not declare that it needs");
+  EXPECT_NE(record_of_method("raises").message.find("ValueError: the step is no number"),
+            std::string::npos);
+  EXPECT_NE(record_of_method("leaves").message.find("it left with exit code 4"), std::string::npos);
+}
+
+TEST_F(ForeignCells, OfAnOptimizerThatDoesNotStopEndAllTheSame) {
+  const Record record = record_of(request_of(
+      "rosenbrock", process_of(misbehaving("idle_optimizers.py never-stops")), {.work = 40}));
+  EXPECT_EQ(record.status, Status::budget) << record.message;
+  EXPECT_LE(record.summary.work, 42);
+}
+
+TEST_F(ForeignCells, OfAProblemFromOutsideHaveTheTraceOfTheTreesOwn) {
+  const std::string valley = valley_of_this_build();
+  for (const char* method : {"levenberg-marquardt", "gd[rate=1e-3]", "nlopt-lbfgs", "newton"}) {
+    const Budget budget{.iterations = 60, .target = 0};
+    const Record ours = record_of(request_of("rosenbrock", method, budget));
+    const Record theirs = record_of(request_of(valley, method, budget));
+    if (std::string_view(method) == "newton") {
+      EXPECT_EQ(theirs.status, Status::inapplicable) << "it offers no second derivatives";
+      continue;
+    }
+    EXPECT_EQ(ours.curve.loss, theirs.curve.loss) << method;
+    EXPECT_EQ(ours.curve.x_error, theirs.curve.x_error) << method;
+    EXPECT_EQ(ours.curve.step_norm, theirs.curve.step_norm) << method;
+    EXPECT_EQ(ours.counts, theirs.counts) << method;
+    EXPECT_EQ(ours.verified, theirs.verified) << method;
+    EXPECT_GE(ours.curve.loss.size(), 5U) << method;
+  }
+}
+
+// What SciPy reports of itself, and says when it has finished.
+TEST_F(ForeignCells, OfScipyCountWhatScipyCounts) {
+  const std::string python = python_with("scipy");
+  if (python.empty()) GTEST_SKIP() << "SciPy is not installed";
+  const Budget endless{.iterations = 100'000, .target = -1};  // no loss is small enough
+  for (const std::string method : {"lm", "trf", "bfgs", "l-bfgs-b"})
+    for (const char* problem : {"rosenbrock", "helical-valley", "powell-singular"}) {
+      const Record record = record_of(
+          request_of(problem, process_of(example("scipy_optimize.py " + method, python)), endless));
+      ASSERT_EQ(record.status, Status::converged)
+          << method << " on " << problem << ": " << record.message;
+      const bool is_least_squares = method == "lm" || method == "trf";
+      const auto asked = [&](Oracle oracle) {
+        return std::to_string(record.counts[static_cast<std::size_t>(oracle)]);
+      };
+      const std::string counts = "nfev=" + asked(Oracle::forward) + " njev=" +
+                                 asked(is_least_squares ? Oracle::jacobian : Oracle::pullback);
+      EXPECT_TRUE(record.claimed.ends_with(counts))
+          << method << " on " << problem << ": " << record.claimed << "; the meter has " << counts;
+      EXPECT_EQ(record.foreign.optimizer->label, "scipy-" + method);
+      EXPECT_TRUE(record.verified.at("1e-3").value_or(false)) << method << " on " << problem;
+    }
+}
+
+TEST_F(ForeignCells, OfTorchReportEachOfItsSteps) {
+  const std::string python = python_with("torch");
+  if (python.empty()) GTEST_SKIP() << "PyTorch is not installed";
+  const Record record = record_of(
+      request_of("rosenbrock", process_of(example("torch_lbfgs.py", python)), {.iterations = 60}));
+  EXPECT_TRUE(record.verified.at("1e-3").value_or(false)) << record.message;
+  EXPECT_GT(record.summary.iterations, 5);
+}
+
+}  // namespace
+}  // namespace isoline::benchmarks

@@ -1,0 +1,264 @@
+"""The client of Python, driven as Isoline drives it: with NumPy where it is, and without."""
+
+import json
+import os
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CLIENT = sys.argv.pop(1)  # the folder that isoline.py lies in
+HEAD = struct.Struct("<IIQ")
+WITHOUT_NUMPY = "import sys; sys.modules['numpy'] = None\n"
+
+try:
+    import numpy  # noqa: F401
+
+    HAS_NUMPY = True
+except ImportError:
+    HAS_NUMPY = False
+
+
+class Program:
+    """A script at the other end of a socket."""
+
+    def __init__(self, text, has_numpy=True):
+        ours, theirs = socket.socketpair()
+        self.socket = ours
+        self.script = tempfile.NamedTemporaryFile("w", suffix=".py")
+        self.script.write(("" if has_numpy else WITHOUT_NUMPY) + text)
+        self.script.flush()
+        environment = dict(os.environ, ISOLINE_FD=str(theirs.fileno()), PYTHONPATH=CLIENT)
+        environment["PYTHONDONTWRITEBYTECODE"] = "1"
+        self.process = subprocess.Popen(
+            [sys.executable, self.script.name], pass_fds=[theirs.fileno()], env=environment,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        )
+        theirs.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.socket.close()
+        self.process.communicate()
+        self.script.close()
+
+    def send(self, verb, status, payload=b""):
+        self.socket.sendall(HEAD.pack(verb, status, len(payload)) + payload)
+
+    def receive(self):
+        verb, status, count = HEAD.unpack(self.exactly(HEAD.size))
+        return verb, status, self.exactly(count)
+
+    def exactly(self, count):
+        got = b""
+        while len(got) < count:
+            more = self.socket.recv(count - len(got))
+            if not more:
+                raise EOFError(self.process.stdout.read().decode())
+            got += more
+        return got
+
+    def greet(self, role, **more):
+        self.send(1, 0, json.dumps(dict(more, protocol=1, role=role)).encode())
+        verb, status, payload = self.receive()
+        assert verb == 1
+        return status, payload
+
+    def ask(self, verb, status, numbers):
+        self.send(verb, status, struct.pack(f"<{len(numbers)}d", *numbers))
+        answered, fate, payload = self.receive()
+        assert answered == verb, answered
+        if fate == 1:
+            raise RuntimeError(payload.decode())
+        return list(struct.unpack(f"<{len(payload) // 8}d", payload))
+
+
+PROBLEM = """
+import isoline
+def forward(x): return [x[0] * x[0], x[0] * x[1], 3 * x[1]]
+def vjp(x, u): return [2 * x[0] * u[0] + x[1] * u[1], x[0] * u[1] + 3 * u[2]]
+def jvp(x, v): return [2 * x[0] * v[0], x[1] * v[0] + x[0] * v[1], 3 * v[1]]
+def jacobian(x): return [[2 * x[0], 0], [x[1], x[0]], [0, 3]]
+def inverse(y, x0): return [y[0] ** 0.5, y[2] / 3] if y[0] >= 0 else None
+print("a stray line")
+isoline.problem(forward, [1, 2 + isoline.seed()], truth=[2, 1], %s, name="three")
+"""
+ALL = "vjp=vjp, jvp=jvp, jacobian=jacobian, inverse=inverse"
+
+
+class Problems(unittest.TestCase):
+    has_numpy = True
+
+    def program(self, text):
+        return Program(text, self.has_numpy)
+
+    def test_says_what_it_is(self):
+        with self.program(PROBLEM % ALL) as program:
+            status, payload = program.greet("problem", seed=3)
+            said = json.loads(payload)
+            self.assertEqual(status, 0)
+            self.assertEqual((said["inputs"], said["outputs"], said["name"]), (2, 3, "three"))
+            self.assertEqual(said["start"], [1, 5])
+            self.assertEqual((said["target"], said["truth"]), ([4, 2, 3], [2, 1]))
+            self.assertEqual(said["minimum"], 0)
+            self.assertEqual(
+                said["oracles"], ["forward", "pullback", "pushforward", "jacobian", "inverse"]
+            )
+            self.assertEqual("numpy" in said["packages"], self.has_numpy)
+            self.assertIn(".".join(map(str, sys.version_info[:3])), said["interpreter"])
+
+    def test_answers_at_the_point_that_is_named(self):
+        with self.program(PROBLEM % ALL) as program:
+            program.greet("problem", seed=0)
+            self.assertEqual(program.ask(2, 0, [1, 2]), [1, 2, 6])
+            self.assertEqual(program.ask(2, 7, [3, 4]), [9, 12, 12])
+            self.assertEqual(program.ask(3, 0, [1, 1]), [2, 3, 3])
+            self.assertEqual(program.ask(3, 7, [1, 1]), [6, 7, 3])
+            self.assertEqual(program.ask(4, 0, [1, 1, 1]), [4, 4])
+            self.assertEqual(program.ask(5, 7, []), [6, 4, 0, 0, 3, 3])
+
+    def test_takes_batches_in_one_frame(self):
+        with self.program(PROBLEM % ALL) as program:
+            program.greet("problem", seed=0)
+            self.assertEqual(program.ask(2, 1, [1, 2, 3, 4]), [1, 2, 6, 9, 12, 12])
+            self.assertEqual(program.ask(4, 1, [1, 1, 1, 0, 0, 1]), [4, 4, 0, 3])
+            self.assertEqual(program.ask(3, 1, [1, 1, 1, 1]), [2, 3, 3, 6, 7, 3])
+            self.assertEqual(program.ask(5, 1, []), [2, 2, 0, 0, 1, 3, 6, 4, 0, 0, 3, 3])
+            inverted = program.ask(6, 0, [4, 2, 3, -1, 2, 3] + [1, 2, 5, 6])
+            self.assertEqual(inverted, [2, 1, 5, 6, 1, 0])
+
+    def test_has_differences_marked_and_priced(self):
+        with self.program(PROBLEM % "differences=True") as program:
+            said = json.loads(program.greet("problem", seed=0)[1])
+            self.assertTrue(said["differences"])
+            self.assertEqual((said["pushforward_price"], said["pullback_price"]), (2, 4))
+            program.ask(2, 0, [1, 2])
+            for found, expected in zip(program.ask(3, 0, [1, 1]), [2, 3, 3]):
+                self.assertAlmostEqual(found, expected, places=7)
+            for found, expected in zip(program.ask(4, 0, [1, 1, 1]), [4, 4]):
+                self.assertAlmostEqual(found, expected, places=7)
+
+    def test_offers_losses_alone_where_nothing_else_is_given(self):
+        with self.program(PROBLEM % "vjp=None") as program:
+            said = json.loads(program.greet("problem", seed=0)[1])
+            self.assertEqual(said["oracles"], ["forward"])
+
+    def test_says_what_went_wrong_and_goes_on(self):
+        with self.program(PROBLEM % "vjp=lambda x, u: [1]") as program:
+            program.greet("problem", seed=0)
+            program.ask(2, 0, [1, 2])
+            with self.assertRaisesRegex(RuntimeError, "vjp gave 1 numbers, and 2 are due"):
+                program.ask(4, 0, [1, 1, 1])
+            self.assertEqual(program.ask(2, 0, [1, 2]), [1, 2, 6])
+
+    def test_passes_what_is_not_finite(self):
+        with self.program(PROBLEM.replace("3 * x[1]]", "float('inf')]") % "vjp=vjp") as program:
+            said = json.loads(program.greet("problem", seed=0)[1])
+            self.assertEqual(said["target"], [4, 2, "inf"])
+            infinity = float("inf")
+            self.assertEqual(program.ask(2, 0, [-infinity, 1])[:2], [infinity, -infinity])
+
+    def test_takes_frames_larger_than_its_buffer(self):
+        text = "import isoline\nisoline.problem(lambda x: x, [0.0] * 20000, vjp=lambda x, u: u)"
+        with self.program(text) as program:
+            program.greet("problem", seed=0)
+            numbers = [float(i) for i in range(20000)]
+            self.assertEqual(program.ask(2, 0, numbers), numbers)
+
+    def test_is_no_optimizer(self):
+        with self.program(PROBLEM % ALL) as program:
+            status, payload = program.greet("optimizer")
+            self.assertEqual(status, 1)
+            self.assertIn(b"this script is a problem", payload)
+
+
+class ProblemsWithoutNumPy(Problems):
+    has_numpy = False
+
+
+@unittest.skipUnless(HAS_NUMPY, "NumPy is not installed")
+class ProblemsWithNumPy(Problems):
+    pass
+
+
+del Problems  # what the two share is no test by itself
+
+OPTIMIZER = """
+import isoline
+p = isoline.optimizer(["pullback", "jacobian"], "mine", reports=True, least_squares=True)
+assert list(p.x0) == [1, 2] and p.residuals == 3
+assert p.value(p.x0) == 7
+assert list(p.gradient(p.x0)) == [8, 9]
+loss, slope = p.value_and_grad(p.x0)
+assert loss == 7 and list(slope) == [8, 9]
+assert [list(row) for row in p.jacobian(p.x0)] == [[1, 4], [2, 5], [3, 6]]
+p.report(p.x0)
+p.finish([5, 6], "done")
+"""
+
+
+class Optimizers(unittest.TestCase):
+    has_numpy = True
+
+    def answer(self, program, verb, count, numbers, status=0):
+        asked, _, payload = program.receive()
+        self.assertEqual((asked, len(payload)), (verb, 8 * count))
+        program.send(verb, status, struct.pack(f"<{len(numbers)}d", *numbers))
+        return list(struct.unpack(f"<{count}d", payload))
+
+    def test_asks_in_the_vocabulary_of_the_wire(self):
+        with Program(OPTIMIZER, self.has_numpy) as program:
+            said = json.loads(program.greet("optimizer")[1])
+            self.assertEqual(said["needs"], ["pullback", "jacobian"])
+            self.assertTrue(said["reports"] and said["least_squares"])
+            program.send(16, 0, struct.pack("<4d", 2, 3, 1, 2))
+            self.assertEqual(self.answer(program, 17, 2, [7]), [1, 2])
+            self.answer(program, 18, 2, [8, 9])
+            self.answer(program, 19, 2, [7, 8, 9])
+            self.answer(program, 21, 2, [1, 2, 3, 4, 5, 6])
+            self.answer(program, 32, 2, [])
+            verb, _, payload = program.receive()
+            self.assertEqual((verb, payload), (34, b"done"))
+            program.send(34, 0)
+            self.assertEqual(self.answer(program, 33, 2, []), [5, 6])
+            self.assertEqual(program.process.wait(), 0, "it left as it was meant to")
+
+    def test_leaves_quietly_when_told_to_stop(self):
+        with Program(OPTIMIZER, self.has_numpy) as program:
+            program.greet("optimizer")
+            program.send(16, 0, struct.pack("<4d", 2, 3, 1, 2))
+            self.answer(program, 17, 2, [], status=2)
+            self.assertEqual(program.process.wait(), 0)
+            self.assertEqual(program.process.stdout.read(), b"")
+
+
+class OptimizersWithoutNumPy(Optimizers):
+    has_numpy = False
+
+
+@unittest.skipUnless(HAS_NUMPY, "NumPy is not installed")
+class OptimizersWithNumPy(Optimizers):
+    pass
+
+
+del Optimizers
+
+
+class Alone(unittest.TestCase):
+    def test_a_script_that_nobody_started_says_how_it_is(self):
+        environment = {k: v for k, v in os.environ.items() if k != "ISOLINE_FD"}
+        for text in (PROBLEM % ALL, OPTIMIZER):
+            found = subprocess.run(
+                [sys.executable, "-c", text], env=dict(environment, PYTHONPATH=CLIENT),
+                capture_output=True, text=True,
+            )
+            self.assertNotEqual(found.returncode, 0)
+            self.assertIn("This script is started by Isoline", found.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,80 @@
+"""Programs that keep no law, one a word: what the door of child processes must survive."""
+
+import os
+import struct
+import sys
+import time
+
+mode = sys.argv[1]
+if mode == "dies-at-import":
+    import a_package_that_nobody_has  # noqa: F401
+if mode == "is-late":
+    time.sleep(60)
+if mode == "is-silent":
+    os._exit(0)
+if mode == "floods-at-once":
+    for _ in range(1000):
+        os.write(1, b"x" * 10**6)
+
+import isoline
+
+calls = 0
+state = [0.0]
+
+
+def head(verb, status, count):
+    return struct.pack("<IIQ", verb, status, count)
+
+
+def misbehave(x):
+    line = isoline._greeted()[0].socket
+    if mode == "floods":
+        for _ in range(1000):
+            os.write(1, b"x" * 10**6)
+    elif mode == "closes":
+        line.close()
+        time.sleep(60)
+    elif mode == "leaves":
+        print("I have had enough", flush=True)
+        os._exit(3)
+    elif mode == "half-a-frame":
+        line.sendall(head(2, 0, 16) + bytes(8))
+        os._exit(0)
+    elif mode == "a-huge-frame":
+        line.sendall(head(2, 0, 1 << 63) + bytes(8))
+    elif mode == "a-huge-complaint":
+        line.sendall(head(2, 1, 1 << 63) + bytes(8))
+    elif mode == "another-verb":
+        line.sendall(head(99, 0, 16) + bytes(16))
+    elif mode == "two-answers":
+        line.sendall(2 * (head(2, 0, 16) + bytes(16)))
+    elif mode == "raises":
+        raise ValueError("the mesh is tangled")
+    elif mode == "hangs":
+        time.sleep(600)
+    elif mode == "forks":
+        if os.fork() == 0:
+            os.setsid()
+            with open(sys.argv[2], "w") as file:
+                file.write(str(os.getpid()))
+            time.sleep(600)
+
+
+def forward(x):
+    global calls
+    calls += 1
+    if calls == 3:  # later than the handshake, and than whoever only wants to know
+        misbehave(x)
+    if mode == "is-random":
+        state[0] += 1e-9
+    if mode == "is-not-finite" and x[0] < -0.5:
+        return [float("nan"), float("inf")]
+    return [10 * (x[1] - x[0] * x[0]) + state[0], 1 - x[0]]
+
+
+def jacobian(x):
+    sign = -1 if mode == "has-a-wrong-sign" else 1
+    return [[-20 * sign * x[0], 10], [-1, 0]]
+
+
+isoline.problem(forward, [1.2, 1], minimum=0.0, jacobian=jacobian, name=mode)

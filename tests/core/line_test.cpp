@@ -1,0 +1,211 @@
+// What comes over a line to another program is whole and lawful, or an error that says who broke
+// which law; and a program that is started ends with the line.
+#include "core/foreign/line.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+
+#include "core/errors.h"
+#include "tests/temporary_folder.h"
+
+namespace isoline {
+namespace {
+
+std::string frame(std::uint32_t verb, std::uint32_t status, std::uint64_t bytes,
+                  const std::string& payload) {
+  const FrameHead head{verb, status, bytes};
+  return std::string(reinterpret_cast<const char*>(&head), sizeof head) + payload;
+}
+
+std::string bytes_of(std::span<const double> numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
+}
+
+// A line whose other end is this very test.
+struct BothEnds {
+  BothEnds() {
+    int ends[2];
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+    line = std::make_unique<Line>(ends[0]);
+    other = ends[1];
+  }
+  ~BothEnds() { hang_up(); }
+  void write(const std::string& bytes) const {
+    EXPECT_EQ(::write(other, bytes.data(), bytes.size()), std::ssize(bytes));
+  }
+  void hang_up() {
+    if (other >= 0) ::close(other);
+    other = -1;
+  }
+
+  std::unique_ptr<Line> line;
+  int other = -1;
+};
+
+// What is said of an answer to a pullback of two numbers.
+std::string said_of(const std::string& answer, bool hangs_up = true, double seconds = 5) {
+  BothEnds ends;
+  ends.write(answer);
+  if (hangs_up) ends.hang_up();
+  std::array<double, 2> numbers{};
+  try {
+    ends.line->receive_answer(Verb::pullback, numbers, seconds);
+  } catch (const LineError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_said(const std::string& answer, const std::string& part) {
+  const std::string said = said_of(answer);
+  EXPECT_NE(said.find(part), std::string::npos) << said;
+}
+
+constexpr std::array<double, 2> kNumbers = {1.5, -2};
+
+TEST(Line, NumbersArriveAsTheyWereSent) {
+  BothEnds ends;
+  ends.write(frame(4, 0, 16, bytes_of(kNumbers)));
+  std::array<double, 2> numbers{};
+  ends.line->receive_answer(Verb::pullback, numbers);
+  EXPECT_EQ(numbers, kNumbers);
+  ends.line->send(Verb::linearize, 7, kNumbers);
+  std::array<char, 32> got{};
+  EXPECT_EQ(::read(ends.other, got.data(), got.size()), 32);
+  EXPECT_EQ(std::string(got.data(), got.size()), frame(2, 7, 16, bytes_of(kNumbers)));
+}
+
+TEST(Line, AFrameThatComesByTheByteIsTheSame) {
+  BothEnds ends;
+  const std::string whole = frame(4, 0, 16, bytes_of(kNumbers));
+  const pid_t writer = fork();
+  if (writer == 0) {
+    for (const char each : whole) {
+      usleep(200);
+      if (::write(ends.other, &each, 1) != 1) _exit(1);
+    }
+    _exit(0);
+  }
+  std::array<double, 2> numbers{};
+  ends.line->receive_answer(Verb::pullback, numbers, 10);
+  EXPECT_EQ(numbers, kNumbers);
+}
+
+TEST(Line, WhatBreaksTheLawOfFramesIsRefused) {
+  expect_said("", "closed its socket");
+  expect_said(frame(4, 0, 16, "").substr(0, 9), "closed its socket");
+  expect_said(frame(4, 0, 16, "12345678"), "closed its socket");
+  expect_said(frame(4, 0, std::uint64_t{1} << 63, bytes_of(kNumbers)),
+              "answers pullback with 9223372036854775808 bytes, where 16 are the answer");
+  expect_said(frame(4, 0, 8, "12345678"), "with 8 bytes, where 16 are");
+  expect_said(frame(4, 0, 8, bytes_of(kNumbers)), "sends more than the head of its frame says");
+  expect_said(frame(99, 0, 16, bytes_of(kNumbers)), "answers pullback with a frame of verb 99");
+}
+
+TEST(Line, AComplaintIsQuotedWithinBounds) {
+  expect_said(frame(4, 1, 21, "the mesh is \xff tangled"),
+              "failed at pullback: the mesh is \uFFFD");
+  expect_said(frame(4, 1, 2, "no"), "failed at pullback: no");
+  expect_said(frame(4, 1, std::uint64_t{1} << 63, "long"),
+              "sends a text of 9223372036854775808 bytes, and at most 65536 are taken");
+}
+
+TEST(Line, ADeadlineIsKept) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_NE(said_of(frame(4, 0, 16, "1234"), false, 0.05).find("did not answer within 0.05 s"),
+            std::string::npos);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+TEST(Line, AQuestionLongerThanItsRoomIsRefusedBeforeItIsRead) {
+  BothEnds ends;
+  ends.write(frame(17, 0, std::uint64_t{1} << 40, ""));
+  std::array<double, 4> room{};
+  try {
+    ends.line->receive(room);
+    FAIL() << "it was taken";
+  } catch (const LineError& error) {
+    EXPECT_NE(std::string(error.what()).find("and at most 32 are taken here"), std::string::npos);
+  }
+}
+
+// --- programs
+
+ChildProgram::Start shell(const std::string& script) {
+  return {.command = "sh -c '" + script + "'"};
+}
+
+std::string failure_of(const std::string& script, double seconds = 20) {
+  Line line(shell(script));
+  std::array<double, 1> numbers{};
+  try {
+    line.receive_answer(Verb::linearize, numbers, seconds);
+  } catch (const LineError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Programs, HowTheyEndAndWhatTheyPrintedLastIsSaid) {
+  const std::string said = failure_of("echo one; echo two >&2; exit 3");
+  EXPECT_NE(said.find("it left with exit code 3, and last printed: one\ntwo"), std::string::npos)
+      << said;
+  EXPECT_NE(failure_of("kill -9 $$").find("it was ended by signal 9 (Killed), and printed nothing"),
+            std::string::npos);
+}
+
+TEST(Programs, ThatPrintAGigabyteAreReadToTheEndInLittleMemory) {
+  const std::string said = failure_of("head -c 1000000000 /dev/zero; echo; echo the end; exit 5");
+  EXPECT_NE(said.find("exit code 5, and last printed: "), std::string::npos) << said.substr(0, 200);
+  EXPECT_TRUE(said.ends_with("the end")) << said.substr(0, 200);
+  EXPECT_LT(said.size(), 4000U);
+}
+
+TEST(Programs, FindTheirEndOfTheLineByItsNumber) {
+  Line line(
+      shell("printf \"\\001\\000\\000\\000\\000\\000\\000\\000\\002\\000\\000\\000\\000\\000"
+            "\\000\\000hi\" >&$ISOLINE_FD"));
+  EXPECT_EQ(line.receive_text(Verb::hello, 10, 20), "hi");
+}
+
+TEST(Programs, ThatAreNotThereAreNamed) {
+  const auto start = [] { const Line line({.command = "a-program-that-nobody-has 'x y'"}); };
+  EXPECT_THROW(
+      try { start(); } catch (const UsageError& error) {
+        EXPECT_STREQ(error.what(),
+                     "cannot start 'a-program-that-nobody-has': No such file or directory");
+        throw;
+      },
+      UsageError);
+}
+
+// A process that has ended and that nobody has waited for has no command.
+bool runs(const std::string& process) {
+  std::ifstream file("/proc/" + process + "/cmdline");
+  return file.get() != std::ifstream::traits_type::eof();
+}
+
+TEST(Programs, EndWithTheirLineAndSoDoesWhatTheyStarted) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "process";
+  std::string process;
+  {
+    Line line(shell("sleep 1000 & echo $! >" + file.string() + ".new; mv " + file.string() +
+                    ".new " + file.string() + "; read x <&$ISOLINE_FD"));
+    for (int i = 0; i < 2000 && !std::filesystem::exists(file); ++i) usleep(10'000);
+    std::ifstream(file) >> process;
+    ASSERT_FALSE(process.empty());
+    EXPECT_TRUE(runs(process));
+  }
+  for (int i = 0; i < 2000 && runs(process); ++i) usleep(10'000);
+  EXPECT_FALSE(runs(process));
+}
+
+}  // namespace
+}  // namespace isoline
