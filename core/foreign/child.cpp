@@ -25,7 +25,8 @@ extern char** environ;
 namespace isoline {
 namespace {
 
-constexpr std::size_t kTail = 4000;  // bytes of the end that are remembered
+constexpr std::size_t kTail = 4000;                        // bytes of the end that are remembered
+constexpr std::size_t kMostPassed = std::size_t{1} << 20;  // bytes: more than a record keeps
 constexpr std::size_t kLastLines = 8, kLastBytes = 600;
 constexpr int kWidePipe = 1 << 20;      // bytes: who prints much is not held up at each look
 constexpr int kMostReads = 64;          // at one look: who never stops printing ends no look
@@ -183,7 +184,9 @@ void ChildProgram::drain() {
 }
 
 void ChildProgram::take(const char* bytes, std::size_t count) {
-  if (belongs_to_a_cell()) write_all(STDERR_FILENO, bytes, count);
+  const std::size_t passed = belongs_to_a_cell() ? std::min(count, kMostPassed - passed_) : 0;
+  write_all(STDERR_FILENO, bytes, passed);
+  passed_ += passed;
   tail_.append(bytes, count);
   if (tail_.size() > kTail) tail_.erase(0, tail_.size() - kTail);
 }

@@ -12,8 +12,9 @@
 namespace isoline {
 
 // In a process that is one cell: programs started from now on belong to its process group, so that
-// whoever ends the cell ends them, and what they print goes on to this process's own output, which
-// is captured. Elsewhere each leads a group of its own, and what it prints is shown to nobody.
+// whoever ends the cell ends them, and what they print, up to a MiB, goes on to this process's own
+// output, which is captured. Elsewhere each leads a group of its own, and what it prints is shown
+// to nobody.
 void join_child_programs();
 
 class ChildProgram {
@@ -57,6 +58,7 @@ class ChildProgram {
   };
   std::optional<End> end_;
   std::string tail_;
+  std::size_t passed_ = 0;  // bytes that went on to this process's own output
 };
 
 }  // namespace isoline

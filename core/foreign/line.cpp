@@ -86,6 +86,9 @@ void Line::wait(short events, const Deadline& deadline) {
 }
 
 void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
+  char early = 0;  // or an answer that nobody asked for would be taken for the next one
+  if (recv(socket_, &early, 1, MSG_PEEK | MSG_DONTWAIT) > 0)
+    fail("sends what it was not asked for");
   std::array<iovec, kMostPieces> parts{};
   std::size_t count = 0;
   parts[count++] = {const_cast<FrameHead*>(&head), sizeof head};

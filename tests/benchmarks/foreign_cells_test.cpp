@@ -58,7 +58,7 @@ TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("a-huge-frame", "answers linearize with 9223372036854775808 bytes, where 16 are");
   expect_failed("a-huge-complaint", "sends a text of 9223372036854775808 bytes, and at most 65536");
   expect_failed("another-verb", "answers linearize with a frame of verb 99");
-  expect_failed("two-answers", "sends more than the head of its frame says");
+  expect_failed("two-answers", "sends what it was not asked for");
   expect_failed("raises", "failed at linearize: ValueError: the mesh is tangled");
 }
 
@@ -88,8 +88,8 @@ TEST_F(ForeignCells, TakeWhatTheirProgramStartedWithThem) {
 }
 
 TEST_F(ForeignCells, WhereSomethingIsNotFiniteEndAsAnyOthers) {
-  const Record record = record_of(
-      request_of(process_of(misbehaving("misbehaving.py is-not-finite")), "gd[rate=1e-2]"));
+  const Record record =
+      record_of(request_of(process_of(misbehaving("misbehaving.py is-not-finite")), "gd[rate=1]"));
   EXPECT_EQ(record.status, Status::diverged) << record.message;
 }
 
@@ -98,7 +98,10 @@ TEST_F(ForeignCells, WithoutAProductAreInapplicableWithTheReason) {
   const Record gradient = record_of(request_of(alone, "gd"));
   EXPECT_EQ(gradient.status, Status::inapplicable);
   EXPECT_EQ(gradient.message, "the problem offers no gradients");
-  EXPECT_EQ(record_of(request_of(alone, "nlopt-neldermead")).status, Status::budget);
+  const Record simplex = record_of(request_of(alone, "nlopt-neldermead"));
+  EXPECT_NE(simplex.status, Status::inapplicable);
+  EXPECT_FALSE(is_failure(simplex.status)) << simplex.message;
+  EXPECT_LT(simplex.summary.loss, simplex.summary.start_loss);
   const std::string pulls = process_of(misbehaving("offers.py vjp"));
   EXPECT_NE(record_of(request_of(pulls, "gauss-newton")).status, Status::inapplicable);
 }
@@ -221,27 +224,38 @@ TEST_F(ForeignCells, OfAProblemFromOutsideHaveTheTraceOfTheTreesOwn) {
   }
 }
 
-// What SciPy reports of itself, and says when it has finished.
+// "nfev=17 njev=12" at the end of what the example claims.
+std::pair<std::int64_t, std::int64_t> counts_of_scipy(const std::string& claimed) {
+  const std::size_t nfev = claimed.rfind("nfev="), njev = claimed.rfind("njev=");
+  if (nfev == std::string::npos || njev == std::string::npos) return {-1, -1};
+  return {std::atoll(claimed.c_str() + nfev + 5), std::atoll(claimed.c_str() + njev + 5)};
+}
+
+// SciPy's own counts. Of `lm` they are MINPACK's: a step that rounds to nothing asks the same point
+// again, which is one forward here, and least_squares asks for a last Jacobian that it leaves out.
 TEST_F(ForeignCells, OfScipyCountWhatScipyCounts) {
   const std::string python = python_with("scipy");
   if (python.empty()) GTEST_SKIP() << "SciPy is not installed";
   const Budget endless{.iterations = 100'000, .target = -1};  // no loss is small enough
   for (const std::string method : {"lm", "trf", "bfgs", "l-bfgs-b"})
     for (const char* problem : {"rosenbrock", "helical-valley", "powell-singular"}) {
+      SCOPED_TRACE(method + " on " + problem);
       const Record record = record_of(
           request_of(problem, process_of(example("scipy_optimize.py " + method, python)), endless));
-      ASSERT_EQ(record.status, Status::converged)
-          << method << " on " << problem << ": " << record.message;
+      ASSERT_EQ(record.status, Status::converged) << record.message;
       const bool is_least_squares = method == "lm" || method == "trf";
       const auto asked = [&](Oracle oracle) {
-        return std::to_string(record.counts[static_cast<std::size_t>(oracle)]);
+        return record.counts[static_cast<std::size_t>(oracle)];
       };
-      const std::string counts = "nfev=" + asked(Oracle::forward) + " njev=" +
-                                 asked(is_least_squares ? Oracle::jacobian : Oracle::pullback);
-      EXPECT_TRUE(record.claimed.ends_with(counts))
-          << method << " on " << problem << ": " << record.claimed << "; the meter has " << counts;
+      const auto [nfev, njev] = counts_of_scipy(record.claimed);
+      const std::int64_t slopes = asked(is_least_squares ? Oracle::jacobian : Oracle::pullback);
+      const bool is_exact = method != "lm" || problem == std::string("rosenbrock");
+      EXPECT_LE(asked(Oracle::forward), nfev) << record.claimed;
+      EXPECT_GE(asked(Oracle::forward), is_exact ? nfev : nfev - 1) << record.claimed;
+      EXPECT_GE(slopes, njev) << record.claimed;
+      EXPECT_LE(slopes, is_exact ? njev : njev + 1) << record.claimed;
       EXPECT_EQ(record.foreign.optimizer->label, "scipy-" + method);
-      EXPECT_TRUE(record.verified.at("1e-3").value_or(false)) << method << " on " << problem;
+      EXPECT_TRUE(record.verified.at("1e-3").value_or(false));
     }
 }
 

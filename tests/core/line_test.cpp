@@ -81,6 +81,14 @@ TEST(Line, NumbersArriveAsTheyWereSent) {
   EXPECT_EQ(std::string(got.data(), got.size()), frame(2, 7, 16, bytes_of(kNumbers)));
 }
 
+TEST(Line, AnAnswerThatNobodyAskedForIsNotTakenForTheNext) {
+  BothEnds ends;
+  ends.write(frame(4, 0, 16, bytes_of(kNumbers)) + frame(4, 0, 16, bytes_of(kNumbers)));
+  std::array<double, 2> numbers{};
+  ends.line->receive_answer(Verb::pullback, numbers);
+  EXPECT_THROW(ends.line->send(Verb::pullback, 0, kNumbers), LineError);
+}
+
 TEST(Line, AFrameThatComesByTheByteIsTheSame) {
   BothEnds ends;
   const std::string whole = frame(4, 0, 16, bytes_of(kNumbers));
