@@ -47,12 +47,13 @@ TEST(New, AnOptimizerInCBuildsIsFlaggedNowhereAndDescends) {
   EXPECT_EQ(built(shell, "slow"), "");
   const Finished audited = shell("./isoline audit slow --plugin ./libslow.so --json");
   EXPECT_EQ(audited.exit_code, 0) << audited.err;
-  ASSERT_EQ(shell("./isoline run --problem square --optimizer 'slow[rate=0.05]' --plugin "
-                  "./libslow.so --out out --quiet --no-report")
-                .exit_code,
-            0);
+  ASSERT_EQ(
+      shell("./isoline run --problem rosenbrock --optimizer slow --plugin ./libslow.so --out out "
+            "--quiet --no-report")
+          .exit_code,
+      0);
   for (const auto& entry : fs::directory_iterator(shell.folder() / "out" / "runs"))
-    EXPECT_EQ(read_json(entry.path()).at("verified").at("1e-6"), true);
+    EXPECT_EQ(read_json(entry.path()).at("verified").at("1e-3"), true);
 }
 
 TEST(New, InCppWritesTheFileOfTheRuleAndWhatBuildsIt) {
@@ -75,8 +76,6 @@ TEST(New, InPythonPassesItsChecksAndIsSolvedWithoutAnyPackage) {
   ASSERT_EQ(shell("./isoline new problem well --python").out,
             "wrote well.py\nnext: isoline check 'process[command=\"python3 well.py\"]'\n");
   ASSERT_EQ(shell("./isoline new optimizer dig --python").exit_code, 0);
-  if (!contains(shell("./isoline list problems --names").out, "process"))
-    GTEST_SKIP() << "this program has no door of processes";
   if (shell("python3 --version").exit_code != 0) GTEST_SKIP() << "there is no python3";
   const std::string well = "'process[command=\"python3 well.py\"]'";
   const std::string dig = "'process[command=\"python3 dig.py\"]'";

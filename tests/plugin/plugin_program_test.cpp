@@ -63,7 +63,8 @@ TEST_F(PluginProgram, ItsRecordsAreValidReplayedAndRepeatedWhereTheLibraryChange
 }
 
 TEST_F(PluginProgram, ACrashCostsItsCellAlone) {
-  const Finished result = run("--problem trial-crash,square --optimizer gd --plugin ./trials.so");
+  const Finished result =
+      run("--problem trial-crash,square --optimizer levenberg-marquardt --plugin ./trials.so");
   EXPECT_EQ(result.exit_code, 2) << result.err;
   std::size_t crashed = 0, good = 0;
   for (const auto& entry : fs::directory_iterator(shell.folder() / "out" / "runs")) {

@@ -50,9 +50,10 @@ static int pullback(void* self, const double* x, const double* kept, const doubl
   return 0;
 }
 
+// Sound around the start, so that its certificate is good, and not on the way to the solution.
 static int crash(void* self, const double* x, double* y, double* kept) {
-  (void)self, (void)x, (void)y, (void)kept;
-  abort();
+  if (x[0] < 1.5) abort();
+  return forward(self, x, y, kept);
 }
 
 static int no_inverse(void* self, const double* y, const double* x0, double* x) {
