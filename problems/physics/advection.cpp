@@ -143,6 +143,22 @@ void Advection::value(VectorRef q, VectorRef dx, VectorRef dy, VectorOut out) {
   });
 }
 
+void Advection::add_choices(VectorRef q, VectorRef dx, VectorRef dy, PieceDigest& digest) {
+  interpolate(q, dx, dy);
+  for (Index j = 0, p = 0; j < N_; ++j)
+    for (Index i = 0; i < N_; ++i, ++p) {
+      const Nodes<Real> found = nodes_at(s_.data() + ahead_.node[p], stride_);
+      const Real back = found.mean(ahead_.a[p], ahead_.b[p]);
+      const Real r = s_[own(i, j)] + 0.5 * (q_[own(i, j)] - back);
+      const bool is_below = r<least_[p], is_above = r> most_[p];
+      const Nodes<Real> nodes = nodes_at(q_.data() + back_.node[p], stride_);
+      const Index held =
+          is_below || is_above ? 1 + nodes.place(is_below ? least_[p] : most_[p], stride_) : 0;
+      for (const Index choice : {Index(back_.node[p]), Index(ahead_.node[p]), held})
+        digest.add(static_cast<std::uint64_t>(choice));
+    }
+}
+
 void Advection::pushforward(VectorRef q, VectorRef dx, VectorRef dy, VectorRef vq, VectorRef vdx,
                             VectorRef vdy, VectorOut out) {
   interpolate(q, dx, dy);

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "core/array.h"
+#include "core/pieces.h"
 
 namespace isoline::problems {
 
@@ -26,6 +27,9 @@ class Advection {
   // Adds to the cotangents of q, dx, dy those of a cotangent u of q'.
   void pullback(VectorRef q, VectorRef dx, VectorRef dy, VectorRef u, VectorOut of_q,
                 VectorOut of_dx, VectorOut of_dy);
+
+  // Between which nodes each point lies, and which limit holds.
+  void add_choices(VectorRef q, VectorRef dx, VectorRef dy, PieceDigest& digest);
 
  private:
   // Around the padded lattice lies a margin, for no neighbour to need a modulus. What moves by more
