@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/pieces.h"
 #include "networks/network.h"
 
 namespace isoline::networks {
@@ -67,7 +68,11 @@ class MeanMatched final : public Network {
   }
 
  private:
-  struct Own final : Scratch {
+  struct Own final : Scratch, Pieces {
+    void add_choices(PieceDigest& digest) override {
+      if (auto* pieces = dynamic_cast<Pieces*>(inner.own.get())) pieces->add_choices(digest);
+    }
+
     Workspace inner;
     Matrix u, du;  // (k, B) cotangents behind C
     Matrix dy_dx;  // (m, k·B)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "core/pieces.h"
 #include "core/product.h"
 #include "networks/activation.h"
 #include "networks/network.h"
@@ -53,7 +54,10 @@ class Perceptron final : public Network {
     Array room;                     // as z
     Array row_a, row_g, row_slope;  // (m·B, ·) what belongs to each row of the Jacobian
   };
-  struct Passes final : Scratch {
+  struct Passes final : Scratch, Pieces {
+    void add_choices(PieceDigest& digest) override;
+
+    Activation activation;
     Index samples = -1;  // B that the arrays have room for
     std::vector<Layer> layers;
     Parameters theta, v, gradient;
@@ -121,6 +125,7 @@ template <class Scalar>
 typename Perceptron<Scalar>::Passes& Perceptron<Scalar>::sized(Workspace& w, Index samples) const {
   auto& own = w.as<Passes>();
   if (own.samples == samples) return own;
+  own.activation = activation_;
   own.samples = samples;
   own.layers.resize(widths_.size() - 1);
   own.gradient.resize(parameters());
@@ -149,6 +154,15 @@ void Perceptron<Scalar>::forward(VectorRef theta, BatchRef in, BatchOut x, Works
     if (l + 1 < layers()) activate<Scalar>(activation_, flat(at->z, k), flat(at[1].a, k));
   }
   x = own.layers.back().z.topRows(B).transpose().template cast<Real>();
+}
+
+// On which side of its kink each neuron of the hidden layers is.
+template <class Scalar>
+void Perceptron<Scalar>::Passes::add_choices(PieceDigest& digest) {
+  if (activation != Activation::relu) return;
+  for (std::size_t l = 0; l + 1 < layers.size(); ++l)
+    for (Index j = 0; j < layers[l].z.cols(); ++j)
+      for (Index b = 0; b < samples; ++b) digest.add(layers[l].z(b, j) > 0);
 }
 
 // ż_l = Ẇ_l a_{l−1} + ḃ_l + W_l ȧ_{l−1},  ȧ_l = s'(z_l) ż_l

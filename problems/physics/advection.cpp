@@ -3,34 +3,10 @@
 
 #include <cmath>
 
+#include "problems/physics/lattice_nodes.h"
+
 namespace isoline::problems {
 namespace {
-
-// The four nodes around a point, at distances a and b from the first.
-struct Nodes {
-  Real q00, q10, q01, q11;
-
-  Nodes(const Real* q, Index stride) : q00(q[0]), q10(q[1]), q01(q[stride]), q11(q[stride + 1]) {}
-
-  Real mean(Real a, Real b) const {
-    return (1 - b) * (q00 + a * (q10 - q00)) + b * (q01 + a * (q11 - q01));
-  }
-  Real slope_x(Real b) const { return (1 - b) * (q10 - q00) + b * (q11 - q01); }
-  Real slope_y(Real a) const { return (1 - a) * (q01 - q00) + a * (q11 - q10); }
-  Real least() const { return lesser(lesser(q00, q10), lesser(q01, q11)); }
-  Real most() const { return greater(greater(q00, q10), greater(q01, q11)); }
-
-  // Where the node of that value lies from the first.
-  Index place(Real value, Index stride) const {
-    if (q00 == value) return 0;
-    if (q10 == value) return 1;
-    return q01 == value ? stride : stride + 1;
-  }
-
- private:
-  static Real lesser(Real a, Real b) { return b < a ? b : a; }
-  static Real greater(Real a, Real b) { return b > a ? b : a; }
-};
 
 // Adds the transpose of Nodes::mean.
 void spread(Real u, Real a, Real b, Real* q, Index stride) {
@@ -44,161 +20,212 @@ void spread(Real u, Real a, Real b, Real* q, Index stride) {
 
 Advection::Advection(Index N)
     : N_(N),
-      stride_(N + 2),
-      back_{Eigen::VectorXi(N), Vector(N), Vector(N)},
+      stride_(N + 2 * kMargin),
+      back_{Eigen::VectorXi(N * N), Vector(N * N), Vector(N * N)},
       ahead_(back_),
-      cell_(N * N),
+      least_(N * N),
+      most_(N * N),
       q_(Vector::Zero(stride_ * stride_)),
       s_(q_),
       tangent_(q_),
       moved_(q_) {}
 
-// By periods into [0, N]: adding kRounder and taking it away rounds to a whole number, in a loop
-// that vectorizes. Of a displacement that is no number the node lies in the grid, and the distance
-// from it is none either.
-void Advection::trace(Index j, VectorRef dx, VectorRef dy, Real sign, Row& out) const {
-  constexpr Real kRounder = 6755399441055744;  // 1.5 · 2⁵²
-  const Real N = static_cast<Real>(N_), inverse = 1 / N, row = static_cast<Real>(j);
-  const int stride = static_cast<int>(stride_), cells = static_cast<int>(N_);
-  const Real* __restrict x = dx.data() + N_ * j, * __restrict y = dy.data() + N_ * j;
-  Real* __restrict a = out.a.data(), * __restrict b = out.b.data();
-  int* __restrict node = out.node.data();
-  for (int i = 0; i < cells; ++i) {
-    const Real to_x = static_cast<Real>(i) + sign * x[i], to_y = row + sign * y[i];
-    const Real in_x = to_x - N * ((to_x * inverse - 0.5 + kRounder) - kRounder);
-    const Real in_y = to_y - N * ((to_y * inverse - 0.5 + kRounder) - kRounder);
-    const Real from_x = in_x > 0 ? in_x : 0, from_y = in_y > 0 ? in_y : 0;
-    const int nx = static_cast<int>(from_x < N ? from_x : N);
-    const int ny = static_cast<int>(from_y < N ? from_y : N);
-    a[i] = in_x - nx;
-    b[i] = in_y - ny;
-    node[i] = nx + stride * ny;
-  }
+bool Advection::trace(VectorRef dx, VectorRef dy) {
+  const Real stride = static_cast<Real>(stride_), reach = static_cast<Real>(kReach);
+  auto are_near = Four{} == 0;  // a mask
+  const Real *x = dx.data(), *y = dy.data();
+  int *back = back_.node.data(), *ahead = ahead_.node.data();
+  Real *back_a = back_.a.data(), *back_b = back_.b.data();
+  Real *ahead_a = ahead_.a.data(), *ahead_b = ahead_.b.data();
+  by_fours(N_, [&](Index i, Index j) {
+    const Index p = N_ * j + i;
+    const Four across = four_at(x + p), along = four_at(y + p);
+    are_near &= (across <= reach) & (across >= -reach) & (along <= reach) & (along >= -reach);
+    const Four here = static_cast<Real>(own(i, j)) + Four{0, 1, 2, 3};
+    const Four right = floor_of(across), up = floor_of(along);
+    const Four left = floor_of(-across), down = floor_of(-along);
+    put_nodes(here + right + stride * up, ahead + p);
+    put(across - right, ahead_a + p);
+    put(along - up, ahead_b + p);
+    put_nodes(here + left + stride * down, back + p);
+    put(-across - left, back_a + p);
+    put(-along - down, back_b + p);
+  });
+  return are_near[0] && are_near[1] && are_near[2] && are_near[3];
 }
 
-void Advection::pad(VectorRef q, VectorOut padded) const {
-  for (Index j = 0; j < N_; ++j) padded.segment(stride_ * j, N_) = q.segment(N_ * j, N_);
+// Where a displacement is no number, or has lost its whole part to rounding, the node lies in the
+// lattice, and of the first the distance is no number either.
+void Advection::trace_far(VectorRef dx, VectorRef dy, Real sign, Points& out) const {
+  const Real N = static_cast<Real>(N_);
+  const auto within = [N](Real place) {
+    const Real inside = place - N * std::floor(place / N);
+    return inside > 0 && inside < N ? static_cast<Index>(inside) : 0;
+  };
+  for (Index j = 0, p = 0; j < N_; ++j)
+    for (Index i = 0; i < N_; ++i, ++p) {
+      const Real x = sign * dx[p], y = sign * dy[p], across = std::floor(x), along = std::floor(y);
+      out.node[p] = static_cast<int>(
+          own(within(static_cast<Real>(i) + across), within(static_cast<Real>(j) + along)));
+      out.a[p] = x - across;
+      out.b[p] = y - along;
+    }
+}
+
+void Advection::pad(VectorRef q, Vector& padded) const {
+  for (Index j = 0; j < N_; ++j) padded.segment(own(0, j), N_) = q.segment(N_ * j, N_);
   wrap(padded);
 }
 
-void Advection::wrap(VectorOut padded) const {
-  for (Index j = 0; j < N_; ++j)
-    padded.segment<2>(stride_ * j + N_) = padded.segment<2>(stride_ * j);
-  padded.tail(2 * stride_) = padded.head(2 * stride_);
+// One by one, for a margin may be wider than the lattice.
+void Advection::wrap(Vector& padded) const {
+  for (Index j = 0; j < N_; ++j) {
+    Real* row = padded.data() + own(-kMargin, j);
+    for (Index k = 0; k < kMargin; ++k) row[N_ + kMargin + k] = row[kMargin + k];
+    for (Index k = kMargin; k-- > 0;) row[k] = row[N_ + k];
+  }
+  const Index period = stride_ * N_;
+  for (Index j = N_ + kMargin; j < stride_; ++j)
+    padded.segment(stride_ * j, stride_) = padded.segment(stride_ * j - period, stride_);
+  for (Index j = kMargin; j-- > 0;)
+    padded.segment(stride_ * j, stride_) = padded.segment(stride_ * j + period, stride_);
 }
 
-void Advection::fold(VectorOut padded) const {
-  padded.head(2 * stride_) += padded.tail(2 * stride_);
-  for (Index j = 0; j < N_; ++j)
-    padded.segment<2>(stride_ * j) += padded.segment<2>(stride_ * j + N_);
+void Advection::fold(Vector& padded) const {
+  const Index period = stride_ * N_;
+  for (Index j = 0; j < kMargin; ++j)
+    padded.segment(stride_ * j + period, stride_) += padded.segment(stride_ * j, stride_);
+  for (Index j = stride_; j-- > N_ + kMargin;)
+    padded.segment(stride_ * j - period, stride_) += padded.segment(stride_ * j, stride_);
+  for (Index j = 0; j < N_; ++j) {
+    Real* row = padded.data() + own(-kMargin, j);
+    for (Index k = 0; k < kMargin; ++k) row[N_ + k] += row[k];
+    for (Index k = kMargin; k-- > 0;) row[kMargin + k] += row[N_ + kMargin + k];
+  }
 }
 
-void Advection::unpad(VectorOut padded, VectorOut q) const {
+void Advection::unpad(Vector& padded, VectorOut q) const {
   fold(padded);
-  for (Index j = 0; j < N_; ++j) q.segment(N_ * j, N_) += padded.segment(stride_ * j, N_);
+  for (Index j = 0; j < N_; ++j) q.segment(N_ * j, N_) += padded.segment(own(0, j), N_);
 }
 
 void Advection::interpolate(VectorRef q, VectorRef dx, VectorRef dy) {
   pad(q, q_);
-  for (Index j = 0; j < N_; ++j) {
-    trace(j, dx, dy, -1, back_);
-    cell_.segment(N_ * j, N_) = back_.node;
-    const Real* from = q_.data();
-    Real* to = s_.data() + stride_ * j;
-    for (Index i = 0; i < N_; ++i)
-      to[i] = Nodes(from + back_.node[i], stride_).mean(back_.a[i], back_.b[i]);
+  if (!trace(dx, dy)) {
+    trace_far(dx, dy, -1, back_);
+    trace_far(dx, dy, 1, ahead_);
   }
+  const Real *from = q_.data(), *a = back_.a.data(), *b = back_.b.data();
+  const int* node = back_.node.data();
+  Real *to = s_.data(), *least = least_.data(), *most = most_.data();
+  by_fours(N_, [&](Index i, Index j) {
+    const Index p = N_ * j + i;
+    const Nodes<Four> nodes = nodes_at(from, node + p, stride_);
+    put(nodes.mean(four_at(a + p), four_at(b + p)), to + own(i, j));
+    put(nodes.least(), least + p);
+    put(nodes.most(), most + p);
+  });
   wrap(s_);
 }
 
 void Advection::value(VectorRef q, VectorRef dx, VectorRef dy, VectorOut out) {
   interpolate(q, dx, dy);
-  for (Index j = 0; j < N_; ++j) {
-    trace(j, dx, dy, 1, ahead_);
-    const Real *own_q = q_.data() + stride_ * j, *own_s = s_.data() + stride_ * j;
-    const int* cell = cell_.data() + N_ * j;
-    Real* to = out.data() + N_ * j;
-    for (Index i = 0; i < N_; ++i) {
-      const Nodes found(s_.data() + ahead_.node[i], stride_);
-      const Real r = own_s[i] + 0.5 * (own_q[i] - found.mean(ahead_.a[i], ahead_.b[i]));
-      const Nodes nodes(q_.data() + cell[i], stride_);
-      const Real least = nodes.least(), most = nodes.most();
-      to[i] = r < least ? least : (r > most ? most : r);
+  const Real *before = q_.data(), *there = s_.data(), *a = ahead_.a.data(), *b = ahead_.b.data();
+  const Real *least = least_.data(), *most = most_.data();
+  const int* node = ahead_.node.data();
+  by_fours(N_, [&](Index i, Index j) {
+    const Index p = N_ * j + i, here = own(i, j);
+    const Four back = nodes_at(there, node + p, stride_).mean(four_at(a + p), four_at(b + p));
+    const Four r = four_at(there + here) + 0.5 * (four_at(before + here) - back);
+    const Four low = four_at(least + p), high = four_at(most + p);
+    const Four above = r < low ? low : r;
+    put(above > high ? high : above, out.data() + p);
+  });
+}
+
+void Advection::add_choices(VectorRef q, VectorRef dx, VectorRef dy, PieceDigest& digest) {
+  interpolate(q, dx, dy);
+  for (Index j = 0, p = 0; j < N_; ++j)
+    for (Index i = 0; i < N_; ++i, ++p) {
+      const Nodes<Real> found = nodes_at(s_.data() + ahead_.node[p], stride_);
+      const Real back = found.mean(ahead_.a[p], ahead_.b[p]);
+      const Real r = s_[own(i, j)] + 0.5 * (q_[own(i, j)] - back);
+      const bool is_below = r<least_[p], is_above = r> most_[p];
+      const Nodes<Real> nodes = nodes_at(q_.data() + back_.node[p], stride_);
+      const Index held =
+          is_below || is_above ? 1 + nodes.place(is_below ? least_[p] : most_[p], stride_) : 0;
+      for (const Index choice : {Index(back_.node[p]), Index(ahead_.node[p]), held})
+        digest.add(static_cast<std::uint64_t>(choice));
     }
-  }
 }
 
 void Advection::pushforward(VectorRef q, VectorRef dx, VectorRef dy, VectorRef vq, VectorRef vdx,
                             VectorRef vdy, VectorOut out) {
   interpolate(q, dx, dy);
   pad(vq, tangent_);
-  for (Index j = 0, p = 0; j < N_; ++j) {
-    trace(j, dx, dy, -1, back_);
+  for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Nodes nodes(q_.data() + back_.node[i], stride_);
-      const Nodes moving(tangent_.data() + back_.node[i], stride_);
-      moved_[stride_ * j + i] = moving.mean(back_.a[i], back_.b[i]) -
-                                nodes.slope_x(back_.b[i]) * vdx[p] -
-                                nodes.slope_y(back_.a[i]) * vdy[p];
+      const Index node = back_.node[p];
+      const Real a = back_.a[p], b = back_.b[p];
+      const Nodes<Real> nodes = nodes_at(q_.data() + node, stride_);
+      const Nodes<Real> moving = nodes_at(tangent_.data() + node, stride_);
+      moved_[own(i, j)] = moving.mean(a, b) - nodes.slope_x(b) * vdx[p] - nodes.slope_y(a) * vdy[p];
     }
-  }
   wrap(moved_);
-  for (Index j = 0, p = 0; j < N_; ++j) {
-    trace(j, dx, dy, 1, ahead_);
+  for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Real a = ahead_.a[i], b = ahead_.b[i];
-      const Index own = stride_ * j + i, back = cell_[p];
-      const Nodes found(s_.data() + ahead_.node[i], stride_), nodes(q_.data() + back, stride_);
-      const Real r = s_[own] + 0.5 * (q_[own] - found.mean(a, b));
-      if (r < nodes.least() || r > nodes.most()) {
-        const Real held = r < nodes.least() ? nodes.least() : nodes.most();
-        out[p] = tangent_[back + nodes.place(held, stride_)];
+      const Index node = ahead_.node[p];
+      const Real a = ahead_.a[p], b = ahead_.b[p];
+      const Nodes<Real> found = nodes_at(s_.data() + node, stride_);
+      const Real r = s_[own(i, j)] + 0.5 * (q_[own(i, j)] - found.mean(a, b));
+      if (r < least_[p] || r > most_[p]) {
+        const Index back = back_.node[p];
+        const Nodes<Real> nodes = nodes_at(q_.data() + back, stride_);
+        out[p] = tangent_[back + nodes.place(r < least_[p] ? least_[p] : most_[p], stride_)];
         continue;
       }
-      const Real returned = Nodes(moved_.data() + ahead_.node[i], stride_).mean(a, b) +
+      const Real returned = nodes_at(moved_.data() + node, stride_).mean(a, b) +
                             found.slope_x(b) * vdx[p] + found.slope_y(a) * vdy[p];
-      out[p] = moved_[own] + 0.5 * (vq[p] - returned);
+      out[p] = moved_[own(i, j)] + 0.5 * (vq[p] - returned);
     }
-  }
 }
 
 void Advection::pullback(VectorRef q, VectorRef dx, VectorRef dy, VectorRef u, VectorOut of_q,
                          VectorOut of_dx, VectorOut of_dy) {
   interpolate(q, dx, dy);
-  VectorOut into_q = tangent_, into_s = moved_;
+  Vector &into_q = tangent_, &into_s = moved_;
   into_q.setZero();
   into_s.setZero();
-  for (Index j = 0, p = 0; j < N_; ++j) {
-    trace(j, dx, dy, 1, ahead_);
+  for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Real a = ahead_.a[i], b = ahead_.b[i];
-      const Index own = stride_ * j + i, back = cell_[p], ahead = ahead_.node[i];
-      const Nodes found(s_.data() + ahead, stride_), nodes(q_.data() + back, stride_);
-      const Real r = s_[own] + 0.5 * (q_[own] - found.mean(a, b));
-      if (r < nodes.least() || r > nodes.most()) {
-        const Real held = r < nodes.least() ? nodes.least() : nodes.most();
-        into_q[back + nodes.place(held, stride_)] += u[p];
+      const Index node = ahead_.node[p];
+      const Real a = ahead_.a[p], b = ahead_.b[p];
+      const Nodes<Real> found = nodes_at(s_.data() + node, stride_);
+      const Real r = s_[own(i, j)] + 0.5 * (q_[own(i, j)] - found.mean(a, b));
+      if (r < least_[p] || r > most_[p]) {
+        const Index back = back_.node[p];
+        const Nodes<Real> nodes = nodes_at(q_.data() + back, stride_);
+        into_q[back + nodes.place(r < least_[p] ? least_[p] : most_[p], stride_)] += u[p];
         continue;
       }
-      into_s[own] += u[p];
-      into_q[own] += 0.5 * u[p];
+      into_s[own(i, j)] += u[p];
+      into_q[own(i, j)] += 0.5 * u[p];
       const Real returned = -0.5 * u[p];
-      spread(returned, a, b, into_s.data() + ahead, stride_);
+      spread(returned, a, b, into_s.data() + node, stride_);
       of_dx[p] += returned * found.slope_x(b);
       of_dy[p] += returned * found.slope_y(a);
     }
-  }
   fold(into_s);
-  for (Index j = 0, p = 0; j < N_; ++j) {
-    trace(j, dx, dy, -1, back_);
+  for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Nodes nodes(q_.data() + back_.node[i], stride_);
-      const Real a = back_.a[i], b = back_.b[i], passed = into_s[stride_ * j + i];
-      spread(passed, a, b, into_q.data() + back_.node[i], stride_);
+      const Index node = back_.node[p];
+      const Real a = back_.a[p], b = back_.b[p];
+      const Nodes<Real> nodes = nodes_at(q_.data() + node, stride_);
+      const Real passed = into_s[own(i, j)];
+      spread(passed, a, b, into_q.data() + node, stride_);
       of_dx[p] -= passed * nodes.slope_x(b);
       of_dy[p] -= passed * nodes.slope_y(a);
     }
-  }
   unpad(into_q, of_q);
 }
 

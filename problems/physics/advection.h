@@ -11,6 +11,7 @@
 #pragma once
 
 #include "core/array.h"
+#include "core/pieces.h"
 
 namespace isoline::problems {
 
@@ -27,24 +28,32 @@ class Advection {
   void pullback(VectorRef q, VectorRef dx, VectorRef dy, VectorRef u, VectorOut of_q,
                 VectorOut of_dx, VectorOut of_dy);
 
- private:
-  // Where the points of one row of the lattice come from, or go to. Row by row all that is needed
-  // at once stays in the first cache.
-  struct Row {
-    Eigen::VectorXi node;  // (N) lower left of the four around a point, in a padded grid
-    Vector a, b;           // (N) how far it lies from there in x and in y, in [0, 1)
-  };
-  void trace(Index j, VectorRef dx, VectorRef dy, Real sign, Row& out) const;
-  void interpolate(VectorRef q, VectorRef dx, VectorRef dy);  // s
-  void pad(VectorRef q, VectorOut padded) const;
-  void wrap(VectorOut padded) const;                // fills the last two rows and columns
-  void unpad(VectorOut padded, VectorOut q) const;  // the transpose of pad, added to q
-  void fold(VectorOut padded) const;                // the transpose of wrap
+  // Between which nodes each point lies, and which limit holds.
+  void add_choices(VectorRef q, VectorRef dx, VectorRef dy, PieceDigest& digest);
 
-  Index N_, stride_;                // N, N + 2
-  Row back_, ahead_;                // of p − d and p + d
-  Eigen::VectorXi cell_;            // (N²) the nodes of p − d, all rows
-  Vector q_, s_, tangent_, moved_;  // ((N + 2)²) padded: no neighbour needs a modulus
+ private:
+  // Around the padded lattice lies a margin, for no neighbour to need a modulus. What moves by more
+  // than kReach cells is brought back by periods.
+  static constexpr Index kMargin = 8, kReach = kMargin - 1;
+
+  // Where the points of the lattice come from, or go to.
+  struct Points {
+    Eigen::VectorXi node;  // (N²) lower left of the four around a point, in a padded lattice
+    Vector a, b;           // (N²) how far it lies from there in x and in y, in [0, 1]
+  };
+  bool trace(VectorRef dx, VectorRef dy);  // back_ and ahead_; false: some lie beyond the margin
+  void trace_far(VectorRef dx, VectorRef dy, Real sign, Points& out) const;
+  void interpolate(VectorRef q, VectorRef dx, VectorRef dy);  // s, and the limits of r
+  void pad(VectorRef q, Vector& padded) const;
+  void wrap(Vector& padded) const;                // fills the margin
+  void unpad(Vector& padded, VectorOut q) const;  // the transpose of pad, added to q
+  void fold(Vector& padded) const;                // the transpose of wrap
+  Index own(Index i, Index j) const { return stride_ * (j + kMargin) + i + kMargin; }
+
+  Index N_, stride_;                // N, N + 2 kMargin
+  Points back_, ahead_;             // p − d and p + d
+  Vector least_, most_;             // (N²) of q over the four nodes around p − d
+  Vector q_, s_, tangent_, moved_;  // (stride²) padded
 };
 
 }  // namespace isoline::problems

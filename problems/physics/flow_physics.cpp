@@ -16,7 +16,11 @@ FlowWorker::FlowWorker(const FlowOptions& options, Index steps, Track track)
       coarse(options.N),
       state(3 * options.cells()) {}
 
-struct FlowPhysics::Own final : Scratch {
+struct FlowPhysics::Own final : Scratch, Pieces {
+  void add_choices(PieceDigest& digest) override {
+    for (const FlowRun& run : runs) workers[0]->simulation.add_choices(run, digest);
+  }
+
   Workers workers;
   std::vector<FlowRun> runs;  // of each sample
 };

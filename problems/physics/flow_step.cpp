@@ -133,6 +133,13 @@ void FlowStep::pushforward(VectorRef state, VectorRef next, VectorRef projected,
                          out.tail(cells_));
 }
 
+void FlowStep::add_choices(VectorRef state, VectorRef next, PieceDigest& digest) {
+  for (const Index which : {kU, kV, kMarker}) {
+    displace(which, (which == kMarker ? next : state).head(2 * cells_), dx_, dy_);
+    advection_.add_choices(part(state, which, cells_), dx_, dy_, digest);
+  }
+}
+
 void FlowStep::pullback(VectorRef state, VectorRef next, VectorRef projected, VectorOut cotangent) {
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   before_.setZero();

@@ -41,6 +41,9 @@ class FlowStep {
   // From the cotangent of `next` to that of `state`, in place.
   void pullback(VectorRef state, VectorRef next, VectorRef projected, VectorOut cotangent);
 
+  // Of the advections on the way from `state` to `next`, which alone have kinks.
+  void add_choices(VectorRef state, VectorRef next, PieceDigest& digest);
+
   Projection& projection() { return projection_; }
 
  private:

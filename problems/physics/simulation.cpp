@@ -68,6 +68,11 @@ void Simulation::pullback(const FlowRun& run, VectorOut cotangent) {
     step_.pullback(run.states.col(n), run.states.col(n + 1), run.projected.col(n), cotangent);
 }
 
+void Simulation::add_choices(const FlowRun& run, PieceDigest& digest) {
+  for (Index n = 0; n < steps_; ++n)
+    step_.add_choices(run.states.col(n), run.states.col(n + 1), digest);
+}
+
 void Simulation::reverse(const FlowRun& run, VectorRef marker, FlowRun& back) {
   size(back);
   back.states.col(0).head(2 * cells_) = -run.velocity(steps_);

@@ -36,6 +36,8 @@ class Simulation {
   void pushforward(const FlowRun& run, VectorOut tangent);
   void pullback(const FlowRun& run, VectorOut cotangent);  // from the last to the first, in place
 
+  void add_choices(const FlowRun& run, PieceDigest& digest);
+
   // The same steps with the velocity of the last state turned round, and this marker at their
   // beginning: what was, if nothing was lost.
   void reverse(const FlowRun& run, VectorRef marker, FlowRun& back);
