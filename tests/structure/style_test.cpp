@@ -28,6 +28,7 @@ const std::map<std::string, std::string> kLongFiles = {
     {"reports/formats/terminal.cpp", "all that a terminal shows: tables, sections, a claim"},
     {"reports/page/svg.cpp", "one drawing of every kind of plot"},
     {"tests/benchmarks/fields_test.cpp", "one promise a test, over the same small runs"},
+    {"tests/benchmarks/foreign_cells_test.cpp", "one promise a test, over cells behind one door"},
     {"tests/benchmarks/merge_test.cpp", "one law of unions a test, over the same folders"},
     {"tests/cli/run_test.cpp", "one verb as a user meets it"},
     {"tests/cli/usage_test.cpp", "every mistake at a command line, in one table"},
