@@ -128,17 +128,26 @@ std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
   return all;
 }
 
+// What another program says of itself in the place of what the registry says of its door.
+void add_words_of(const Foreign& foreign, Sheet& sheet) {
+  if (!foreign.label.empty()) sheet.title = foreign.label + ", by another program";
+  if (!foreign.source.empty()) sheet.source = foreign.source;
+  if (!foreign.note.empty()) sheet.note = foreign.note;
+}
+
 // What the registry knows of a component, without making one.
 template <class Entry>
 Sheet described(const char* kind, const Entry& entry, const Component& component) {
-  return {.kind = kind,
-          .name = entry.name,
-          .spec = component.spec,
-          .title = entry.title,
-          .formula = entry.formula,
-          .source = entry.source,
-          .note = entry.note,
-          .options_text = json_text(describe_options(entry.options))};
+  Sheet sheet{.kind = kind,
+              .name = entry.name,
+              .spec = component.spec,
+              .title = entry.title,
+              .formula = entry.formula,
+              .source = entry.source,
+              .note = entry.note,
+              .options_text = json_text(describe_options(entry.options))};
+  if (component.foreign) add_words_of(*component.foreign, sheet);
+  return sheet;
 }
 
 }  // namespace

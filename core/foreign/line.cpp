@@ -89,13 +89,16 @@ void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
   char early = 0;  // or an answer that nobody asked for would be taken for the next one
   if (recv(socket_, &early, 1, MSG_PEEK | MSG_DONTWAIT) > 0)
     fail("sends what it was not asked for");
-  std::array<iovec, kMostPieces> parts{};
+  std::array<Piece, kMostPieces> left{};
   std::size_t count = 0;
-  parts[count++] = {const_cast<FrameHead*>(&head), sizeof head};
+  left[count++] = {&head, sizeof head};
   for (const Piece& piece : pieces)
-    if (piece.count > 0) parts[count++] = {const_cast<void*>(piece.bytes), piece.count};
+    if (piece.count > 0) left.at(count++) = piece;
   const Deadline forever{kNoDeadline};
   for (std::size_t first = 0; first < count;) {
+    std::array<iovec, kMostPieces> parts{};
+    for (std::size_t i = first; i < count; ++i)
+      parts[i] = {const_cast<void*>(left[i].bytes), left[i].count};
     msghdr message{};
     message.msg_iov = &parts[first];
     message.msg_iovlen = count - first;
@@ -105,11 +108,11 @@ void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
       continue;
     }
     if (sent < 0) fail("closed its socket");
-    auto left = static_cast<std::size_t>(sent);
-    for (; first < count && left >= parts[first].iov_len; ++first) left -= parts[first].iov_len;
-    if (left == 0) continue;
-    parts[first].iov_base = static_cast<char*>(parts[first].iov_base) + left;
-    parts[first].iov_len -= left;
+    auto taken = static_cast<std::size_t>(sent);
+    for (; first < count && taken >= left[first].count; ++first) taken -= left[first].count;
+    if (first < count)
+      left[first] = {static_cast<const char*>(left[first].bytes) + taken,
+                     left[first].count - taken};
   }
 }
 
