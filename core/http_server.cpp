@@ -141,6 +141,7 @@ class HttpServer::Connections final : public httplib::Server {
   }
 
   void refuse(httplib::Response& reply, int status, const std::string& reason) const {
+    has_refused_ = true;
     reply.status = status;
     reply.body = refusal_(status, reason);
     reply.set_header("Content-Type", kJson);
@@ -163,22 +164,25 @@ class HttpServer::Connections final : public httplib::Server {
     return false;
   }
 
-  // Whether the connection may go on. One that was no request may not, nor one whose body was not
-  // read to its end: what is left of it would be taken for a request.
+  // Whether the connection may go on. One that was refused may not, nor one whose body was not read
+  // to its end: what is left of it would be taken for a request.
   bool process_one(BoundedSocket& socket, BoundedStream& stream) {
     socket.allow(limits_.head_bytes, limits_.request_seconds, limits_.idle_seconds);
-    bool is_closed = false, is_chunked = false, has_head = false;
+    bool is_closed = false, is_chunked = false;
+    has_refused_ = false;
     const auto read_head = [&](httplib::Request& request) {
-      has_head = true;
       request.headers.erase("Accept-Encoding");  // to compress takes longer than to send
       request.ranges.clear();
       is_chunked = request.has_header("Transfer-Encoding");
       socket.allow_bytes(announced(request, limits_));
     };
     const bool is_good = process_request(stream, false, is_closed, read_head);
-    return socket.flush() && is_good && has_head && !is_closed && !is_chunked &&
+    return socket.flush() && is_good && !has_refused_ && !is_closed && !is_chunked &&
            socket.bytes_left() == 0;
   }
+
+  // Of the request that a thread answers: the library tells nobody what it answered.
+  inline static thread_local bool has_refused_ = false;
 
   const std::string host_;
   const Refusal refusal_;
