@@ -62,11 +62,11 @@ Points targets_of(const Run& run, const Points& curve) {
 
 std::string block_of(const Points& points, Real minimum) {
   std::string text = fmt::format(
-      "% function evaluation | noise-free fitness - Fopt ({:.12e}) | best noise-free fitness - Fopt | "
+      "% function evaluation | noise-free fitness - Fopt ({:.16e}) | best noise-free fitness - Fopt | "
       "measured fitness | best measured fitness\n",
       minimum);
   for (const Point& point : points)
-    text += fmt::format("{} {:+.9e} {:+.9e} {:+.9e} {:+.9e}\n", point.evaluations, point.loss,
+    text += fmt::format("{} {:+.16e} {:+.16e} {:+.16e} {:+.16e}\n", point.evaluations, point.loss,
                         point.best, point.loss + minimum, point.best + minimum);
   return text;
 }

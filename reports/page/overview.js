@@ -33,18 +33,21 @@ function drawStandings(table) {
 // How far from the best, as a class of the style sheet: how many of the report's steps are passed.
 const heatOf = (value, low) => `h${DATA.shades.filter((step) => value / low > step).length}`;
 
-function drawHeatCell(place, cell, low) {
+function drawHeatCell(place, cell, low, best) {
   if (!isMeasured(cell)) return;  // not applicable, or missing: to every tolerance
   const work = takenBy(cell), {failed, missing} = cell, all = cell.reached.length, reached = reachedOf(cell);
   const isTold = (reached > 0 && reached < all) || failed > 0 || missing > 0;
   const told = `${reached}/${all}${failed > 0 ? `, ${failed} failed` : ''}${missing > 0 ? `, ${missing} missing` : ''}`;
-  place.className = work === Infinity ? 'no' : work === low ? 'h0 best' : heatOf(atLeast(work), atLeast(low));
+  place.className = work === Infinity ? 'no' : work <= best ? 'h0 best' : heatOf(atLeast(work), atLeast(low));
   setText(place, amount(work), isTold ? told : '');
 }
 
 function drawHeat(table) {
   const {counted, unit} = measureNow(), solved = new Map(standingsNow().map((standing) => [standing.s, standing]));
-  const least = DATA.problems.map((problem) => problem.cells.reduce((low, cell) => Math.min(low, takenBy(cell)), Infinity));
+  const leastOf = (cells) => cells.reduce((low, cell) => Math.min(low, takenBy(cell)), Infinity);
+  const least = DATA.problems.map(({cells}) => leastOf(cells));
+  const best = DATA.problems.map(({cells}, p) =>  // on common settings of the ranked ones
+    leastOf(DATA.common.includes(p) ? cells.filter((cell) => DATA.ranked.includes(cell.s)) : cells));
   table.caption.textContent = `Median ${counted} to ${tauName(view.target)}${unit === counted ? '' : `, in ${unit}`}; ` +
       'of learned problems the error in x at equal work';
   for (const row of table.tBodies[0].rows) {
@@ -52,7 +55,7 @@ function drawHeat(table) {
     if (standing !== undefined) setText(row.cells[1], String(standing.solved), `/${standing.settings}`);
     for (const place of row.querySelectorAll('td[data-p]')) {
       const p = Number(place.dataset.p), problem = DATA.problems[p], cell = cellOf(problem, s);
-      if (problem.learned === undefined && cell !== undefined) drawHeatCell(place, cell, least[p]);
+      if (problem.learned === undefined && cell !== undefined) drawHeatCell(place, cell, least[p], best[p]);
     }
   }
 }

@@ -145,13 +145,14 @@ std::string page_data(const Document& document, const std::vector<Interval>& int
   const Ladders ladders(c);
   std::string text = fmt::format(
       "{{\"by\":\"{}\",\"shownAtFirst\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},\"rungs\":{},\"targets\":{},{},\"given\":{},"
-      "\"ranked\":{},\"claims\":{},\"figures\":{},\"standings\":{},\"problems\":[",
+      "\"ranked\":{},\"common\":{},\"claims\":{},\"figures\":{},\"standings\":{},\"problems\":[",
       name_of(c.yardstick.by), kShownAtFirst, list(kShades, exact_figure), measures_json(c),
       c.is_any_timed_together,
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c, intervals), indices(c.order.methods),
-      claims_about(document), figures_json(document.figures), standings_json(c, ladders));
+      indices(c.order.settings), claims_about(document), figures_json(document.figures),
+      standings_json(c, ladders));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_data(c, ladders, p, fields[p]);
   return safe(text + "]" + sides_json(c) + "}");

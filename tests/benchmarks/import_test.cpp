@@ -50,7 +50,7 @@ std::string refusal(const std::string& csv, const Json& told = description()) {
   return "";
 }
 
-const std::string kCurve = "iter,f,nfev\n0,24.2,1\n1,4,3\n2,1e-9,5\n3,0,7\n";
+const std::string kCurve = "iter,f,nfev\n0,24.2,1\n1,4,3\n2,1e-6,5\n3,0,7\n";
 
 TEST(Import, MakesARecordThatConformsAndIsMarked) {
   const Record record = imported(kCurve);
@@ -70,12 +70,14 @@ TEST(Import, OfTheSameFilesIsTheSameRecordAndOfOthersAnother) {
   EXPECT_EQ(imported(kCurve).cell, imported(kCurve + "\n").cell);
 }
 
-// Of rosenbrock f_L = 0, and the scale is no more than f₀ = 24.2.
+// Of rosenbrock f_L = 0 and s = 12.1, half of its f₀: as records of ours have it.
 TEST(Import, OfAProblemOfOursIsMeasuredByItsTargets) {
   const Record record = imported(kCurve);
   EXPECT_EQ(record.minimum, 0);
   ASSERT_TRUE(record.hits);
-  EXPECT_EQ(record.hits->work[0], 1);
+  ASSERT_TRUE(record.scale);
+  EXPECT_NEAR(*record.scale, 12.1, 1e-9);
+  EXPECT_EQ(record.hits->work[0], 3) << "24.2 is more than s";
   EXPECT_EQ(record.hits->work[5], 5) << "4 is more than a tenth of s";
   EXPECT_EQ(record.hits->iteration[50], 3);
   EXPECT_NE(refusal(kCurve,
@@ -106,10 +108,10 @@ TEST(Import, TakesFilesAsTheyComeFromOtherSystems) {
     others += letter == '\n' ? std::string("\r\n") : std::string(1, letter);
   EXPECT_EQ(imported(others).curve.loss, plain.curve.loss);
   EXPECT_EQ(
-      imported("\"iter\", \"f\" ,\"nfev\"\n0, 24.2 ,1\n1,+4,3\n2,\"1e-9\",5\n3,0,7").curve.loss,
+      imported("\"iter\", \"f\" ,\"nfev\"\n0, 24.2 ,1\n1,+4,3\n2,\"1e-6\",5\n3,0,7").curve.loss,
       plain.curve.loss);
   EXPECT_EQ(
-      imported("0,24.2,1\n1,4,3\n2,1e-9,5\n3,0,7\n", description({{"loss", 2}, {"forward", 3}}))
+      imported("0,24.2,1\n1,4,3\n2,1e-6,5\n3,0,7\n", description({{"loss", 2}, {"forward", 3}}))
           .curve.loss,
       plain.curve.loss);
 }

@@ -127,7 +127,7 @@ class Coco(unittest.TestCase):
         for _, (_, rows), _, record in self.runs():
             scale = min(record["scale"], record["summary"]["start_loss"] - record["minimum"])
             for target, work in zip(record["hits"]["target"], record["hits"]["work"]):
-                first = next((row[0] for row in rows if row[2] <= target * scale * (1 + 1e-9)), None)
+                first = next((row[0] for row in rows if row[2] <= target * scale), None)
                 self.assertEqual(first, None if work < 0 else work + 1)
                 seen += work >= 0
         self.assertGreater(seen, 500)
