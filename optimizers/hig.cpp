@@ -21,7 +21,7 @@ struct HalfInverse {
 };
 
 struct DampedHalfInverse {
-  Real rate = 1, kappa = 0.5, damping = 1e-4;
+  Real rate = 1, kappa = 0.5, damping = 1e-8;
   std::string way = "auto";
   KrylovLimits krylov;
 

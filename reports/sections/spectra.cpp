@@ -59,18 +59,26 @@ PlotSeries values(std::string name, const std::vector<Real>& sigma) {
   return line;
 }
 
+// Lines over both logarithms, still without any.
+Plot empty_plot(const Comparison& c, std::size_t p, const std::string& id,
+                const std::string& title) {
+  return {.kind = Plot::Kind::lines,
+          .id = fmt::format("plot-{}-{}", id, p),
+          .title = fmt::format("{} on {}", title, problem_name(c.problems[p])),
+          .reading = "",
+          .caption = "",
+          .is_log_x = true,
+          .is_log_y = true};
+}
+
 Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
-  Plot plot{.kind = Plot::Kind::lines,
-            .id = fmt::format("plot-spectrum-{}", p),
-            .title = fmt::format("Singular values on {}", problem_name(c.problems[p])),
-            .reading = "",
-            .caption =
-                "Of J = ∂y/∂θ over the batch of a step, the largest first, at the start and "
-                "where each method ended; one run each, of the least seed.",
-            .x_label = "number of the singular value",
-            .y_label = "σ",
-            .is_log_x = true,
-            .is_log_y = true};
+  Plot plot = empty_plot(c, p, "spectrum", "Singular values");
+  plot.caption =
+      "Of J = ∂y/∂θ over the batch of a step, all samples stacked and y unscaled, in the Euclidean "
+      "norms of y and θ; the largest first, at the start and where each method ended; one run "
+      "each, of the least seed.";
+  plot.x_label = "number of the singular value";
+  plot.y_label = "σ";
   plot.series.push_back(values("at the start", seen[0].first()));
   for (std::size_t i = 0; i < std::min(seen.size(), kMostRivals); ++i)
     plot.series.push_back(
@@ -85,17 +93,12 @@ Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& se
 }
 
 Plot conditions_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
-  Plot plot{.kind = Plot::Kind::lines,
-            .id = fmt::format("plot-conditioning-{}", p),
-            .title = fmt::format("Condition number on {}", problem_name(c.problems[p])),
-            .reading = "",
-            .caption =
-                "The largest singular value of J over the smallest, along the same runs; a "
-                "gap where the smallest is 0.",
-            .x_label = "1 + iteration",
-            .y_label = "σ₁ / σᵣ",
-            .is_log_x = true,
-            .is_log_y = true};
+  Plot plot = empty_plot(c, p, "conditioning", "Condition number");
+  plot.caption =
+      "In the spectral norm: the largest singular value of J over the smallest, along the same "
+      "runs; a gap where the smallest is 0.";
+  plot.x_label = "1 + iteration";
+  plot.y_label = "σ₁ / σᵣ";
   for (std::size_t i = 0; i < std::min(seen.size(), kMostRivals); ++i) {
     const Spectrum& spectrum = *seen[i].record->spectrum;
     PlotSeries line{.optimizer = seen[i].optimizer, .name = optimizer_text(c, seen[i].optimizer)};

@@ -134,6 +134,10 @@ TEST_F(Sweeps, SpectraShowWhatTheStartSeesAndWhatStepsMakeOfIt) {
   EXPECT_EQ(section.plots[0].series.size(), 2U);
   EXPECT_EQ(section.plots[0].series[1].y, (std::vector<Real>{20, 4, 2}));
   EXPECT_EQ(section.plots[1].reading, "From 1e8 at the start to 10 where gd ended.");
+  for (const Plot& plot : section.plots) {
+    EXPECT_TRUE(plot.is_log_x && plot.is_log_y) << plot.id;
+    EXPECT_NE(plot.caption.find("norm"), std::string::npos) << plot.id << " names none";
+  }
 }
 
 TEST_F(Sweeps, SpectraOfNoNumbersAreNotDrawn) {
