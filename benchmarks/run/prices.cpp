@@ -182,12 +182,12 @@ MeasuredPrice inference_price(const Problem& problem, double forward) {
     Matrix x(problem.inputs(), problem.samples());
     const Vector statistics = network.statistics(theta, input, workspace);
     const auto infer = [&] { network.infer(theta, statistics, input, x, workspace); };
-    seconds_of(1, infer);  // allocates
-    const double once = seconds_of(1, infer);
+    seconds_of(problem, 1, infer);  // allocates
+    const double once = seconds_of(problem, 1, infer);
     const auto calls = static_cast<std::size_t>(
         std::clamp(kRoundSeconds / std::max(once, 1e-9), 1.0, static_cast<double>(kMostPairs)));
     std::vector<Real> seconds;
-    for (std::size_t i = 0; i < calls; ++i) seconds.push_back(seconds_of(once, infer));
+    for (std::size_t i = 0; i < calls; ++i) seconds.push_back(seconds_of(problem, once, infer));
     rounds.calls += calls;
     rounds.ratios.push_back(std::max(at_share(seconds, 0.5), 1e-9) / forward /
                             static_cast<Real>(problem.samples()));
