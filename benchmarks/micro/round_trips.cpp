@@ -59,9 +59,9 @@ struct Frames {
 }  // namespace
 
 void register_round_trips() {
-  constexpr double kSmall = 15'000, kLarge = 40'000;  // ns of a round trip that are promised
-  for (const auto& [n, most] : {std::pair<Index, double>{2, kSmall}, {4096, kLarge}})
-    register_pair("door/forward/n=" + std::to_string(n), 201, {.extra_ns = most}, [n = n] {
+  // Promised are 15 and 40 µs of a round trip, where bare frames were measured to take 6 and 17.
+  for (const auto& [n, ratio] : {std::pair<Index, double>{2, 15.0 / 6}, {4096, 40.0 / 17}})
+    register_pair("door/forward/n=" + std::to_string(n), 201, {.ratio = ratio}, [n = n] {
       const auto ours = std::make_shared<Forward>(n);
       const auto bare = std::make_shared<Frames>(n);
       return Pair{[=] { return ours->cost(); }, [=] { return bare->cost(); }};

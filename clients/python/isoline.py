@@ -65,7 +65,7 @@ def _flat(values):
 def _vector(buffer):
     """A copy of the numbers in some bytes."""
     if numpy is not None:
-        return numpy.frombuffer(bytes(buffer), dtype=numpy.float64).copy()
+        return numpy.frombuffer(buffer, dtype=numpy.float64).copy()
     return array.array("d", bytes(buffer)).tolist()
 
 
