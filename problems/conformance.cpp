@@ -22,8 +22,12 @@ constexpr const char* kDifferences =
 class Examination {
  public:
   Examination(const Problem& problem, RandomStream& stream)
-      : problem_(problem), stream_(stream), theta_(near_start()) {
-    problem_.forward(theta_, at_);
+      : problem_(problem), stream_(stream) {
+    constexpr int kTries = 20;  // a problem may have no value here and there
+    for (int i = 0; i < kTries && (i == 0 || !at_.y.allFinite()); ++i) {
+      theta_ = near_start();
+      problem_.forward(theta_, at_);
+    }
     piece_ = piece_of(at_);
   }
 
@@ -360,7 +364,7 @@ class Examination {
 
   const Problem& problem_;
   RandomStream& stream_;
-  const Vector theta_;
+  Vector theta_;
   Point at_;                      // the linearization at theta_
   std::uint64_t piece_ = 0;       // that it lies on
   Real h_ = std::cbrt(kEpsilon);  // balances truncation and rounding

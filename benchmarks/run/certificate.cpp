@@ -35,12 +35,11 @@ void require_certified(const Catalog& catalog, const std::vector<Request>& reque
   for (const Request& request : requests) {
     if (!request.problem.foreign || store.has(request)) continue;
     if (!seen.insert(request.problem.spec).second) continue;
-    const auto [text, failure] =
-        isolated_text([&] { return broken_law_of(catalog, request); }, kCertificateSeconds);
-    const std::string complaint = text ? *text : "it could not be examined: " + failure;
-    require(complaint.empty(), [&] {
+    const std::optional<std::string> broken =
+        isolated_text([&] { return broken_law_of(catalog, request); }, kCertificateSeconds).text;
+    require(!broken || broken->empty(), [&] {
       return fmt::format("{} is not certified, and not run: {}; `isoline check` lists all laws",
-                         request.problem.spec, complaint);
+                         request.problem.spec, *broken);
     });
   }
 }

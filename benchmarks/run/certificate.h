@@ -12,7 +12,8 @@ namespace isoline::benchmarks {
 
 // UsageError with the first law that a problem of these requests breaks, and the measured figure.
 // Only what the store has no record of is looked at, each problem at the first of its seeds, in a
-// process of its own.
+// process of its own. One that cannot be examined, since it fails or never answers, is left to its
+// cells: each says why.
 void require_certified(const Catalog& catalog, const std::vector<Request>& requests,
                        const Store& store);
 

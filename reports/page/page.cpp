@@ -88,8 +88,14 @@ std::string head_html(const Document& document) {
   return html_text(joined(parts, " · "));
 }
 
-constexpr const char* kImportedMark =
-    " ·\n  <b>§</b>: imported from others, by their own figures, never verified";
+// What marks mean besides that of privileges, where any method or problem has them.
+std::string legend_html(const Comparison& c) {
+  std::string legend;
+  if (!foreign_legend(c).empty()) legend += " ·\n  <b>‡</b>: computed by another program";
+  if (is_any_imported(c))
+    legend += " ·\n  <b>§</b>: imported from others, by their own figures, never verified";
+  return legend;
+}
 
 // The plot itself stands among the statistics.
 std::string profile_html(const Comparison& c) {
@@ -169,7 +175,7 @@ std::string html_report(const Document& document) {
                     {"claims", claims_html(document)},
                     {"methods", methods_html(c)},
                     {"optimizers", optimizers_html(c)},
-                    {"imported", is_any_imported(c) ? kImportedMark : ""},
+                    {"legend", legend_html(c)},
                     {"data", page_data(document, intervals, fields)}});
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));

@@ -195,13 +195,13 @@ TEST(Import, ADescriptionKeepsItsLaws) {
       std::string::npos);
   EXPECT_NE(refused("columns", {{"loss", "f"}, {"work", 9}}).find("should stand in column 9"),
             std::string::npos);
-  for (const auto& [member, value] : Json({{"seed", -1},
-                                           {"source", ""},
-                                           {"colour", "red"},
-                                           {"status", "solved"},
-                                           {"schema", "isoline.import/2"},
-                                           {"columns", {{"loss", "f"}, {"work", 0}}}})
-                                         .items())
+  const Json broken = {{"seed", -1},
+                       {"source", ""},
+                       {"colour", "red"},
+                       {"status", "solved"},
+                       {"schema", "isoline.import/2"},
+                       {"columns", {{"loss", "f"}, {"work", 0}}}};
+  for (const auto& [member, value] : broken.items())
     EXPECT_NE(refused(member.c_str(), value).find("is no description of a curve"),
               std::string::npos)
         << member;

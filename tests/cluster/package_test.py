@@ -35,14 +35,19 @@ class Package(unittest.TestCase):
 
     def test_it_depends_on_what_the_program_links_and_on_no_compiler(self):
         needed = self.field("Depends")
-        for library in ["libfftw3", "libopenblas", "liblapacke", "libnlopt", "libceres", "libdnnl"]:
+        for library in ["libfftw3", "libopenblas", "liblapacke", "libnlopt", "libceres", "libdnnl",
+                        "libcpp-httplib", "libarchive", "libnettle"]:
             self.assertIn(library, needed)
         for tool in ["g++", "gcc", "cmake", "-dev"]:
             self.assertNotIn(tool, needed.replace("libgcc", ""))
 
-    def test_it_holds_the_program_and_the_licenses_and_nothing_else(self):
+    def test_it_holds_the_program_the_client_of_python_and_the_licenses_and_nothing_else(self):
         files = sorted(os.path.relpath(os.path.join(folder, name), f"{self.folder}/root")
                        for folder, _, names in os.walk(f"{self.folder}/root") for name in names)
+        client = [name for name in files if name.startswith("usr/share/isoline/python/")]
+        self.assertIn("usr/share/isoline/python/isoline.py", client)
+        self.assertTrue(all(name.endswith(".py") for name in client), client)
+        files = [name for name in files if name not in client]
         self.assertEqual(files, ["usr/bin/isoline", "usr/share/doc/isoline/copyright"])
         with open(f"{self.folder}/root/{files[1]}", encoding="utf-8") as text:
             notice = text.read()

@@ -21,7 +21,7 @@ class Doors(unittest.TestCase):
     def record(self, name, problem, optimizer, *more):
         run = subprocess.run(
             [PROGRAM, "run", "--problem", problem, "--optimizer", optimizer, "--out", name,
-             "--iterations", "60", "--target", "0", "--no-report", *more],
+             "--iterations", "60", "--target", "0", "--rates", "none", "--no-report", *more],
             cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         (path,) = glob.glob(f"{self.folder}/{name}/runs/*.json")

@@ -114,11 +114,12 @@ TEST(Labels, OfOtherProgramsAreTheirOwnNamesAndMarked) {
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     EXPECT_EQ(optimizer_text(c, s).ends_with(" ‡"), c.optimizers[s].label != "gd");
   const Document document = document_of(c);
-  for (const std::string& text :
-       {html_report(document), markdown_report(document), terminal_table(document)}) {
+  const std::string page = html_report(document);
+  EXPECT_NE(page.find("<b>‡</b>: computed by another program"), std::string::npos);
+  for (const std::string& text : {page, markdown_report(document), terminal_table(document)})
     EXPECT_NE(text.find("scipy-lm ‡"), std::string::npos);
+  for (const std::string& text : {markdown_report(document), terminal_table(document)})
     EXPECT_NE(text.find("‡: computed by another program."), std::string::npos);
-  }
 }
 
 TEST(Labels, WithoutOtherProgramsSayNothingOfThem) {
