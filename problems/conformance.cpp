@@ -21,8 +21,7 @@ constexpr const char* kDifferences =
 // One problem, one point, and what is measured there.
 class Examination {
  public:
-  Examination(const Problem& problem, RandomStream& stream)
-      : problem_(problem), stream_(stream) {
+  Examination(const Problem& problem, RandomStream& stream) : problem_(problem), stream_(stream) {
     constexpr int kTries = 20;  // a problem may have no value here and there
     for (int i = 0; i < kTries && (i == 0 || !at_.y.allFinite()); ++i) {
       theta_ = near_start();
