@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 #include "core/count.h"
@@ -151,6 +152,21 @@ TEST(Duration, UnitsAreRead) {
   EXPECT_EQ(parse_duration("3"), 3);
   for (const char* wrong : {"", "s", "-1s", "0", "1x", "inf", "nan", "1e308h", "1e10"})
     EXPECT_THROW(parse_duration(wrong), UsageError) << wrong;
+}
+
+TEST(Spec, ANulIsRefusedInAWholeSentence) {
+  const std::string_view given("sine[\0", 6);
+  const std::function<void()> readers[] = {[&] { parse_specs(given); }, [&] { sweep_sizes(given); },
+                                           [&] { parse_seeds(given); },
+                                           [&] { parse_duration(given); }};
+  for (const auto& read : readers) {
+    try {
+      read();
+      ADD_FAILURE() << "it was taken";
+    } catch (const UsageError& refusal) {
+      EXPECT_STREQ(refusal.what(), "what is specified must be text, got a NUL character in it");
+    }
+  }
 }
 
 }  // namespace
