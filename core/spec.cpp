@@ -87,14 +87,7 @@ Sweep sweep_of(const std::string& text) {
   return sweep;
 }
 
-// Errors quote what was given, and are told as texts that end at the first NUL.
-void require_no_nul(std::string_view text) {
-  require(text.find('\0') == std::string_view::npos,
-          "what is specified must be text, got a NUL character in it");
-}
-
 std::vector<Sweep> sweeps_of(std::string_view text) {
-  require_no_nul(text);
   std::vector<Sweep> sweeps;
   for (const std::string& part : split(clean(text), ',')) sweeps.push_back(sweep_of(trim(part)));
   return sweeps;
@@ -220,10 +213,9 @@ std::string name_of_spec(std::string_view spec) {
 }
 
 std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most) {
-  require_no_nul(text);
   std::vector<SeedSpan> spans;
   std::uint64_t count = 0;
-  for (const std::string& part : split(text, ',')) {
+  for (const std::string& part : split(clean(text), ',')) {
     spans.push_back(span_of(part, text));
     count = sum_of(count, sum_of(spans.back().second - spans.back().first, 1));
   }
@@ -237,15 +229,15 @@ std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most
   return seeds;
 }
 
-double parse_duration(std::string_view text) {
-  require_no_nul(text);
+double parse_duration(std::string_view given) {
+  const std::string text = clean(given);
   const std::pair<std::string_view, double> units[] = {
       {"ms", 1e-3}, {"s", 1}, {"min", 60}, {"m", 60}, {"h", 3600}};
   std::string_view amount = text;
   double unit = 1;
   for (const auto& [suffix, seconds] : units)
     if (text.ends_with(suffix)) {
-      amount = text.substr(0, text.size() - suffix.size());
+      amount.remove_suffix(suffix.size());
       unit = seconds;
       break;
     }

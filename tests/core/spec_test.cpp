@@ -61,6 +61,21 @@ TEST(Spec, AZeroByteIsRefusedInWords) {
   }
 }
 
+// Found by fuzzing: these quoted it, and the message ended there.
+TEST(Spec, AZeroByteInSeedsOrATimeIsRefusedInWords) {
+  const std::string given("\"\0569", 5);
+  for (const auto& read : {std::function<void()>([&] { parse_seeds(given); }),
+                           std::function<void()>([&] { parse_duration(given); })}) {
+    std::string message;
+    try {
+      read();
+    } catch (const UsageError& refusal) {
+      message = refusal.what();
+    }
+    EXPECT_NE(message.find("a zero byte"), std::string::npos) << message;
+  }
+}
+
 // Found by fuzzing: JSON, which quotes what a comma would split, replaced them later.
 TEST(Spec, BytesThatAreNotUtf8AreReplacedOnEntry) {
   const std::string value = parse_spec("a[b=\xff\"1,2\"]").options.at(0).second;
@@ -152,21 +167,6 @@ TEST(Duration, UnitsAreRead) {
   EXPECT_EQ(parse_duration("3"), 3);
   for (const char* wrong : {"", "s", "-1s", "0", "1x", "inf", "nan", "1e308h", "1e10"})
     EXPECT_THROW(parse_duration(wrong), UsageError) << wrong;
-}
-
-TEST(Spec, ANulIsRefusedInAWholeSentence) {
-  const std::string_view given("sine[\0", 6);
-  const std::function<void()> readers[] = {[&] { parse_specs(given); }, [&] { sweep_sizes(given); },
-                                           [&] { parse_seeds(given); },
-                                           [&] { parse_duration(given); }};
-  for (const auto& read : readers) {
-    try {
-      read();
-      ADD_FAILURE() << "it was taken";
-    } catch (const UsageError& refusal) {
-      EXPECT_STREQ(refusal.what(), "what is specified must be text, got a NUL character in it");
-    }
-  }
 }
 
 }  // namespace

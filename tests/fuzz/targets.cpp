@@ -15,7 +15,8 @@ namespace {
 // Not what std::stoll and std::bad_alloc say, which is one word, nor what std::vector, std::string
 // and the library of JSON say. A sentence may begin with any word that was read: "stoll: …".
 bool is_a_sentence(const std::string& message) {
-  for (const char* foreign : {"vector::_M_", "basic_string::", "[json.exception."})
+  for (const char* foreign :
+       {"vector::_M_range_check: __n (which", "basic_string::", "[json.exception."})
     if (message.starts_with(foreign)) return false;
   return message.find(' ') != std::string::npos;
 }

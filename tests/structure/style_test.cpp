@@ -19,6 +19,7 @@ const std::map<std::string, std::string> kLongFiles = {
     {"benchmarks/audit/audit_problems.cpp", "one family of problems: links, chained in every way"},
     {"benchmarks/cli/command_line.cpp", "a library: its call and its complaints, in our words"},
     {"benchmarks/cli/verb_arguments.cpp", "one list: what each verb is given, as its help says"},
+    {"core/spec.cpp", "one grammar: specifications, their sweeps, seeds and times"},
     {"problems/problem.cpp", "one chain: network, physics and loss, forward and back"},
     {"problems/conformance.cpp", "one examination: a law a function, at the same point"},
     {"optimizers/process.cpp", "one conversation: its questions, their answers, its end"},
