@@ -6,22 +6,11 @@
 #include <cstring>
 
 #include "core/foreign/introductions.h"
+#include "core/foreign/process_options.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
 namespace {
-
-struct Process {
-  std::string command;
-  std::string label;
-  Real startup = 30;
-};
-
-void fields(Process& o, auto& field) {
-  field("command", o.command, {}, "what is started: words as of a shell, nothing expanded");
-  field("label", o.label, {}, "what tables call it; empty: what it calls itself");
-  field("startup", o.startup, above(0), "seconds in which it must have introduced itself");
-}
 
 constexpr auto kDone = static_cast<std::uint32_t>(Answer::done);
 constexpr auto kStop = static_cast<std::uint32_t>(Answer::stop);
@@ -195,7 +184,7 @@ class Service {
 
 class ProcessMethod final : public Optimizer {
  public:
-  explicit ProcessMethod(const Process& given)
+  explicit ProcessMethod(const ProcessOptions& given)
       : line_(door_to(given.command)), said_(greet_method(line_, given.startup)) {}
   ~ProcessMethod() override {
     if (has_begun_) end();
@@ -239,7 +228,7 @@ class ProcessMethod final : public Optimizer {
 
 const MethodHandshake& introduced(const OptionValues& options) {
   static Introductions<MethodHandshake> all;
-  const auto given = read_options<Process>(options);
+  const auto given = read_options<ProcessOptions>(options);
   return all.of(given.command, [&](Line& line) { return greet_method(line, given.startup); });
 }
 
@@ -264,7 +253,7 @@ void register_process(OptimizerRegistry& registry) {
                 .source = "the program's own, which its record names",
                 .needs = {Oracle::forward},
                 .needs_same_samples = true,
-                .options = option_table<Process>(),
+                .options = option_table<ProcessOptions>(),
                 .in_all = false,
                 .needs_argument = "process[command=…]",
                 .introduce = introduce,
@@ -273,7 +262,7 @@ void register_process(OptimizerRegistry& registry) {
                 .objection = objection,
                 .make = [](const OptionValues& options,
                            const OptimizerRegistry&) -> std::unique_ptr<Optimizer> {
-                  return std::make_unique<ProcessMethod>(read_options<Process>(options));
+                  return std::make_unique<ProcessMethod>(read_options<ProcessOptions>(options));
                 }});
 }
 

@@ -4,22 +4,11 @@
 #include <array>
 
 #include "core/foreign/introductions.h"
+#include "core/foreign/process_options.h"
 #include "problems/problem.h"
 
 namespace isoline::problems {
 namespace {
-
-struct Process {
-  std::string command;
-  std::string label;
-  Real startup = 30;
-};
-
-void fields(Process& o, auto& field) {
-  field("command", o.command, {}, "what is started: words as of a shell, nothing expanded");
-  field("label", o.label, {}, "what tables call it; empty: what it calls itself");
-  field("startup", o.startup, above(0), "seconds in which it must have introduced itself");
-}
 
 Inverse inverse_of(const std::string& kind) {
   if (kind == "exact") return Inverse::exact;
@@ -179,7 +168,7 @@ ProblemParts parts_of(const ProblemHandshake& said, std::shared_ptr<Session> ses
 }
 
 Problem make_process(const OptionValues& options, const Draw& draw) {
-  const auto given = read_options<Process>(options);
+  const auto given = read_options<ProcessOptions>(options);
   auto session = std::make_shared<Session>(given.command);
   const ProblemHandshake said = greet_problem(session->line, draw.seed(), given.startup);
   return Problem(parts_of(said, std::move(session), draw));
@@ -187,7 +176,7 @@ Problem make_process(const OptionValues& options, const Draw& draw) {
 
 Foreign introduce(const OptionValues& options) {
   static Introductions<ProblemHandshake> all;
-  const auto given = read_options<Process>(options);
+  const auto given = read_options<ProcessOptions>(options);
   Foreign foreign =
       all.of(given.command, [&](Line& line) { return greet_problem(line, 0, given.startup); })
           .foreign;
@@ -202,7 +191,7 @@ void register_process(ProblemRegistry& registry) {
                 .title = "A problem that another program computes",
                 .formula = "y = P(x) and its products, by frames over a private socket",
                 .source = "the program's own, which its record names",
-                .options = option_table<Process>(),
+                .options = option_table<ProcessOptions>(),
                 .in_all = false,
                 .needs_argument = "process[command=…]",
                 .introduce = introduce,

@@ -3,10 +3,7 @@
 #include "benchmarks/archive/unpack.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <map>
 
@@ -21,14 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostManifest = std::size_t{1} << 29;  // of some million files
-
-fs::path private_folder() {
-  std::string pattern = (fs::temp_directory_path() / "isoline-archive-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr)
-    throw UsageError(
-        fmt::format("no temporary folder {} can be made: {}", pattern, std::strerror(errno)));
-  return pattern;
-}
 
 class Unpacking {
  public:
@@ -124,19 +113,8 @@ bool is_archive(const fs::path& path) {
   return (name.ends_with(".tar.gz") || name.ends_with(".tgz")) && !fs::is_directory(path, unknown);
 }
 
-UnpackedArchive::UnpackedArchive(const fs::path& archive) : folder_(private_folder()) {
-  try {
-    Unpacking(archive, folder_).run();
-  } catch (...) {
-    std::error_code unknown;
-    fs::remove_all(folder_, unknown);
-    throw;
-  }
-}
-
-UnpackedArchive::~UnpackedArchive() {
-  std::error_code unknown;
-  fs::remove_all(folder_, unknown);
+UnpackedArchive::UnpackedArchive(const fs::path& archive) {
+  Unpacking(archive, folder_.path()).run();
 }
 
 }  // namespace isoline::benchmarks

@@ -3,25 +3,24 @@
 
 #include <filesystem>
 
+#include "core/hidden_folder.h"
+
 namespace isoline::benchmarks {
 
 // By its name: "results.tar.gz", "results.tgz".
 bool is_archive(const std::filesystem::path& path);
 
-// A private folder among the temporary ones, removed with this. Nothing of an archive is believed:
+// Unpacked into a folder of its own, which goes with this. Nothing of an archive is believed:
 // its files are those of its manifest, each once, with the size and the SHA-256 that stand there,
 // plain ones and below the folder; else a UsageError says what is wrong.
 class UnpackedArchive {
  public:
   explicit UnpackedArchive(const std::filesystem::path& archive);
-  ~UnpackedArchive();
-  UnpackedArchive(const UnpackedArchive&) = delete;
-  UnpackedArchive& operator=(const UnpackedArchive&) = delete;
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  std::filesystem::path folder_;
+  HiddenFolder folder_;
 };
 
 }  // namespace isoline::benchmarks

@@ -1,8 +1,7 @@
-// Requests made anew, and folders by mkdtemp.
+// Requests made anew.
 #include "benchmarks/run/again.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include "core/errors.h"
 
@@ -17,18 +16,6 @@ Request request_again(const Catalog& catalog, const Record& record, double hard_
   request.optimizer.asked = optimizer.asked;
   request.hard_seconds = hard_seconds;
   return named(std::move(request));
-}
-
-HiddenFolder::HiddenFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "isoline-XXXXXX").string();
-  require(mkdtemp(pattern.data()) != nullptr,
-          [&] { return fmt::format("cannot make a folder {}", pattern); });
-  path_ = pattern;
-}
-
-HiddenFolder::~HiddenFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace isoline::benchmarks

@@ -4,6 +4,7 @@
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/again.h"
 #include "core/errors.h"
+#include "core/hidden_folder.h"
 
 namespace isoline::benchmarks {
 namespace {
