@@ -63,7 +63,7 @@ TEST(Spec, AZeroByteIsRefusedInWords) {
 
 // Found by fuzzing: these quoted it, and the message ended there.
 TEST(Spec, AZeroByteInSeedsOrATimeIsRefusedInWords) {
-  const std::string given("\"\0569", 5);
+  const std::string given("\"\000569", 5);
   for (const auto& read : {std::function<void()>([&] { parse_seeds(given); }),
                            std::function<void()>([&] { parse_duration(given); })}) {
     std::string message;
