@@ -5,14 +5,23 @@
 #include <stdlib.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 #include "core/errors.h"
+#include "core/text.h"
 
 namespace isoline {
 
 HiddenFolder::HiddenFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "isoline-XXXXXX").string();
+  std::error_code error;
+  const std::filesystem::path among = std::filesystem::temp_directory_path(error);
+  require(!error, [&] {
+    const char* named = std::getenv("TMPDIR");
+    return fmt::format("TMPDIR must name a folder for temporary files, got {}",
+                       printable(named != nullptr ? named : "none"));
+  });
+  std::string pattern = (among / "isoline-XXXXXX").string();
   require(mkdtemp(pattern.data()) != nullptr, [&] {
     return fmt::format("cannot make a folder {}: {}", pattern, std::strerror(errno));
   });

@@ -28,7 +28,17 @@ TEST(Exchange, AnArchiveIsReadAsTheFolderItIsOf) {
   EXPECT_EQ(shell("./isoline compare results.tar.gz results --html page.html").exit_code, 0);
   EXPECT_EQ(shell("./isoline merge results.tar.gz --out merged").exit_code, 0);
   EXPECT_EQ(shell("diff -r results/runs merged/runs").exit_code, 0);
-  EXPECT_EQ(shell("ls ${TMPDIR:-/tmp} | grep -c isoline-archive-$PPID").out, "0\n");
+}
+
+TEST(Exchange, AnArchiveIsUnpackedWhereTheUserSaysAndNothingStaysThere) {
+  const Shell shell;
+  shell(kRun + "results");
+  ASSERT_EQ(shell("./isoline archive results --out results.tar.gz && mkdir own").exit_code, 0);
+  const std::string elsewhere = "TMPDIR=$PWD/none ", here = "TMPDIR=$PWD/own ";
+  const std::string read = "./isoline validate results.tar.gz";
+  EXPECT_TRUE(contains(shell(elsewhere + read).err, "TMPDIR must name a folder"));  // it is asked
+  EXPECT_EQ(shell(here + read).exit_code, 0);
+  EXPECT_EQ(shell("ls -A own").out, "");
 }
 
 TEST(Exchange, AnArchiveIsCheckedByTheToolsOfTheSystem) {
