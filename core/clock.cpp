@@ -3,6 +3,8 @@
 
 #include <ctime>
 
+#include "core/counted_process.h"
+
 namespace isoline {
 namespace {
 
@@ -28,7 +30,8 @@ double calibrate() {
 std::int64_t monotonic_nanoseconds() { return read_clock(CLOCK_MONOTONIC); }
 
 double processor_seconds() {
-  return 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID));
+  return 1e-9 * static_cast<double>(read_clock(CLOCK_PROCESS_CPUTIME_ID)) +
+         counted_processor_seconds();
 }
 
 double seconds_per_tick() {

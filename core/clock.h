@@ -7,7 +7,7 @@
 namespace isoline {
 
 double seconds_per_tick();   // measured once, against the monotonic clock
-double processor_seconds();  // of this process, user and system
+double processor_seconds();  // of this process and who computes for it
 std::int64_t monotonic_nanoseconds();
 
 inline std::uint64_t ticks() {  // inline: a call would cost as much as the reading

@@ -156,6 +156,7 @@ void ChildProgram::launch(const Start& start) {
     process_ = 0;
     throw UsageError(fmt::format("cannot start '{}': {}", words.texts[0], strerror(why)));
   }
+  counted_.emplace(child);
   output_ = std::exchange(printed.read_end, -1);
   fcntl(output_, F_SETFL, O_NONBLOCK);
   fcntl(output_, F_SETPIPE_SZ, kWidePipe);
@@ -164,6 +165,7 @@ void ChildProgram::launch(const Start& start) {
 ChildProgram::~ChildProgram() {
   if (process_ > 0) {
     ::kill(leads_group_ ? -process_ : process_, SIGKILL);
+    counted_.reset();
     waitpid(process_, nullptr, 0);
   }
   drain();

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/counted_process.h"
+
 namespace isoline {
 
 // In a process that is one cell: programs started from now on belong to its process group, so that
@@ -50,6 +52,7 @@ class ChildProgram {
 
   std::string command_;
   pid_t process_ = 0;
+  std::optional<CountedProcess> counted_;
   int output_ = -1;
   bool leads_group_ = true;
   struct End {

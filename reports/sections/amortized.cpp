@@ -87,11 +87,11 @@ std::vector<Trained> trained_on(const Comparison& c, std::size_t p) {
   return all;
 }
 
-// When the run had that error, at its kept points.
+// When the run had that error, at its kept points; 0 where its start has it.
 Real seconds_to(const Record& record, Real x_error) {
   const Curve& curve = record.curve;
   for (std::size_t i = 0; i < curve.x_error.size(); ++i)
-    if (curve.x_error[i] <= x_error) return curve.processor_seconds[i];
+    if (curve.x_error[i] <= x_error) return i == 0 ? 0 : curve.processor_seconds[i];
   return kNever;
 }
 
@@ -163,6 +163,10 @@ std::string reading_of(const Comparison& c, const Trained& network, const Side& 
         "No solver that was run here reaches the error of the network of {}, {}, on half of its "
         "instances.",
         named(c, network), figure(network.x_error));
+  if (single.seconds.median == 0)
+    return fmt::format(
+        "The network of {} has the error {}, and {} starts as near: its training has not paid yet.",
+        named(c, network), figure(network.x_error), named(c, single));
   const std::string each = fmt::format(
       "{} takes {} ms an instance to the error {} of the network of {}, whose training took {} s",
       named(c, single), milliseconds(single.seconds.median), figure(network.x_error),
@@ -176,18 +180,20 @@ std::string reading_of(const Comparison& c, const Trained& network, const Side& 
 
 Table table_of(const Comparison& c, std::size_t p, const std::vector<Trained>& networks,
                const std::vector<std::size_t>& instances) {
-  Table table{.id = fmt::format("amortized-{}", p),
-              .title = shown_spec(c.problems[p].spec),
-              .reading = "",
-              .caption =
-                  "Medians over seeds in processor time; every seed of a solver is an instance of "
-                  "its own. Errors of solvers are read at kept iterations: they took at most that. "
-                  "The network is timed on a batch, a share of it an example.",
-              .columns = {"network of", "solver", "error in x", "training, s", "an example, ms",
-                          "solver to that error, ms", "there", "failed", "pays from"},
-              .topic = {.problem = p},
-              .align = "llrrrrrrr",
-              .names = 2};
+  Table table{
+      .id = fmt::format("amortized-{}", p),
+      .title = shown_spec(c.problems[p].spec),
+      .reading = "",
+      .caption =
+          "Medians over seeds in processor time; every seed of a solver is an instance of "
+          "its own. Errors of solvers are read at kept iterations: they took at most that, and 0 "
+          "where their start has it. "
+          "The network is timed on a batch, a share of it an example.",
+      .columns = {"network of", "solver", "error in x", "training, s", "an example, ms",
+                  "solver to that error, ms", "there", "failed", "pays from"},
+      .topic = {.problem = p},
+      .align = "llrrrrrrr",
+      .names = 2};
   for (const Trained& network : networks) {
     const std::vector<Side> singles = singles_to(c, instances, network.x_error);
     if (table.reading.empty()) table.reading = reading_of(c, network, singles.front());

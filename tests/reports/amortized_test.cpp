@@ -115,6 +115,14 @@ TEST(Amortized, ASolverFasterThanTheNetworkIsNeverPaidFor) {
   EXPECT_EQ(shown.text(0, "pays from"), "never");
 }
 
+TEST(Amortized, ANetworkNoNearerThanWhereSolversStartIsSaidToBe) {
+  const Shown shown({trained(0, 11, 3), single("newton", 0, 2)});
+  EXPECT_EQ(shown.number(0, kSolved), 0);
+  EXPECT_EQ(shown.text(0, "pays from"), "never");
+  EXPECT_NE(shown.section.tables[0].reading.find("newton starts as near"), std::string::npos)
+      << shown.section.tables[0].reading;
+}
+
 TEST(Amortized, TimesThatWereNotMeasuredAreAbsent) {
   const Shown shown({trained(0, 1, 3), single("newton", 0, 0.011)}, {});
   EXPECT_EQ(shown.text(0, "an example, ms"), "");
