@@ -99,6 +99,16 @@ TEST(ClaimsOfTheTree, AllowNoToleranceOfOurOwnChoosing) {
   EXPECT_FALSE(schema_violations(file, schema()).empty());
 }
 
+// Remarks are written one after the other.
+TEST(ClaimsOfTheTree, SayInWholeSentencesHowTheyDiffer) {
+  for (const char* text : {"a tenth of the steps.", "A tenth of the steps", " A tenth."}) {
+    Json file = parse_json(std::string(builtin_claims().at("half-inverse")), "claims");
+    ASSERT_TRUE(schema_violations(file, schema()).empty());
+    file["claims"][0]["cells"][0]["deviation"] = text;
+    EXPECT_FALSE(schema_violations(file, schema()).empty()) << text;
+  }
+}
+
 TEST(ClaimsOfTheTree, AreChosenByIdOrGroupAndAMisspeltOneIsAnError) {
   EXPECT_EQ(chosen_claims(claims(), {"notebook-gd-table"}).size(), 1U);
   EXPECT_EQ(chosen_claims(claims(), {}).size(), claims().size());
