@@ -2,9 +2,11 @@
 // process[command="python3 mine.py"]. Each problem that is made has a program of its own, which
 // ends with it. A forward is asked for once a point; products there come from what it left behind.
 #include <array>
+#include <limits>
 
 #include "core/foreign/introductions.h"
 #include "core/foreign/process_options.h"
+#include "problems/physics/box.h"
 #include "problems/problem.h"
 
 namespace isoline::problems {
@@ -41,8 +43,14 @@ struct OwnPoint final : Scratch {
   }
   std::shared_ptr<Session> session;
   std::uint32_t number = 0;
-  Matrix in, out;
+  Matrix in, out, within;
 };
+
+Vector vector_of(const std::vector<Real>& numbers) {
+  return Eigen::Map<const Vector>(numbers.data(), static_cast<Index>(numbers.size()));
+}
+
+Box box_of(const ProblemHandshake& said) { return {vector_of(said.lower), vector_of(said.upper)}; }
 
 std::span<const Real> numbers_of(const Matrix& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
@@ -63,7 +71,8 @@ class ProcessPhysics final : public Physics {
         asks_pushforward_(said.oracles.contains(Oracle::pushforward)),
         asks_pullback_(said.oracles.contains(Oracle::pullback)),
         inverse_(inverse_of(said.inverse)),
-        inverse_price_(said.inverse_price) {}
+        inverse_price_(said.inverse_price),
+        box_(box_of(said)) {}
 
   Index inputs() const override { return inputs_; }
   Index outputs() const override { return outputs_; }
@@ -72,8 +81,15 @@ class ProcessPhysics final : public Physics {
   Inverse inverse_kind() const override { return inverse_; }
   Index inverse_price() const override { return inverse_price_; }
 
+  // Outside its bounds there is no value; the program is asked at the nearest x within.
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
-    ask(Verb::linearize, x, y, point_of(w));
+    OwnPoint& point = point_of(w);
+    if (box_.is_everything()) return ask(Verb::linearize, x, y, point);
+    point.within.resize(x.rows(), x.cols());
+    for (Index b = 0; b < x.cols(); ++b) point.within.col(b) = box_.nearest(x.col(b));
+    ask(Verb::linearize, point.within, y, point);
+    for (Index b = 0; b < x.cols(); ++b)
+      if (!box_.holds(x.col(b))) y.col(b).setConstant(std::numeric_limits<Real>::quiet_NaN());
   }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     if (asks_pushforward_) return ask(Verb::pushforward, v, Jv, point_of(w));
@@ -145,11 +161,8 @@ class ProcessPhysics final : public Physics {
   bool asks_pushforward_, asks_pullback_;
   Inverse inverse_;
   Index inverse_price_;
+  Box box_;
 };
-
-Vector vector_of(const std::vector<Real>& numbers) {
-  return Eigen::Map<const Vector>(numbers.data(), static_cast<Index>(numbers.size()));
-}
 
 ProblemParts parts_of(const ProblemHandshake& said, std::shared_ptr<Session> session,
                       const Draw& draw) {
@@ -160,6 +173,7 @@ ProblemParts parts_of(const ProblemHandshake& said, std::shared_ptr<Session> ses
                      .aim = said.aim,
                      .minimum = said.minimum};
   if (!said.drawn.empty()) parts.start = Start(vector_of(said.drawn), standard);
+  parts.start.drawn = box_of(said).nearest(parts.start.drawn);  // drawn around, it may lie without
   if (said.truth.empty()) return parts;
   const Matrix truth = vector_of(said.truth);
   parts.truth = truth;

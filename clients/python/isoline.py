@@ -327,6 +327,7 @@ def problem(
     differences=False,
     drawn=None,
     minimum=None,
+    bounds=None,
     aim=None,
     name=None,
     note=None,
@@ -339,7 +340,8 @@ def problem(
     with differences=True from differences of forward, marked and priced as such. Without any of
     them the problem offers losses alone. inverse(y, x0) -> x, or None where there is none.
     truth: the x that the target was made of. drawn: a start of this seed() instead of one that
-    Isoline draws around `start`. aim="x" where x is sought, and not a small loss alone.
+    Isoline draws around `start`. bounds=(lower, upper), each a number or one for each of x: without
+    them it has no value, and is not asked. aim="x" where x is sought, and not a small loss alone.
     """
     line, greeting = _greeted()
     start = _vector(_column(start))
@@ -369,10 +371,15 @@ def problem(
             "target": _json_numbers(target),
             "truth": None if truth is None else _json_numbers(truth),
             "minimum": minimum,
+            "bounds": None if bounds is None else [_bound(side, start) for side in bounds],
             "aim": aim,
         },
     )
     _serve(line, products, inverse, len(start), len(y))
+
+
+def _bound(side, start):
+    return _json_numbers([side] * len(start) if isinstance(side, (int, float)) else side)
 
 
 def _serve(line, products, inverse, n, m):

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
@@ -19,6 +20,7 @@ constexpr std::int64_t kMostPrice = std::int64_t{1} << 31;
 constexpr std::array<std::string_view, 4> kInverses = {"exact", "damped", "estimate",
                                                        "approximate"};
 constexpr std::size_t kMostQuoted = 80;  // bytes
+constexpr const char* kOutside = "Outside its bounds on x it has no value.";
 
 // The members of one answer.
 class Said {
@@ -72,11 +74,7 @@ class Said {
     if (!has(name) || !json_[name].is_array() ||
         json_[name].size() != static_cast<std::size_t>(count))
       refuse(name, law);
-    try {
-      return reals_of(json_[name]);
-    } catch (const UsageError&) {
-      refuse(name, law);
-    }
+    return reals(json_[name], name, law);
   }
   std::optional<Real> number(const char* name) const {
     if (!has(name)) return std::nullopt;
@@ -115,11 +113,32 @@ class Said {
     }
     return all;
   }
-  void expect_none(const char* name, std::string_view why) const {
-    require(!has(name), [&] { return fmt::format("{} declares {}, {}", who_, name, why); });
+  // The lower ones, and the upper ones; both empty where there are none.
+  std::array<std::vector<Real>, 2> bounds(std::int64_t count) const {
+    const char* name = "bounds";
+    if (!has(name)) return {};
+    const std::string law = fmt::format(
+        "two lists of {} numbers, each of the first less than its like in the second", count);
+    const Json& both = json_[name];
+    if (!both.is_array() || both.size() != 2) refuse(name, law);
+    std::array<std::vector<Real>, 2> found;
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!both[side].is_array() || both[side].size() != static_cast<std::size_t>(count))
+        refuse(name, law);
+      found[side] = reals(both[side], name, law);
+    }
+    if (!std::ranges::equal(found[0], found[1], std::less())) refuse(name, law);
+    return found;
   }
 
  private:
+  std::vector<Real> reals(const Json& list, const char* name, const std::string& law) const {
+    try {
+      return reals_of(list);
+    } catch (const UsageError&) {
+      refuse(name, law);
+    }
+  }
   static std::string_view article(std::string_view noun) {
     return noun.starts_with('o') ? "an" : "a";
   }
@@ -150,6 +169,12 @@ Foreign words_of(const Said& said) {
   return foreign;
 }
 
+bool is_within(const std::vector<Real>& x, const ProblemHandshake& problem) {
+  if (x.empty() || problem.lower.empty()) return true;
+  return std::ranges::equal(problem.lower, x, std::less_equal()) &&
+         std::ranges::equal(x, problem.upper, std::less_equal());
+}
+
 // What it answers to our greeting. How it broke off is the caller's to know, as a wrong argument
 // is.
 std::string answer_to(Line& line, const Json& greeting, double seconds) {
@@ -166,7 +191,6 @@ std::string answer_to(Line& line, const Json& greeting, double seconds) {
 ProblemHandshake problem_handshake(const std::string& text, const std::string& who) {
   const Said said(text, who);
   said.expect_role("problem");
-  said.expect_none("bounds", "which no method here keeps: leave them out, or map x onto them");
   ProblemHandshake problem{.foreign = words_of(said)};
   problem.inputs = said.whole("inputs", 1, kMostSize, {});
   problem.outputs = said.whole("outputs", 1, kMostSize, {});
@@ -183,6 +207,15 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   problem.drawn = said.numbers("drawn", problem.inputs, false);
   problem.target = said.numbers("target", problem.outputs, true);
   problem.truth = said.numbers("truth", problem.inputs, false);
+  const auto [lower, upper] = said.bounds(problem.inputs);
+  problem.lower = lower;
+  problem.upper = upper;
+  for (const auto& [name, x] :
+       {std::pair("start", problem.start), {"drawn", problem.drawn}, {"truth", problem.truth}})
+    require(is_within(x, problem),
+            [&] { return fmt::format("{} says a {} outside its bounds", who, name); });
+  std::string& note = problem.foreign.note;
+  if (!lower.empty()) note += fmt::format("{}{}", note.empty() ? "" : " ", kOutside);
   problem.minimum = said.number("minimum");
   problem.aim = said.choice("aim", kAimNames) == name_of(Aim::x) ? Aim::x : Aim::loss;
   require(problem.aim == Aim::loss || !problem.truth.empty(),

@@ -24,6 +24,7 @@ struct ProblemHandshake {
   std::vector<Real> start, target;  // θ₀ of seed 0 (k), y* (m)
   std::vector<Real> drawn;          // θ₀ of the seed that it was told, where it draws its own
   std::vector<Real> truth;          // x*, where it knows it
+  std::vector<Real> lower, upper;   // bounds on x (k), where it has any
   std::optional<Real> minimum;      // f_L, likewise
   Aim aim = Aim::loss;
 };

@@ -84,10 +84,26 @@ TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
   EXPECT_THROW(problem_handshake(std::string(100'000, '['), "`mine`"), UsageError);
 }
 
-TEST(Handshakes, BoundsAreRefusedBeforeTheyAreBroken) {
-  EXPECT_EQ(complaint("bounds", {{0, 1}, {0, 1}}),
-            "`mine` declares bounds, which no method here keeps: leave them out, or map x onto "
-            "them");
+TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
+  const std::string law =
+      ", which must be two lists of 2 numbers, each of the first less than its like in the second";
+  for (const Json& wrong : {Json{{0, 1}, {0, 1}}, Json{{0, 0}, {1, "nan"}}, Json{{0, 0}},
+                            Json{{0}, {1}}, Json("none"), Json{{0, 0}, {1, "one"}}})
+    EXPECT_EQ(complaint("bounds", wrong), "`mine` says bounds = " + json_text(wrong) + law);
+  Json json = a_problem();
+  json["start"] = {1, 2};
+  json["bounds"] = {{"-inf", 2}, {1, "inf"}};
+  const ProblemHandshake said = problem_handshake(json_text(json), "`mine`");
+  EXPECT_EQ(said.lower, (std::vector<Real>{-std::numeric_limits<Real>::infinity(), 2}));
+  EXPECT_EQ(said.upper, (std::vector<Real>{1, std::numeric_limits<Real>::infinity()}));
+  EXPECT_TRUE(said.foreign.note.ends_with("Outside its bounds on x it has no value."));
+  json["truth"] = {2, 2};
+  try {
+    problem_handshake(json_text(json), "`mine`");
+    FAIL() << "a truth without";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "`mine` says a truth outside its bounds");
+  }
 }
 
 TEST(Handshakes, AnInverseAndItsKindBelongTogether) {

@@ -102,6 +102,28 @@ TEST(Process, AJacobianThatIsGivenIsThatOfTheProducts) {
     EXPECT_EQ(jacobian_at(make(process_of(offers + kind)), theta), given) << kind;
 }
 
+// The program raises an error where it is asked below 0, and would so end the test.
+TEST(Process, OutsideItsBoundsThereIsNoValueAndItIsNotAsked) {
+  const std::string roots = process_of(misbehaving("bounded.py"));
+  const Problem problem = make(roots);
+  Point at;
+  for (const Eigen::Vector2d& outside :
+       {Eigen::Vector2d(-1, 4), Eigen::Vector2d(10, 4), Eigen::Vector2d(NAN, 4)}) {
+    problem.forward(outside, at);
+    EXPECT_TRUE(at.y.array().isNaN().all()) << outside.transpose();
+  }
+  problem.forward(Eigen::Vector2d(9, 16), at);
+  EXPECT_EQ(at.y, Eigen::Vector2d(3, 4));
+  bool is_at_the_bound = false;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    const Vector start = make(roots, seed).start();
+    EXPECT_GE(start[0], 0.25);
+    is_at_the_bound |= start[0] == 0.25;
+  }
+  EXPECT_TRUE(is_at_the_bound) << "half of the seeds are drawn below it";
+  for (const std::uint64_t seed : {0, 1, 2, 3}) expect_certified(roots, seed);
+}
+
 TEST(Process, OfNumPyPassesTheCertificate) {
   const std::string python = python_with("numpy");
   if (python.empty()) GTEST_SKIP() << "NumPy is not installed";
