@@ -21,6 +21,7 @@ enum class Oracle {
   inverse,
   network,
   layer_factors,
+  layer_moments,
   truth
 };
 
@@ -89,6 +90,11 @@ inline constexpr std::array kOracleTable = {
               // a pullback that keeps what passes
               [](const OracleSizes&) -> std::int64_t { return 1; },
               "there is no network of dense layers", false, false},
+    OracleRow{Oracle::layer_moments, "layer_moments",
+              "second moments of the inputs and cotangents of each convolution",
+              // a pullback that sums the squares of what passes
+              [](const OracleSizes&) -> std::int64_t { return 1; },
+              "there is no network of dense layers or of convolutions", false, false},
     OracleRow{Oracle::truth, "truth", "the x* that made y*: a privilege",
               [](const OracleSizes&) -> std::int64_t { return 0; }, "the problem knows no true x"}};
 inline constexpr std::size_t kOracles = kOracleTable.size();

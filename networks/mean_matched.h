@@ -28,6 +28,7 @@ class MeanMatched final : public Network {
   bool has_kinks() const override { return network_->has_kinks(); }
   bool has_curvature() const override { return network_->has_curvature(); }
   bool has_layer_factors() const override { return network_->has_layer_factors(); }
+  bool has_layer_moments() const override { return network_->has_layer_moments(); }
 
   void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const override {
     network_->forward(theta, in, x, w.as<Own>().inner);
@@ -57,6 +58,11 @@ class MeanMatched final : public Network {
   void layer_factors(BatchRef u, std::vector<LayerFactor>& out, Workspace& w) const override {
     auto& own = w.as<Own>();
     network_->layer_factors(centred(u, own.u), out, own.inner);
+  }
+  void layer_moments(BatchRef u, std::vector<LayerMoments>& out, VectorOut JTu,
+                     Workspace& w) const override {
+    auto& own = w.as<Own>();
+    network_->layer_moments(centred(u, own.u), out, JTu, own.inner);
   }
   Vector statistics(VectorRef theta, BatchRef in, Workspace& w) const override {
     return network_->statistics(theta, in, w.as<Own>().inner);

@@ -29,6 +29,10 @@ void Network::layer_factors(BatchRef, std::vector<LayerFactor>&, Workspace&) con
   throw std::logic_error("this network has no dense layers");
 }
 
+void Network::layer_moments(BatchRef, std::vector<LayerMoments>&, VectorOut, Workspace&) const {
+  throw std::logic_error("this network has no convolutions");
+}
+
 Vector Network::statistics(VectorRef, BatchRef, Workspace&) const { return {}; }
 
 void Network::infer(VectorRef theta, VectorRef, BatchRef in, BatchOut x, Workspace& w) const {

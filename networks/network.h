@@ -32,6 +32,15 @@ struct LayerFactor {
   Matrix cotangents;   // G, (rows of W, B)
 };
 
+// What one convolution sees under a cotangent, at all places t of its grid: with ā = (a, 1) the
+// patch that the kernel multiplies, in the order of the block's rows, and g the cotangent of its
+// output there, ⟨Σ_t ā āᵀ⟩ over samples and ⟨g gᵀ⟩ over samples and places.
+struct LayerMoments {
+  Index weight, bias;  // the blocks of layout() that hold the kernel and b
+  Matrix inputs;       // (taps · channels in + 1)²
+  Matrix cotangents;   // (channels out)²
+};
+
 class Network {
  public:
   virtual ~Network() = default;
@@ -64,6 +73,11 @@ class Network {
   // The factors of each dense layer, in order, under the cotangent u (k, B).
   virtual bool has_layer_factors() const { return false; }
   virtual void layer_factors(BatchRef u, std::vector<LayerFactor>& out, Workspace& w) const;
+
+  // The moments of each convolution, in order, under the cotangent u (k, B), and its pullback.
+  virtual bool has_layer_moments() const { return false; }
+  virtual void layer_moments(BatchRef u, std::vector<LayerMoments>& out, VectorOut JTu,
+                             Workspace& w) const;
 
   // Evaluation of trained parameters. Where the forward pass depends on statistics of its batch,
   // `statistics` gives those of a batch, to be averaged, and `infer` is given the average.

@@ -22,6 +22,7 @@ class Unet final : public Network {
   bool is_single_precision() const override { return true; }
   bool has_kinks() const override { return true; }
   bool has_curvature() const override { return true; }
+  bool has_layer_moments() const override { return true; }
 
   void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const override {
     UnetState& state = ready(theta, in, w);
@@ -39,6 +40,10 @@ class Unet final : public Network {
   }
   void curvature(VectorRef, BatchRef u, BatchRef du, VectorOut out, Workspace& w) const override {
     unet_curvature(plan_, w.as<UnetState>(), u, du, out);
+  }
+  void layer_moments(BatchRef u, std::vector<LayerMoments>& out, VectorOut JTu,
+                     Workspace& w) const override {
+    unet_layer_moments(plan_, w.as<UnetState>(), u, out, JTu);
   }
   Vector statistics(VectorRef theta, BatchRef in, Workspace& w) const override {
     UnetState& state = ready(theta, in, w);

@@ -1,117 +1,143 @@
 // Kronecker-factored curvature, Martens, Grosse (2015): with ā = (a, 1) the input of a dense layer
 // and g the cotangent of its output, the layer's block of the Gauss-Newton matrix is taken as A ⊗ G
 // with A = ⟨ā āᵀ⟩ and G = ⟨g gᵀ⟩, so that [W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹ with π²
-// = (tr A/dim A)/(tr G/dim G). G is exact, not sampled: the sum over the outputs i of the
-// cotangents √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a sample's loss. Of the loss's curvature the diagonal is used, which
-// for ½‖y − y*‖² is all of it. Running means as the paper's; its rescaling by the exact
-// Gauss-Newton matrix, momentum and adaptive λ are left out.
+// = (tr A/dim A)/(tr G/dim G). Of a convolution, Grosse, Martens (2016): A = ⟨Σ_t ā āᵀ⟩ over the
+// patches ā at all places t, G = ⟨g gᵀ⟩ over samples and places, as if the cotangents of different
+// places were uncorrelated and alike. g is that of √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a sample's loss, for each
+// output i in turn, so that G is exact; of a convolution, or of more than 64 outputs, that of all
+// outputs at once with random signs, one draw a step. Of the loss's curvature the diagonal is used,
+// which for ½‖y − y*‖² is all of it. Batch norm's γ and β have no such form: each steps along its
+// gradient, over λ and the mean of its curvature's diagonal under the same draw. Running means as
+// the paper's; its rescaling by the exact Gauss-Newton matrix, momentum and adaptive λ are left
+// out.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/decompose.h"
+#include "optimizers/kronecker_block.h"
+#include "optimizers/matrix_blocks.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
 namespace {
 
+constexpr Index kMostExact = 64;  // outputs, each of which costs a pullback
+
 struct Kfac {
   Real rate = 1e-3, damping = 1e-3, decay = 0.95;
 
-  struct Layer {
-    Matrix A, G;    // running means, (columns + 1)² and (rows)²
-    Matrix a;       // ā, (columns + 1, B)
-    Matrix step;    // (rows, columns + 1), of [W b]
-    Matrix turned;  // (columns + 1, rows), its transpose
-    Matrix damped_A, damped_G;
-  };
   struct State {
     std::uint64_t steps = 0;
-    std::vector<Layer> layers;
-    std::vector<Block> blocks;
+    std::vector<KroneckerBlock> layers;
+    std::vector<Block> blocks, norms;
+    Vector curvatures;  // of norms: running means of their diagonals' means
     std::vector<LayerFactor> factors;
+    std::vector<LayerMoments> moments;
     Linearization at;
     Matrix unit, cotangent;  // (m, B)
-    Vector gradient;         // (n)
+    Vector gradient, drawn;  // (n) ∇L, and Jᵀ of a drawn cotangent
   };
   static void persist(State& s, Archive& archive) {
     std::size_t layers = s.layers.size();
-    archive(s.steps, layers);
+    archive(s.steps, s.curvatures, layers);
     s.layers.resize(layers);
-    for (Layer& layer : s.layers) archive(layer.A, layer.G);
+    for (KroneckerBlock& layer : s.layers) archive(layer.A, layer.G);
   }
 
-  State init(Meter& f, const Vector&) const {
+  State init(Meter& f, const Vector& theta) const {
     State s;
     s.blocks = f.layout();
+    for (const Block& block : s.blocks)
+      if (block.kind == Block::Kind::norm) s.norms.push_back(block);
+    s.curvatures = Vector::Zero(static_cast<Index>(s.norms.size()));
     s.unit.setZero(f.target().rows(), f.target().cols());
     s.cotangent = s.unit;
+    s.drawn.resize(theta.size());
     return s;
   }
 
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
     s.at.gradient(s.gradient);
-    observe(s);
+    const bool is_dense = f.is_granted(Oracle::layer_factors);
+    is_dense ? observe_layers(s) : observe_convolutions(s);
     for (std::size_t l = 0; l < s.layers.size(); ++l) {
-      const Block &W = s.blocks[s.factors[l].weight], &b = s.blocks[s.factors[l].bias];
-      Layer& layer = s.layers[l];
-      layer.step.resize(W.rows, W.columns + 1);
-      layer.step << Eigen::Map<Matrix>(s.gradient.data() + W.offset, W.rows, W.columns),
-          s.gradient.segment(b.offset, W.rows);
-      if (!precondition(layer)) {
+      const Index weight = is_dense ? s.factors[l].weight : s.moments[l].weight;
+      const Index bias = is_dense ? s.factors[l].bias : s.moments[l].bias;
+      KroneckerBlock& layer = s.layers[l];
+      if (!layer.precondition(s.blocks[weight], s.blocks[bias], s.gradient, damping)) {
         f.claim("a factor of the curvature is not positive definite in finite numbers");
         return Status::stalled;
       }
-      Eigen::Map<Matrix>(theta.data() + W.offset, W.rows, W.columns) -=
-          rate * layer.turned.topRows(W.columns).transpose();
-      theta.segment(b.offset, W.rows) -= rate * layer.turned.row(W.columns).transpose();
+      layer.step(s.blocks[weight], s.blocks[bias], rate, theta);
     }
+    for (std::size_t i = 0; i < s.norms.size(); ++i)
+      theta.segment(s.norms[i].offset, s.norms[i].rows) -=
+          rate / (s.curvatures[static_cast<Index>(i)] + damping) *
+          s.gradient.segment(s.norms[i].offset, s.norms[i].rows);
     return Status::running;
   }
 
-  // The means of this batch into the running ones, whose share is min(1 − 1/t, decay).
-  void observe(State& s) const {
-    const Real keep = std::min(1 - 1 / static_cast<Real>(++s.steps), decay);
-    const Real samples = static_cast<Real>(s.unit.cols()), share = (1 - keep) / samples;
-    for (Index i = 0; i < s.unit.rows(); ++i) {
-      s.unit.row(i).setOnes();
-      s.at.loss_curvature(s.unit, s.cotangent);
-      s.cotangent.array() = (samples * s.cotangent.array().max(0)).sqrt() * s.unit.array();
-      s.unit.row(i).setZero();
+  // The share of the running means that is kept, min(1 − 1/t, decay).
+  Real keep(State& s) const { return std::min(1 - 1 / static_cast<Real>(++s.steps), decay); }
+
+  // √(∂²ℓ/∂y²) times `unit`, whose numbers are 0, 1 and −1.
+  static void weigh(State& s) {
+    const Real samples = static_cast<Real>(s.unit.cols());
+    s.at.loss_curvature(s.unit, s.cotangent);
+    s.cotangent.array() *= s.unit.array();
+    s.cotangent.array() = (samples * s.cotangent.array().max(0)).sqrt() * s.unit.array();
+  }
+  // By the number of the step, so that a run that goes on sees the signs it would have seen.
+  static void draw(State& s) {
+    Eigen::Map<Vector> unit(s.unit.data(), s.unit.size());
+    RandomStream(0, "kfac", "probe", s.steps).signs(unit);
+    weigh(s);
+  }
+
+  // The means of this batch into the running ones.
+  void observe_layers(State& s) const {
+    const Real kept = keep(s), share = (1 - kept) / static_cast<Real>(s.unit.cols());
+    const bool is_exact = s.unit.rows() <= kMostExact;
+    for (Index i = 0; i < (is_exact ? s.unit.rows() : 1); ++i) {
+      if (is_exact) {
+        s.unit.row(i).setOnes();
+        weigh(s);
+        s.unit.row(i).setZero();
+      } else {
+        draw(s);
+      }
       s.at.layer_factors(s.cotangent, s.factors);
       s.layers.resize(s.factors.size());
       for (std::size_t l = 0; l < s.layers.size(); ++l) {
-        Layer& layer = s.layers[l];
+        KroneckerBlock& layer = s.layers[l];
         const Matrix &inputs = s.factors[l].inputs, &cotangents = s.factors[l].cotangents;
-        if (layer.A.size() == 0) {
-          layer.A.setZero(inputs.rows() + 1, inputs.rows() + 1);
-          layer.G.setZero(cotangents.rows(), cotangents.rows());
-        }
         if (i == 0) {
-          layer.a.setOnes(inputs.rows() + 1, inputs.cols());
-          layer.a.topRows(inputs.rows()) = inputs;
-          layer.A *= keep;
-          layer.A.selfadjointView<Eigen::Lower>().rankUpdate(layer.a, share);
-          layer.G *= keep;
+          layer.fade(kept, inputs.rows() + 1, cotangents.rows());
+          layer.add_inputs(inputs, share);
         }
         layer.G.selfadjointView<Eigen::Lower>().rankUpdate(cotangents, share);
       }
     }
   }
 
-  // turned = ((G + √λ/π I)⁻¹ step (A + π√λ I)⁻¹)ᵀ
-  bool precondition(Layer& layer) const {
-    const Real mean_A = layer.A.diagonal().mean(), mean_G = layer.G.diagonal().mean();
-    const Real pi = mean_A > 0 && mean_G > 0 ? std::sqrt(mean_A / mean_G) : 1;
-    layer.damped_A = layer.A;
-    layer.damped_A.diagonal().array() += pi * std::sqrt(damping);
-    layer.damped_G = layer.G;
-    layer.damped_G.diagonal().array() += std::sqrt(damping) / pi;
-    if (!solve_positive_definite(layer.damped_G, layer.step)) return false;
-    layer.turned = layer.step.transpose();
-    return solve_positive_definite(layer.damped_A, layer.turned);
+  void observe_convolutions(State& s) const {
+    const Real kept = keep(s);
+    draw(s);
+    s.at.layer_moments(s.cotangent, s.moments, s.drawn);
+    s.layers.resize(s.moments.size());
+    for (std::size_t l = 0; l < s.layers.size(); ++l) {
+      KroneckerBlock& layer = s.layers[l];
+      layer.fade(kept, s.moments[l].inputs.rows(), s.moments[l].cotangents.rows());
+      layer.A += (1 - kept) * s.moments[l].inputs;
+      layer.G += (1 - kept) * s.moments[l].cotangents;
+    }
+    s.curvatures *= kept;
+    const Real share = (1 - kept) / static_cast<Real>(s.unit.cols());
+    for (std::size_t i = 0; i < s.norms.size(); ++i)
+      s.curvatures[static_cast<Index>(i)] +=
+          share * s.drawn.segment(s.norms[i].offset, s.norms[i].rows).array().square().mean();
   }
 };
 
@@ -121,11 +147,21 @@ void fields(Kfac& o, auto& field) {
   field("decay", o.decay, between(0, 1), "largest share of the running means that is kept");
 }
 
+// What passes through dense layers where there are any, else sums over places.
+OracleSet needs(const OptionValues&, const Problem& problem) {
+  const bool is_dense = problem.offers().contains(Oracle::layer_factors);
+  return {Oracle::forward, Oracle::pullback,
+          is_dense ? Oracle::layer_factors : Oracle::layer_moments};
+}
+
 std::string objection(const OptionValues&, const Problem& problem) {
-  constexpr Index kMostOutputs = 64;
-  if (problem.outputs() <= kMostOutputs) return "";
-  return fmt::format("a pullback for each of {} outputs, and kfac is limited to {}",
-                     problem.outputs(), kMostOutputs);
+  constexpr Index kLongest = 4096;  // of which a Cholesky factorization takes a second
+  Index longest = 0;
+  for (const MatrixBlock& block : matrix_blocks(problem.layout()))
+    longest = std::max({longest, block.rows, block.columns});
+  if (longest <= kLongest) return "";
+  return fmt::format("a layer of {} inputs or outputs, and kfac is limited to {}", longest,
+                     kLongest);
 }
 
 }  // namespace
@@ -137,11 +173,16 @@ void register_kfac(OptimizerRegistry& registry) {
        .family = Family::curvature,
        .kind = Kind::second_order,
        .formula = "[W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹,  A = ⟨ā āᵀ⟩, G = ⟨g gᵀ⟩",
-       .source = "Martens, Grosse (2015)",
-       .note = "For networks of dense layers. G is exact, by one pullback for each output; without "
-               "the paper's rescaling, momentum and adaptive damping.",
-       .needs = {Oracle::forward, Oracle::pullback, Oracle::layer_factors},
+       .source = "Martens, Grosse (2015); of convolutions Grosse, Martens (2016)",
+       .note =
+           "For networks of dense layers or of convolutions. G is exact, by one pullback for "
+           "each output; of convolutions, and of more than 64 outputs, by one random cotangent "
+           "a step, the same for every seed. A convolution's A is the sum over places, its G the "
+           "mean. Batch norm's γ and β step along their gradients, over the mean of their "
+           "curvature's diagonal. Without the paper's rescaling, momentum and adaptive damping.",
+       .needs = {Oracle::forward, Oracle::pullback},
        .tunable = {.option = "rate", .below = 1},
+       .needs_for = needs,
        .objection = objection}));
 }
 

@@ -80,6 +80,11 @@ void Linearization::layer_factors(BatchRef w, std::vector<LayerFactor>& out) {
   meter_->problem_.layer_factors(w, out, point_);
 }
 
+void Linearization::layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw) {
+  meter_->charge(Oracle::layer_moments);
+  meter_->problem_.layer_moments(w, out, JTw, point_);
+}
+
 void Linearization::network_pullback(BatchRef w, VectorOut out) {
   meter_->charge(Oracle::network);
   meter_->problem_.network_pullback(w, out, point_);

@@ -15,6 +15,7 @@ namespace isoline::optimizers {
 
 using networks::Block;
 using networks::LayerFactor;
+using networks::LayerMoments;
 using problems::Batch;
 using problems::Inverse;
 using problems::Point;
@@ -44,6 +45,7 @@ class Linearization {
   Success local_inverse(BatchRef y, BatchOut x);
   void network_pullback(BatchRef w, VectorOut out);
   void layer_factors(BatchRef w, std::vector<LayerFactor>& out);  // under the cotangent w, (m, B)
+  void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw);
 
  private:
   friend class Meter;

@@ -107,6 +107,7 @@ OracleSet Problem::offers() const {
     if (parts_.network->has_curvature()) offered.add(Oracle::hessian_product);
   }
   if (parts_.network->has_layer_factors()) offered.add(Oracle::layer_factors);
+  if (parts_.network->has_layer_moments()) offered.add(Oracle::layer_moments);
   if (inverse_kind() != Inverse::none) offered.add(Oracle::inverse);
   if (batch_.truth.size() > 0) offered.add(Oracle::truth);
   return offered;
@@ -191,6 +192,13 @@ void Problem::layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at
   at.scratch_x.resize(inputs(), w.cols());
   parts_.physics->pullback(w, at.scratch_x, at.physics);
   parts_.network->layer_factors(at.scratch_x, out, at.network);
+}
+
+void Problem::layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw,
+                            Point& at) const {
+  at.scratch_x.resize(inputs(), w.cols());
+  parts_.physics->pullback(w, at.scratch_x, at.physics);
+  parts_.network->layer_moments(at.scratch_x, out, JTw, at.network);
 }
 
 void Problem::network_pullback(BatchRef w, VectorOut out, Point& at) const {

@@ -24,6 +24,7 @@ namespace isoline::problems {
 
 using networks::Block;
 using networks::LayerFactor;
+using networks::LayerMoments;
 using networks::Network;
 using networks::NetworkShape;
 
@@ -161,9 +162,10 @@ class Problem {
   void physics_pullback(BatchRef w, BatchOut out, Point& at) const;   // (m, B) -> (k, B)
   void network_pullback(BatchRef w, VectorOut out, Point& at) const;  // (k, B) -> (n)
   void layer_factors(BatchRef w, std::vector<LayerFactor>& out, Point& at) const;  // w (m, B)
-  void jacobian(Matrix& J, Point& at) const;                                       // (m·B, n)
-  void sensitivity(Matrix& dy_dx, Point& at) const;                                // (m, k·B)
-  void hessian_product(VectorRef v, VectorOut out, Point& at) const;               // ∇²L v, (n)
+  void layer_moments(BatchRef w, std::vector<LayerMoments>& out, VectorOut JTw, Point& at) const;
+  void jacobian(Matrix& J, Point& at) const;                          // (m·B, n)
+  void sensitivity(Matrix& dy_dx, Point& at) const;                   // (m, k·B)
+  void hessian_product(VectorRef v, VectorOut out, Point& at) const;  // ∇²L v, (n)
   void hessian(Matrix& H, Point& at) const;                   // ∇²L, (n, n), identity network
   void curvature(BatchRef w, BatchOut out, Point& at) const;  // (k, k·B)
   Success local_inverse(BatchRef y, BatchOut x, Point& at) const;

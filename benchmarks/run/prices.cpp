@@ -15,6 +15,7 @@
 namespace isoline::benchmarks {
 
 using networks::LayerFactor;
+using networks::LayerMoments;
 using problems::Point;
 namespace {
 
@@ -42,6 +43,7 @@ struct Room {
   Vector gradient;
   Matrix J, H, dy_dx, bent;
   std::vector<LayerFactor> factors;
+  std::vector<LayerMoments> moments;
 };
 
 void ask(Oracle oracle, const Problem& problem, Point& at, Room& room) {
@@ -68,6 +70,8 @@ void ask(Oracle oracle, const Problem& problem, Point& at, Room& room) {
       return problem.network_pullback(room.u, room.gradient, at);
     case Oracle::layer_factors:
       return problem.layer_factors(room.w, room.factors, at);
+    case Oracle::layer_moments:
+      return problem.layer_moments(room.w, room.moments, room.gradient, at);
     case Oracle::forward:
     case Oracle::truth:  // nothing is computed
       return;

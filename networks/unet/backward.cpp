@@ -131,7 +131,8 @@ void add_output_parts(const UnetPlan& plan, const UnetState& state, BatchRef ask
 }
 
 template <class T>
-void pull_back(const UnetPlan& plan, UnetState& state, BatchRef u, BatchRef du, VectorOut out) {
+void pull_back(const UnetPlan& plan, UnetState& state, BatchRef u, BatchRef du, VectorOut out,
+               const WatchUnit& watch) {
   const Index count = static_cast<Index>(plan.units.size());
   const UnitPass last{plan, state, count - 1};
   for_each_task(last.tasks, [&](Index task, int thread) {
@@ -143,6 +144,7 @@ void pull_back(const UnetPlan& plan, UnetState& state, BatchRef u, BatchRef du, 
   finish_norm<T>(last, last.index, out);
   for (Index i = count - 1; i >= 0; --i) {
     const UnitPass pass{plan, state, i};
+    if (watch) watch(pass);
     for_each_task(pass.tasks, [&](Index task, int thread) {
       pull_back_task<T>(pass, task, state.threads[thread]);
     });
@@ -153,13 +155,14 @@ void pull_back(const UnetPlan& plan, UnetState& state, BatchRef u, BatchRef du, 
 
 }  // namespace
 
-void unet_pullback(const UnetPlan& plan, UnetState& state, BatchRef u, VectorOut out) {
-  pull_back<Lane>(plan, state, u, u, out);
+void unet_pullback(const UnetPlan& plan, UnetState& state, BatchRef u, VectorOut out,
+                   const WatchUnit& watch) {
+  pull_back<Lane>(plan, state, u, u, out, watch);
 }
 
 void unet_curvature(const UnetPlan& plan, UnetState& state, BatchRef u, BatchRef du,
                     VectorOut out) {
-  pull_back<DualLane>(plan, state, u, du, out);
+  pull_back<DualLane>(plan, state, u, du, out, {});
 }
 
 }  // namespace isoline::networks

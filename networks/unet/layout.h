@@ -53,15 +53,20 @@ struct UnetPlan {
   std::vector<Block> layout() const;
   Vector start(RandomStream& stream) const;
 
+  // Where channel i of a unit's input lies: each half of two that are joined has its own blocks.
+  Index in_memory(const Unit& unit, Index i) const {
+    const bool is_second = unit.source == Unit::Source::joined && i >= filters;
+    return is_second ? channels() + i - filters : i;
+  }
+
   // Calls visit(in θ, in the kernel, in the kernel of the transpose) for every weight of a unit.
   template <class Visit>
   void for_each_weight(const Unit& unit, Visit visit) const {
     const bool is_plain = unit.source == Unit::Source::input;
     const Index in = channels_in(unit), width = is_plain ? in : kChannels;
-    const Index joint = unit.source == Unit::Source::joined ? filters : unit.in;
     for (Index o = 0; o < filters; ++o)
       for (Index i = 0; i < unit.in; ++i) {
-        const Index c = i < joint ? i : channels() + i - joint;  // each half has its own blocks
+        const Index c = in_memory(unit, i);
         for (Index tap = 0; tap < 9; ++tap)
           visit(unit.offset + (o * unit.in + i) * 9 + tap, position(o, c, tap, in, width),
                 position(c, o, 8 - tap, channels(), kChannels));

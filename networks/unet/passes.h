@@ -2,6 +2,8 @@
 // outputs z of earlier ones while these are in cache. Samples are taken a task at a time.
 #pragma once
 
+#include <functional>
+
 #include "networks/unet/state.h"
 
 namespace isoline::networks {
@@ -16,8 +18,16 @@ void unet_output(const UnetPlan& plan, UnetState& state, BatchOut x);
 void unet_pushforward(const UnetPlan& plan, UnetState& state, BatchOut Jv);
 
 // The gradient under u; with du also, its derivative along the tangents of the last pushforward.
-void unet_pullback(const UnetPlan& plan, UnetState& state, BatchRef u, VectorOut out);
+// `watch` sees each unit from the last when its g is complete.
+struct UnitPass;
+using WatchUnit = std::function<void(const UnitPass&)>;
+void unet_pullback(const UnetPlan& plan, UnetState& state, BatchRef u, VectorOut out,
+                   const WatchUnit& watch = {});
 void unet_curvature(const UnetPlan& plan, UnetState& state, BatchRef u, BatchRef du, VectorOut out);
+
+// The moments of every convolution under u, the 1×1 at the end too, and the gradient.
+void unet_layer_moments(const UnetPlan& plan, UnetState& state, BatchRef u,
+                        std::vector<LayerMoments>& moments, VectorOut out);
 
 // Mean and variance of each unit's channels; the mean is that of z with its bias.
 Vector unet_statistics(const UnetPlan& plan, UnetState& state, VectorRef theta);

@@ -75,6 +75,12 @@ struct ThreadState {
   Pixels in, cotangent_in, cotangent_z, spare;
 };
 
+// Room for the second moments of one unit.
+struct MomentRoom {
+  std::vector<std::vector<Pixel>> patches;  // of a task, one a thread
+  std::vector<Pixel> inputs, cotangents;    // sums of each task's outer products
+};
+
 struct UnetState : Scratch {
   Index samples = 0;
   bool has_tangents = false;
@@ -88,6 +94,7 @@ struct UnetState : Scratch {
   std::vector<Wide> kernel_sum;     // of them all
   std::vector<Wide> sums;           // what a batch norm adds up, task by task
   std::vector<Wide> output_parts;   // gradients of the last kernel, sample by sample
+  MomentRoom moments;
 
   // Makes everything ready for so many samples; does nothing where it is.
   void fit(const UnetPlan& plan, Index batch, bool with_tangents);

@@ -81,6 +81,12 @@ TEST(Persistence, OfEveryMethodOnAMultilayerPerceptron) {
   expect_same_for_every_method(published(tiny + ",data=6]"));
 }
 
+TEST(Persistence, OfKroneckerFactorsOfConvolutions) {
+  expect_same_after_restoring(
+      published("poisson[mode=learn,N=4,batch=2,network=unet[levels=2,filters=3]]"),
+      optimizers().at("kfac"));
+}
+
 TEST(Persistence, OfEveryMethodOnADirectProblem) {
   expect_same_for_every_method(published("broyden-tridiagonal"));
 }

@@ -223,18 +223,6 @@ TEST(HessianFree, LowersItsDampingWhileTheModelHolds) {
   EXPECT_EQ(result.trace->rejected_steps, 0);
 }
 
-// One layer and a linear physics: its Gauss-Newton matrix is A ⊗ G, whatever the inputs.
-TEST(Kfac, IsTheNaturalGradientOfOneLayer) {
-  const Problem problem = learned_affine(20);
-  expect_near(first_step(problem, "kfac[rate=1,damping=1e-24]"),
-              first_step(problem, "gauss-newton"), 1e-10, "one layer");
-}
-
-TEST(Kfac, NeedsDenseLayersAndFewOutputs) {
-  EXPECT_EQ(why("kfac", published("sine")), "there is no network of dense layers");
-  EXPECT_EQ(why("kfac", learned_affine(3)), "");
-}
-
 TEST(Libraries, NeedFiniteData) {
   for (const char* name : {"ceres-lbfgs", "nlopt-lbfgs", "ceres-lm", "nlopt-bobyqa"}) {
     EXPECT_NE(why(name, learned_affine(4)).find("data=N"), std::string::npos) << name;

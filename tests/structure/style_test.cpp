@@ -34,8 +34,7 @@ const std::map<std::string, std::string> kLongFiles = {
     {"tests/cli/run_test.cpp", "one verb as a user meets it"},
     {"tests/cli/usage_test.cpp", "every mistake at a command line, in one table"},
     {"tests/reports/claims_test.cpp", "one law of verdicts a test, over the same two optimizers"},
-    {"tests/reports/claim_evidence_test.cpp", "one claim's evidence in every format"},
-    {"tests/optimizers/training_test.cpp", "one law a method, over the same small network"}};
+    {"tests/reports/claim_evidence_test.cpp", "one claim's evidence in every format"}};
 
 TEST(Style, FilesOverTheQuestionOf250LinesHaveAnAnswerAndNoneIsOver400) {
   for (const Source& source : sources()) {
