@@ -1,4 +1,4 @@
-// Samples as they are, and curls by central differences.
+// Samples as they are, curls by central differences, and histories.
 #include "core/picture.h"
 
 namespace isoline {
@@ -18,12 +18,24 @@ Vector curl(VectorRef velocity, Index rows, Index columns) {
   return out;
 }
 
-Picture::Picture(const Matrix& batch, const std::optional<Field>& field) {
+Picture::Picture(const Matrix& batch, const std::optional<Field>& field, const History& history) {
   if (batch.size() == 0) return;
-  const bool is_velocity = field && batch.rows() == 2 * field->rows * field->columns;
-  if (is_velocity) curl_ = curl(batch.col(0), field->rows, field->columns);
-  const Real* first = is_velocity ? curl_.data() : batch.data();
-  cells_ = {first, static_cast<std::size_t>(is_velocity ? curl_.size() : batch.rows())};
+  cells_ = {batch.data(), static_cast<std::size_t>(batch.rows())};
+  if (!field) return;
+  const Index rows = field->rows, columns = field->columns;
+  if (field->is_history()) {
+    Matrix states = Matrix::Zero(rows, columns);
+    if (history)
+      history(batch.col(0), states);
+    else
+      states.row(rows - 1) = batch.col(0).transpose();
+    drawn_ = states.reshaped();
+  } else if (batch.rows() == 2 * rows * columns) {
+    drawn_ = curl(batch.col(0), rows, columns);
+  } else {
+    return;
+  }
+  cells_ = {drawn_.data(), static_cast<std::size_t>(drawn_.size())};
 }
 
 }  // namespace isoline

@@ -26,7 +26,8 @@ bool has_spectrum(const Problem& problem) {
 void Meter::open_pictures() {
   const auto& field = problem_.field();
   if (!field) return;
-  const Picture target(judging().target, field), truth(judging().truth, field);
+  const Picture target(judging().target, field);
+  const Picture truth(judging().truth, field, problem_.history());
   open_frames(trace_.frames, field->rows, field->columns, target.cells(), truth.cells());
 }
 
@@ -39,7 +40,8 @@ void Meter::keep_point() {
     std::copy_n(judged_.y.data(), judged_.y.size(), trace_.path_y[index]);
   }
   if (problem_.field())
-    keep_frame(trace_.frames, iteration_, Picture(judged_.x(), problem_.field()).cells());
+    keep_frame(trace_.frames, iteration_,
+               Picture(judged_.x(), problem_.field(), problem_.history()).cells());
   trace_.points = index + 1;
   trace_.best_loss = best_loss_;
   next_kept_ = next_kept_after(iteration_);

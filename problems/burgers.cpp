@@ -1,9 +1,11 @@
 // Viscous flow on a ring backwards: the state u(0) sought from u(T) under Burgers' equation. It is
 // the first nonlinear inverse problem of Thuerey et al., Physics-based Deep Learning; the initial
 // states and sizes here are ours, and burgers_flow.h has the physics.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/trace.h"
 #include "problems/burgers_flow.h"
 #include "problems/exact_data.h"
 #include "problems/learning.h"
@@ -44,8 +46,19 @@ Vector random_state(Index N, RandomStream& stream) {
   return state / state.cwiseAbs().maxCoeff();
 }
 
-Field field_of(Index N) {
-  return {.rows = 1, .columns = N, .x = {"speed before"}, .y = {"speed after"}};
+// Of all steps, where they are few enough to be told apart and have room.
+Field field_of(const BurgersFlow& flow, Real time) {
+  constexpr Index kMostTimes = 65;
+  const Index room = Trace::Frames::kCells / flow.inputs();
+  return {.rows = std::min({flow.steps() + 1, kMostTimes, room}),
+          .columns = flow.inputs(),
+          .x = {"speed before"},
+          .y = {"speed after"},
+          .time = time};
+}
+
+History history_of(std::shared_ptr<const BurgersFlow> flow) {
+  return [flow = std::move(flow)](VectorRef x, BatchOut states) { flow->history(x, states); };
 }
 
 ProblemParts learn_burgers(const Options& o, const Draw& draw) {
@@ -62,13 +75,18 @@ ProblemParts learn_burgers(const Options& o, const Draw& draw) {
                {.physics = flow_of(o),
                 .x_error = mean_distance,
                 .samples = {.draw = sample},
-                .field = field_of(o.N)});
+                .field = field_of(*physics, o.time),
+                .history = history_of(physics)});
 }
 
 ProblemParts make_burgers(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_burgers(o, draw);
   RandomStream stream = draw.stream("target");
-  return from_exact_data(flow_of(o), random_state(o.N, stream), field_of(o.N), draw);
+  const auto shown = std::shared_ptr<const BurgersFlow>(flow_of(o));
+  ProblemParts parts =
+      from_exact_data(flow_of(o), random_state(o.N, stream), field_of(*shown, o.time), draw);
+  parts.history = history_of(shown);
+  return parts;
 }
 
 }  // namespace
@@ -83,8 +101,7 @@ void register_burgers(ProblemRegistry& registry) {
        .note =
            "The sought x* is a sum of four waves of our own streams, for seed 0 too, its largest speed 1; by the time T its slopes have steepened and viscosity has smoothed them. P is one to one, but of the finest waves of x it leaves less than a thousandth: seeds from 1 on start with noise of 0.1 a cell, of which the data tell little. The local inverse simulates backward without viscosity.",
        .aim = Aim::x,
-       .panels = {{.title = "Learning curves", .kind = "curve"},
-                  {.title = "One sample of the validation", .kind = "pictures"}}},
+       .panels = {{.title = "Learning curves", .kind = "curve"}}},
       make_burgers));
 }
 

@@ -178,6 +178,18 @@ Success BurgersFlow::local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x
 }
 
 void BurgersFlow::evolve(VectorRef x, VectorOut y) const { simulate({lambda_, mu_}, steps_, x, y); }
+
+void BurgersFlow::history(VectorRef x, BatchOut states) const {
+  Vector state = x;
+  const Index last = states.rows() - 1;
+  for (Index row = 0, now = 0; row <= last; ++row) {
+    const Index then = (2 * steps_ * row + last) / (2 * last);
+    simulate({lambda_, mu_}, then - now, state, state);
+    now = then;
+    states.row(row) = state.transpose();
+  }
+}
+
 void BurgersFlow::reverse(VectorRef y, VectorOut x) const {
   simulate({.lambda = -lambda_, .mu = 0}, steps_, y, x);
 }

@@ -34,7 +34,9 @@ class BurgersFlow final : public Physics {
   Index inverse_price() const override { return 3; }  // P(x₀) and two reverse simulations
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const override;
 
-  void evolve(VectorRef x, VectorOut y) const;   // y = P(x), nothing kept
+  void evolve(VectorRef x, VectorOut y) const;  // y = P(x), nothing kept
+  // States from x to y, each a row of (rows, N): at the steps nearest to evenly spread times.
+  void history(VectorRef x, BatchOut states) const;
   void reverse(VectorRef y, VectorOut x) const;  // x = R(y)
 
  private:

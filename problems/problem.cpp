@@ -24,11 +24,14 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   require(parts_.network->outputs() == inputs(), "the network does not fit the physics' inputs");
   require(parts_.network->parameters() == unknowns(), "the start does not fit the network");
   if (!parts_.field) return;
-  const Index cells = parts_.field->rows * parts_.field->columns;
+  const Field& field = *parts_.field;
+  const Index cells = field.is_history() ? field.columns : field.rows * field.columns;
   // Of two numbers a cell, a velocity, the curl is shown.
-  const bool has_curl = inputs() == 2 * cells;
+  const bool has_curl = !field.is_history() && inputs() == 2 * cells;
   require((inputs() == cells || has_curl) && outputs() == cells,
           "x and y do not fit the grid of the field");
+  require(field.is_history() == bool(parts_.history) && (!field.is_history() || field.rows > 1),
+          "a field over time needs its history, of two rows at least, and no other field has one");
 }
 
 Real Problem::x_error(BatchRef x, const Batch& batch) const {

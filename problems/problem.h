@@ -12,6 +12,7 @@
 #include "core/foreign/foreign.h"
 #include "core/options.h"
 #include "core/oracle.h"
+#include "core/picture.h"
 #include "core/random.h"
 #include "core/records/panel.h"
 #include "core/registry.h"
@@ -92,6 +93,7 @@ struct ProblemParts {
   std::function<Real(const Batch& batch)> x_floor;
   Samples samples = {};
   std::optional<Field> field = {};  // where x and y are numbers on one grid, for pictures
+  History history = {};             // where the field is one: the states between x and y
   Series series = {};               // further quantities to be traced, at most Trace::kSeries
   // Where to draw the landscape of a two-dimensional problem: low and high corner in x.
   std::optional<std::array<Real, 4>> window;    // x1 low, x1 high, x2 low, x2 high
@@ -125,6 +127,7 @@ class Problem {
   const Network& network() const { return *parts_.network; }
   bool has_identity_network() const { return parts_.network->is_identity(); }
   const std::optional<Field>& field() const { return parts_.field; }
+  const History& history() const { return parts_.history; }
   const Series& series() const { return parts_.series; }
   bool is_learned() const { return parts_.samples.batch > 0; }
   bool has_fresh_batches() const { return is_learned() && parts_.samples.data == 0; }

@@ -132,7 +132,7 @@ TrainedNetwork from_raw(const Json& header, std::string_view numbers) {
 // N where samples are N×N grids, else 0.
 Index side_of_grid(const Problem& problem) {
   const auto& field = problem.field();
-  return field && field->rows == field->columns ? field->rows : 0;
+  return field && !field->is_history() && field->rows == field->columns ? field->rows : 0;
 }
 
 // A picture is stored row by row, a field column by column: each N×N block is transposed.

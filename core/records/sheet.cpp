@@ -32,6 +32,8 @@ void fields(Like<Field> auto& grid, auto& field) {
   field("columns", grid.columns, R"({"minimum": 1})");
   field("x", grid.x);
   field("y", grid.y);
+  field.optional("time", grid.time, R"({"exclusiveMinimum": 0, "description":
+        "Where rows are states: of the last one, which is y; the first one, x, is at 0"})");
 }
 
 void fields(Like<Landscape> auto& landscape, auto& field) {

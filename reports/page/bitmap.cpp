@@ -56,7 +56,7 @@ std::string bytes_of(std::span<const float> values, Real scale) {
   return bytes;
 }
 
-std::string bitmap_head(Index rows, Index columns) {
+std::string bitmap_head(Index rows, Index columns, FirstRow first) {
   constexpr std::uint32_t kHead = 14 + 40 + 4 * 256, kBegin = kHead + 2;  // a multiple of three
   static_assert(kBegin % 3 == 0);
   const auto cells = static_cast<std::uint32_t>(rows * filled(columns));
@@ -66,7 +66,7 @@ std::string bitmap_head(Index rows, Index columns) {
   add_number(out, kBegin, 4);
   add_number(out, 40, 4);  // of the part that begins here
   add_number(out, static_cast<std::uint32_t>(columns), 4);
-  add_number(out, static_cast<std::uint32_t>(-rows), 4);  // from the top
+  add_number(out, static_cast<std::uint32_t>(first == FirstRow::top ? -rows : rows), 4);
   add_number(out, 1, 2);
   add_number(out, 8, 2);  // bits a cell
   add_number(out, 0, 4);  // not compressed

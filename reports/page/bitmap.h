@@ -25,8 +25,9 @@ std::string bytes_of(std::span<const float> values, Real scale);
 
 // The bitmap's head: sizes and the 256 colours. Of as many bytes as end with a digit in base 64, so
 // that the picture's address is the one text behind the other.
-std::string bitmap_head(Index rows, Index columns);  // in base 64
-// Its cells, row by row from the top, each row filled up to four bytes.
+enum class FirstRow { top, bottom };
+std::string bitmap_head(Index rows, Index columns, FirstRow first = FirstRow::top);  // in base 64
+// Its cells, row by row from the first, each row filled up to four bytes.
 std::string bitmap_cells(std::string_view bytes, Index columns);  // in base 64
 
 std::string radix64(std::string_view bytes);  // RFC 4648, section 4

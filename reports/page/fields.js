@@ -12,14 +12,14 @@ function showPicture(image, address, alt) {
 }
 
 // The step of the slider, or the last where a run kept fewer.
-function showStep(figure, {found, head, truth}, step) {
+function showStep(figure, {found, head, labels, truth}, step) {
   const at = Math.min(step, found.iterations.length) - 1, cells = bytesOf(found.x[at]);
   const [x, missing] = figure.querySelectorAll('img'), of = `of ${DATA.optimizers[found.s]} at iteration ${found.iterations[at]}`;
   const apart = found.apart[at] === '' ? '' : `, ‖x − x*‖ ${found.apart[at]} ‖x*‖`;
-  showPicture(x, `data:image/bmp;base64,${head}${found.x[at]}`, `x ${of}${apart}`);
+  showPicture(x, `data:image/bmp;base64,${head}${found.x[at]}`, `${labels[0]} ${of}${apart}`);
   figure.querySelector('.at').textContent = found.iterations[at];
   if (missing === undefined) return;
-  showPicture(missing, `data:image/bmp;base64,${head}${textOf(lessTruth(cells, truth))}`, `x − x* ${of}${apart}`);
+  showPicture(missing, `data:image/bmp;base64,${head}${textOf(lessTruth(cells, truth))}`, `${labels[1]} ${of}${apart}`);
   figure.querySelector('.apart').textContent = found.apart[at];
 }
 
@@ -34,7 +34,7 @@ function makeFields(article) {
     told.textContent = `${slider.value} of ${most}`;
     slider.setAttribute('aria-valuetext', `step ${told.textContent}`);
     for (const found of data.found)
-      showStep(fields.querySelector(`figure[data-s="${found.s}"]`), {found, head: data.head, truth}, Number(slider.value));
+      showStep(fields.querySelector(`figure[data-s="${found.s}"]`), {...data, found, truth}, Number(slider.value));
   });
   slider.setAttribute('aria-valuetext', `step ${most} of ${most}`);
   fields.querySelector('.steps').append(element('label', {}, 'Step ', told, ' ', slider),

@@ -21,15 +21,35 @@ std::string named(const Quantity& quantity) {
   return quantity.unit.empty() ? quantity.name : quantity.name + ", " + quantity.unit;
 }
 
+// Of x, and where it is a history of all that follows from it.
+std::string named(const FoundFields& all) {
+  return all.is_history() ? all.x.name + " → " + named(all.y) : named(all.x);
+}
+
+// What the pictures show.
+struct Labels {
+  std::string x, truth, rest;
+};
+Labels labels_of(const FoundFields& all) {
+  return all.is_history() ? Labels{"x → y", "x* → y*", "x − x* → y − y*"}
+                          : Labels{"x", "x*", "x − x*"};
+}
+
+std::string head_of(const FoundFields& all) {
+  const FieldFrames& frames = all.frames();
+  return bitmap_head(frames.shape[1], frames.shape[2],
+                     all.is_history() ? FirstRow::bottom : FirstRow::top);
+}
+
 std::string short_figure(Real value) { return figure(std::stod(fmt::format("{:.3g}", value))); }
 
 std::string picture(const FoundFields& all, const std::string& cells, const std::string& label,
                     const std::string& alt) {
   const FieldFrames& frames = all.frames();
   return fmt::format(
-      "<div class=picture><img src=\"data:image/bmp;base64,{}{}\" width={} height={} "
+      "<div class=\"picture{}\"><img src=\"data:image/bmp;base64,{}{}\" width={} height={} "
       "alt=\"{}\"><span>{}</span></div>",
-      bitmap_head(frames.shape[1], frames.shape[2]), cells, frames.shape[2], frames.shape[1],
+      all.is_history() ? " history" : "", head_of(all), cells, frames.shape[2], frames.shape[1],
       html_text(alt), label);
 }
 
@@ -57,30 +77,34 @@ std::string apart_text(const FoundField& found, std::size_t i) {
 
 std::string given_html(const FoundFields& all) {
   const FieldFrames& frames = all.frames();
+  const std::string truth = labels_of(all).truth;
   std::string pictures =
       picture(all, cells_of(all, frames.target(), all.y_scale), "y*",
               fmt::format("y*: {}, {}", named(all.y), range_of(frames.target())));
   if (frames.has_truth())
-    pictures += picture(all, cells_of(all, frames.truth(), all.x_scale), "x*",
-                        fmt::format("x*: {}, {}", named(all.x), range_of(frames.truth())));
+    pictures += picture(all, cells_of(all, frames.truth(), all.x_scale), truth,
+                        fmt::format("{}: {}, {}", truth, named(all), range_of(frames.truth())));
   return fmt::format(
-      "<figure class=given><div class=two>{}</div><figcaption><b>What is given{}.</b> {}; its colours "
+      "<figure class=given><div class=two>{}</div><figcaption><b>What is given{}.</b> {}{}; its colours "
       "end at ±{}.</figcaption></figure>",
       pictures, frames.has_truth() ? ", and what is sought" : "",
-      html_text("y* is the " + named(all.y)), short_figure(all.y_scale));
+      html_text("y* is the " + named(all.y)), all.is_history() ? ", the highest row alone" : "",
+      short_figure(all.y_scale));
 }
 
 std::string found_html(const Comparison& c, const FoundFields& all, const FoundField& found) {
   const std::size_t last = found.frames.iterations.size() - 1;
   const std::string name = shown_spec(c.optimizers[found.optimizer].brief);
   const std::span<const float> x = found.frames.x(last);
-  std::string pictures = picture(all, cells_of(all, x, all.x_scale), "x",
-                                 fmt::format("x of {}: {}, {}", name, named(all.x), range_of(x)));
+  const Labels labels = labels_of(all);
+  std::string pictures =
+      picture(all, cells_of(all, x, all.x_scale), labels.x,
+              fmt::format("{} of {}: {}, {}", labels.x, name, named(all), range_of(x)));
   std::string apart;
   if (!found.apart.empty()) {
     const std::vector<float> rest = difference(x, found.frames.truth());
-    pictures += picture(all, cells_of(all, rest, all.x_scale), "x − x*",
-                        fmt::format("x − x* of {}, {}", name, range_of(rest)));
+    pictures += picture(all, cells_of(all, rest, all.x_scale), labels.rest,
+                        fmt::format("{} of {}, {}", labels.rest, name, range_of(rest)));
     apart = fmt::format(", <span class=norm>‖x − x*‖ <output class=apart>{}</output> ‖x*‖</span>",
                         html_text(apart_text(found, last)));
   }
@@ -100,10 +124,15 @@ std::string key_html(const FoundFields& all) {
   for (Index i = 0; i < kColours; ++i) bytes += static_cast<char>(64 + i);
   return fmt::format(
       "<p class=field-key><span>−{0}</span><img src=\"data:image/bmp;base64,{1}{2}\" width={3} "
-      "height=1 alt=\"from blue over white, which is 0, to orange\"><span>{0}</span> {4}. x, x* and "
-      "x − x* have this one scale; what lies beyond has the colour of its end.</p>",
+      "height=1 alt=\"from blue over white, which is 0, to orange\"><span>{0}</span> {4}. {5} have "
+      "this one scale; what lies beyond has the colour of its end.{6}</p>",
       short_figure(all.x_scale), bitmap_head(1, kColours), bitmap_cells(bytes, kColours), kColours,
-      html_text(named(all.x)));
+      html_text(named(all)), all.is_history() ? "All pictures" : "x, x* and x − x*",
+      all.is_history()
+          ? fmt::format(" Across is the place and upward the time: the lowest row is x, "
+                        "at 0, the highest y, at {}.",
+                        short_figure(all.time))
+          : "");
 }
 
 std::string reading_of(const Comparison& c, const FoundFields& all) {
@@ -148,8 +177,9 @@ std::string fields_json(const FoundFields& all) {
         list(frames, cells));
   };
   const FieldFrames& frames = all.frames();
-  return fmt::format("{{\"head\":\"{}\",\"truth\":\"{}\",\"found\":{}}}",
-                     bitmap_head(frames.shape[1], frames.shape[2]),
+  const Labels labels = labels_of(all);
+  return fmt::format("{{\"head\":\"{}\",\"labels\":[{},{}],\"truth\":\"{}\",\"found\":{}}}",
+                     head_of(all), json_quoted(labels.x), json_quoted(labels.rest),
                      frames.has_truth() ? cells_of(all, frames.truth(), all.x_scale) : "",
                      list(all.found, one));
 }

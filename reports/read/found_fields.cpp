@@ -21,12 +21,23 @@ Real distance(std::span<const float> a, std::span<const float> b) {
   return std::sqrt(sum);
 }
 
-std::vector<Real> distances(const FieldFrames& frames) {
+// The time of the last row of these frames, where their rows are states; 0 elsewhere.
+Real time_of(const Sheet* sheet, const FieldFrames& frames) {
+  const bool is_of_sheet =
+      sheet != nullptr && sheet->field && sheet->field->rows == frames.shape[1];
+  return is_of_sheet ? sheet->field->time : 0;
+}
+
+// Of x alone: the first row of a history.
+std::vector<Real> distances(const FieldFrames& frames, bool is_history) {
   std::vector<Real> apart;
   if (!frames.has_truth()) return apart;
-  const std::vector<float> nothing(frames.truth().size(), 0);
+  const Index rows = is_history ? 1 : frames.shape[1];
+  const auto cells = static_cast<std::size_t>(rows * frames.shape[2]);
+  const std::span<const float> truth = frames.truth().first(cells);
+  const std::vector<float> nothing(cells, 0);
   for (std::size_t i = 0; i < frames.iterations.size(); ++i)
-    apart.push_back(distance(frames.x(i), frames.truth()) / distance(nothing, frames.truth()));
+    apart.push_back(distance(frames.x(i).first(cells), truth) / distance(nothing, truth));
   return apart;
 }
 
@@ -46,7 +57,7 @@ std::optional<FoundField> field_of(const Comparison& c, std::size_t p, std::size
     std::optional<FieldFrames> frames = c.study->fields_of(*record);
     if (!frames) continue;
     seed = record->request.seed;
-    std::vector<Real> apart = distances(*frames);
+    std::vector<Real> apart = distances(*frames, time_of(c.problems[p].sheet, *frames) > 0);
     return FoundField{s, std::move(*frames), std::move(apart)};
   }
   return std::nullopt;
@@ -75,7 +86,8 @@ std::optional<FoundFields> found_fields(const Comparison& c, std::size_t p) {
   out.seed = *seed;
   out.is_learned = c.problems[p].is_learned;
   out.x_scale = greatest(first.has_truth() ? first.truth() : first.x(first.iterations.size() - 1));
-  out.y_scale = greatest(first.target());
+  out.time = time_of(sheet, first);
+  out.y_scale = out.is_history() ? out.x_scale : greatest(first.target());
   return out;
 }
 

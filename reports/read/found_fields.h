@@ -19,9 +19,11 @@ struct FoundFields {
   Quantity x, y;
   std::uint64_t seed = 0;  // of all of them
   bool is_learned = false;
+  Real time = 0;                  // where rows are states from x on: of the last one, y; else 0
   Real x_scale = 0, y_scale = 0;  // the greatest |x*| and |y*|; where x* is not known, that of x
   std::vector<FoundField> found;  // the best of each kind on this problem, the best first
 
+  bool is_history() const { return time > 0; }
   const FieldFrames& frames() const { return found.front().frames; }  // y* and x* are all the same
 };
 

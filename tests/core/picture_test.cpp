@@ -1,10 +1,11 @@
-// What is shown of a sample: itself, or the curl of a velocity, against its formula.
+// What is shown of a sample: itself, the curl of a velocity, against its formula, or a history.
 #include "core/picture.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace isoline {
 namespace {
@@ -26,6 +27,23 @@ TEST(Curl, IsThatOfAWaveOnAPeriodicGrid) {
                   -std::sin(b) * std::sin(b * static_cast<Real>(i)) -
                       std::sin(a) * std::cos(a * static_cast<Real>(j)),
                   1e-14);
+}
+
+// A state of two cells that grows by 1 a row.
+TEST(PictureOfAHistory, HasAllStatesOfXAndOfYTheLastAlone) {
+  const Field field{.rows = 3, .columns = 2, .time = 0.5};
+  const History grow = [](VectorRef x, BatchOut states) {
+    for (Index row = 0; row < states.rows(); ++row)
+      states.row(row) = x.transpose().array() + static_cast<Real>(row);
+  };
+  Matrix batch(2, 2);
+  batch << 4, 90, 7, 90;
+  const auto cells = [](const Picture& picture) {
+    return std::vector<Real>(picture.cells().begin(), picture.cells().end());
+  };
+  EXPECT_EQ(cells(Picture(batch, field, grow)), (std::vector<Real>{4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(cells(Picture(batch, field)), (std::vector<Real>{0, 0, 4, 0, 0, 7}));
+  EXPECT_TRUE(cells(Picture(Matrix(), field, grow)).empty());
 }
 
 }  // namespace

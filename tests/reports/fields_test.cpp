@@ -1,7 +1,6 @@
-// Fields in the page: colours that are even, bytes that say what cells hold, the best of each kind.
+// Fields in the page: the best of each kind, what is said of them, and histories.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/digest.h"
@@ -14,68 +13,6 @@
 
 namespace isoline::reports {
 namespace {
-
-// --- pictures
-
-TEST(Radix64, IsThatOfTheStandard) {  // the test vectors of RFC 4648, section 10
-  EXPECT_EQ(radix64(""), "");
-  EXPECT_EQ(radix64("f"), "Zg==");
-  EXPECT_EQ(radix64("fo"), "Zm8=");
-  EXPECT_EQ(radix64("foo"), "Zm9v");
-  EXPECT_EQ(radix64("foob"), "Zm9vYg==");
-  EXPECT_EQ(radix64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(radix64("foobar"), "Zm9vYmFy");
-}
-
-Real lightness(const Colour& colour) {  // L* of CIE Lab, from the luminance of sRGB
-  Real luminance = 0;
-  const Real weights[] = {0.2126, 0.7152, 0.0722};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Real share = colour[i] / 255.0;
-    luminance +=
-        weights[i] * (share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4));
-  }
-  return 116 * std::cbrt(luminance) - 16;
-}
-
-TEST(DivergingColours, DarkenEvenlyAndAlikeToBothSides) {
-  constexpr int kSteps = 16;
-  const Real light = lightness(diverging_colour(0)), dark = lightness(diverging_colour(1));
-  EXPECT_GT(light, 95);
-  EXPECT_LT(dark, 45);
-  for (int i = 1; i <= kSteps; ++i) {
-    const Real t = static_cast<Real>(i) / kSteps;
-    const Real even = light + (dark - light) * t;
-    for (const Real share : {-t, t})  // Oklab's lightness and CIE's bend a little otherwise
-      EXPECT_NEAR(lightness(diverging_colour(share)), even, 3.5) << share;
-  }
-}
-
-TEST(DivergingColours, EndAtTheScale) {
-  EXPECT_EQ(diverging_colour(1.7), diverging_colour(1));
-  EXPECT_EQ(diverging_colour(-9), diverging_colour(-1));
-  EXPECT_LT(diverging_colour(1)[2], diverging_colour(-1)[2]) << "orange above, blue below";
-}
-
-TEST(Cells, AreBytesAroundZeroUpToTwiceTheScale) {
-  const std::vector<float> values = {0, 1, -1, 2, -2, 9, -9, 0.5F};
-  const std::string bytes = bytes_of(values, 1);
-  std::vector<int> found;
-  for (const char byte : bytes) found.push_back(static_cast<unsigned char>(byte));
-  EXPECT_EQ(found, (std::vector<int>{128, 192, 64, 255, 1, 255, 1, 160}));
-  EXPECT_EQ(bytes_of({}, 1), "");
-  EXPECT_EQ(static_cast<unsigned char>(bytes_of(values, 0)[1]), 128) << "all is zero";
-}
-
-TEST(Bitmap, HasAHeadOfWholeDigitsAndRowsOfFourBytes) {
-  const std::string head = bitmap_head(3, 5);
-  EXPECT_EQ(head.size() % 4, 0U);
-  EXPECT_EQ(head.find('='), std::string::npos);
-  EXPECT_TRUE(head.starts_with("Qk")) << "BM";
-  EXPECT_EQ(bitmap_cells(std::string(15, '\x80'), 5).size(), 32U) << "3 rows of 8 bytes";
-}
-
-// --- what is shown
 
 Sheet sheet_of(const char* kind, const std::string& name, const std::string& mathematics = "") {
   Sheet sheet{.kind = kind, .name = name, .spec = name, .options_text = "[]"};
@@ -100,9 +37,10 @@ class ShownFields : public testing::Test {
     folder.add(sheet_of("optimizer", optimizer, kind));
     records.push_back(record);
   }
-  std::optional<FoundFields> found() {
+  std::optional<FoundFields> found(
+      const Field& field = {.rows = 1, .columns = 2, .x = {"source", "1/m²"}, .y = {"potential"}}) {
     Sheet sheet = sheet_of("problem", "grid");
-    sheet.field = Field{.rows = 1, .columns = 2, .x = {"source", "1/m²"}, .y = {"potential"}};
+    sheet.field = field;
     folder.add(sheet);
     folder.add(plan_of(records));
     study = read_study({folder.path()});
@@ -200,6 +138,60 @@ TEST_F(ShownFields, AreTheSameBytesInTheDataAndInThePictures) {
   EXPECT_EQ(one.at("apart"), Json({"= 1", "= 0.1"}));
   const std::string head = json.at("head"), last = one.at("x").at(1);
   EXPECT_NE(fields_html(c, *all).find(head + last), std::string::npos);
+}
+
+// --- histories
+
+const Field kHistory{
+    .rows = 2, .columns = 1, .x = {"speed before"}, .y = {"speed after"}, .time = 0.5};
+
+class ShownHistory : public ShownFields {
+ protected:
+  // x* = 1 becomes y* = 4, and x = ½ of it 3; of y* the last row alone is known.
+  void SetUp() override {
+    Record record = record_of({.problem = "grid", .optimizer = "fast", .work_per_hit = 2});
+    FieldFrames fields{.iterations = {7}, .shape = {3, 2, 1}};
+    fields.numbers = {0, 4, 1, 4, 0.5F, 3};
+    fields.digest = digest(field_file(fields));
+    record.fields = fields;
+    folder.add(record);
+    write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
+    folder.add(sheet_of("optimizer", "fast", "gradient"));
+    records.push_back(record);
+  }
+};
+
+TEST_F(ShownHistory, IsJudgedByItsFirstRowAndHasOneScale) {
+  const auto all = found(kHistory);
+  ASSERT_TRUE(all);
+  EXPECT_TRUE(all->is_history());
+  EXPECT_EQ(all->found[0].apart, std::vector<Real>{0.5});
+  EXPECT_EQ(all->x_scale, 4);
+  EXPECT_EQ(all->y_scale, 4);
+}
+
+TEST_F(ShownHistory, IsDrawnFromTheBottomAndSaysSo) {
+  const auto all = found(kHistory);
+  ASSERT_TRUE(all);
+  const std::string html = fields_html(c, *all), head = bitmap_head(2, 1, FirstRow::bottom);
+  EXPECT_NE(head, bitmap_head(2, 1));
+  for (const std::string& words :
+       {head, std::string("x* → y*"), std::string("x − x* → y − y*"),
+        std::string("the lowest row is x, at 0, the highest y, at 0.5"),
+        std::string("speed before → speed after"), std::string("the highest row alone")})
+    EXPECT_NE(html.find(words), std::string::npos) << words << " in " << html;
+  EXPECT_EQ(html.find(bitmap_head(2, 1)), std::string::npos);
+  const Json json = parse_json(fields_json(*all), "fields");
+  EXPECT_EQ(json.at("head"), head);
+  EXPECT_EQ(json.at("labels"), Json({"x → y", "x − x* → y − y*"}));
+}
+
+TEST_F(ShownHistory, OfOlderRunsThatKeptXAloneIsNone) {
+  Field other = kHistory;
+  other.rows = 14;
+  const auto all = found(other);
+  ASSERT_TRUE(all);
+  EXPECT_FALSE(all->is_history());
 }
 
 }  // namespace
