@@ -3,13 +3,14 @@
 // with A = ⟨ā āᵀ⟩ and G = ⟨g gᵀ⟩, so that [W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹ with π²
 // = (tr A/dim A)/(tr G/dim G). Of a convolution, Grosse, Martens (2016): A = ⟨Σ_t ā āᵀ⟩ over the
 // patches ā at all places t, G = ⟨g gᵀ⟩ over samples and places, as if the cotangents of different
-// places were uncorrelated and alike. g is that of √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a sample's loss, for each
-// output i in turn, so that G is exact; of a convolution, or of more than 64 outputs, that of all
-// outputs at once with random signs, one draw a step. Of the loss's curvature the diagonal is used,
-// which for ½‖y − y*‖² is all of it. Batch norm's γ and β have no such form: each steps along its
-// gradient, over λ and the mean of its curvature's diagonal under the same draw. Running means as
-// the paper's; its rescaling by the exact Gauss-Newton matrix, momentum and adaptive λ are left
-// out.
+// places were uncorrelated and alike; where the physics correlates them the curvature is larger, by
+// up to the number of places, and the rate must be smaller. g is that of √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a
+// sample's loss, for each output i in turn, so that G is exact; of a convolution, or of more than
+// 64 outputs, that of all outputs at once with random signs, one draw a step. Of the loss's
+// curvature the diagonal is used, which for ½‖y − y*‖² is all of it. Batch norm's γ and β have no
+// such form: each steps along its gradient, over λ and the mean of its curvature's diagonal under
+// the same draw. Running means as the paper's; its rescaling by the exact Gauss-Newton matrix,
+// momentum and adaptive λ are left out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -174,12 +175,12 @@ void register_kfac(OptimizerRegistry& registry) {
        .kind = Kind::second_order,
        .formula = "[W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹,  A = ⟨ā āᵀ⟩, G = ⟨g gᵀ⟩",
        .source = "Martens, Grosse (2015); of convolutions Grosse, Martens (2016)",
-       .note =
-           "For networks of dense layers or of convolutions. G is exact, by one pullback for "
-           "each output; of convolutions, and of more than 64 outputs, by one random cotangent "
-           "a step, the same for every seed. A convolution's A is the sum over places, its G the "
-           "mean. Batch norm's γ and β step along their gradients, over the mean of their "
-           "curvature's diagonal. Without the paper's rescaling, momentum and adaptive damping.",
+       .note = "For networks of dense layers or of convolutions. G is exact, by one pullback for "
+               "each output; of convolutions, and of more than 64 outputs, by one random cotangent "
+               "a step, the same for every seed. A convolution's A is the sum over places, its G "
+               "the mean: too little curvature where the physics correlates places. Batch norm's γ "
+               "and β step along their gradients, over the mean of their curvature's diagonal. "
+               "Without the paper's rescaling, momentum and adaptive damping.",
        .needs = {Oracle::forward, Oracle::pullback},
        .tunable = {.option = "rate", .below = 1},
        .needs_for = needs,

@@ -33,6 +33,7 @@ const std::map<std::string, std::string> kLongFiles = {
     {"tests/benchmarks/merge_test.cpp", "one law of unions a test, over the same folders"},
     {"tests/cli/run_test.cpp", "one verb as a user meets it"},
     {"tests/cli/usage_test.cpp", "every mistake at a command line, in one table"},
+    {"tests/networks/layer_moments_test.cpp", "one network, computed once more pixel by pixel"},
     {"tests/reports/claims_test.cpp", "one law of verdicts a test, over the same two optimizers"},
     {"tests/reports/claim_evidence_test.cpp", "one claim's evidence in every format"}};
 
