@@ -12,6 +12,7 @@
 
 #include "core/array.h"
 #include "core/pieces.h"
+#include "problems/physics/lattice_margin.h"
 
 namespace isoline::problems {
 
@@ -32,28 +33,26 @@ class Advection {
   void add_choices(VectorRef q, VectorRef dx, VectorRef dy, PieceDigest& digest);
 
  private:
-  // Around the padded lattice lies a margin, for no neighbour to need a modulus. What moves by more
-  // than kReach cells is brought back by periods.
-  static constexpr Index kMargin = 8, kReach = kMargin - 1;
-
   // Where the points of the lattice come from, or go to.
   struct Points {
-    Eigen::VectorXi node;  // (N²) lower left of the four around a point, in a padded lattice
+    Eigen::VectorXi node;  // (N²) lower left of the four around a point, in the padded lattice
     Vector a, b;           // (N²) how far it lies from there in x and in y, in [0, 1]
   };
+  class Places;
   bool trace(VectorRef dx, VectorRef dy);  // back_ and ahead_; false: some lie beyond the margin
   void trace_far(VectorRef dx, VectorRef dy, Real sign, Points& out) const;
   void interpolate(VectorRef q, VectorRef dx, VectorRef dy);  // s, and the limits of r
-  void pad(VectorRef q, Vector& padded) const;
-  void wrap(Vector& padded) const;                // fills the margin
-  void unpad(Vector& padded, VectorOut q) const;  // the transpose of pad, added to q
-  void fold(Vector& padded) const;                // the transpose of wrap
-  Index own(Index i, Index j) const { return stride_ * (j + kMargin) + i + kMargin; }
+  void pull_correction(VectorRef u, Vector& into_q, Vector& into_s, VectorOut of_dx,
+                       VectorOut of_dy);
+  void pull_interpolation(const Vector& into_s, VectorOut of_dx, VectorOut of_dy);
 
-  Index N_, stride_;                // N, N + 2 kMargin
+  Index N_;
+  LatticeMargin margin_;
+  Index stride_;                    // N and both margins
   Points back_, ahead_;             // p − d and p + d
   Vector least_, most_;             // (N²) of q over the four nodes around p − d
   Vector q_, s_, tangent_, moved_;  // (stride²) padded
+  Vector pairs_;                    // (2 stride²) of LatticeMargin::settle
 };
 
 }  // namespace isoline::problems

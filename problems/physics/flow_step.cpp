@@ -48,7 +48,6 @@ FlowStep::FlowStep(const FlowOptions& options)
   dx_ = dy_ = vdx_ = vdy_ = scratch_ = Vector::Zero(cells_);
 }
 
-// Means over four faces are means in one direction of means in the other.
 void FlowStep::displace(Index which, VectorRef velocity, Vector& dx, Vector& dy) {
   const VectorRef u = velocity.head(cells_), v = velocity.tail(cells_);
   const Index N = options_.N;
@@ -58,11 +57,9 @@ void FlowStep::displace(Index which, VectorRef velocity, Vector& dx, Vector& dy)
     dy = unit * v;
   } else if (which == kU) {
     dx = unit * u;
-    weigh(N, 0.5, 0.5, Side::above, v, scratch_);
-    weigh(N, half, half, Side::left, scratch_, dy);
+    weigh_square(N, unit / 4, Side::left, Side::above, v, dy);
   } else if (which == kV) {
-    weigh(N, 0.5, 0.5, Side::right, u, scratch_);
-    weigh(N, half, half, Side::below, scratch_, dx);
+    weigh_square(N, unit / 4, Side::right, Side::below, u, dx);
     dy = unit * v;
   } else {
     weigh(N, half, half, Side::right, u, dx);
@@ -79,11 +76,9 @@ void FlowStep::add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut 
     v += unit * dy;
   } else if (which == kU) {
     u += unit * dx;
-    weigh(N, half, half, Side::right, dy, scratch_);
-    add_weighed(N, 0.5, 0.5, Side::below, scratch_, v);
+    add_square(N, unit / 4, Side::right, Side::below, dy, v);
   } else if (which == kV) {
-    weigh(N, half, half, Side::above, dx, scratch_);
-    add_weighed(N, 0.5, 0.5, Side::left, scratch_, u);
+    add_square(N, unit / 4, Side::left, Side::above, dx, u);
     v += unit * dy;
   } else {
     add_weighed(N, half, half, Side::left, dx, u);
@@ -98,11 +93,10 @@ void FlowStep::forward(VectorRef state, VectorOut next, VectorOut projected) {
     advection_.value(part(state, which, cells_), dx_, dy_, part_of(projected, which, cells_));
   }
   projection_.apply(projected.head(cells_), projected.tail(cells_));
-  next.head(2 * cells_) = projected;
   for (const Index which : {kU, kV}) {
+    const VectorRef before = part(state, which, cells_), after = part(projected, which, cells_);
     VectorOut component = part_of(next, which, cells_);
-    if (options_.rescales)
-      Rescaling(state.segment(which * cells_, cells_), component).apply(component);
+    component = (options_.rescales ? Rescaling(before, after).factor : 1) * after;
     if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
   }
   displace(kMarker, next.head(2 * cells_), dx_, dy_);

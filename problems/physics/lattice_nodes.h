@@ -2,8 +2,6 @@
 // registers: an algorithm written for T is that of either.
 #pragma once
 
-#include <algorithm>
-
 #include "core/array.h"
 
 namespace isoline::problems {
@@ -17,6 +15,7 @@ using LoosePair = double __attribute__((vector_size(16), aligned(8), may_alias))
 inline Pair pair_at(const Real* from) { return *reinterpret_cast<const LoosePair*>(from); }
 inline Four four_at(const Real* from) { return *reinterpret_cast<const LooseFour*>(from); }
 inline void put(const Four& values, Real* to) { *reinterpret_cast<LooseFour*>(to) = values; }
+inline void add(const Four& values, Real* to) { *reinterpret_cast<LooseFour*>(to) += values; }
 
 // The four nodes around a point, or around four points, at distances a and b from the first.
 template <class T>
@@ -64,12 +63,28 @@ inline Nodes<Four> nodes_at(const Real* q, const int* node, Index stride) {
   return nodes;
 }
 
-// visit(i, j): the first of four points in the row j. Where four do not go into a row the last are
-// visited twice.
-template <class Visit>
-void by_fours(Index N, const Visit& visit) {
-  for (Index j = 0; j < N; ++j)
-    for (Index i = 0; i < N; i += 4) visit(std::min(i, N - 4), j);
+// Adds to the pairs of four nodes: the n-th is of the n-th node and the one to its right. These two
+// are inline, for a call would spill all registers.
+[[gnu::always_inline]] inline void add_pairs(const Four& left, const Four& right, const int* node,
+                                             Real* pairs) {
+  const Four even = __builtin_shufflevector(left, right, 0, 4, 2, 6);
+  const Four odd = __builtin_shufflevector(left, right, 1, 5, 3, 7);
+  const auto add_pair = [pairs](Index n, const Pair& shares) {
+    *reinterpret_cast<LoosePair*>(pairs + 2 * n) += shares;
+  };
+  add_pair(node[0], __builtin_shufflevector(even, even, 0, 1));
+  add_pair(node[1], __builtin_shufflevector(odd, odd, 0, 1));
+  add_pair(node[2], __builtin_shufflevector(even, even, 2, 3));
+  add_pair(node[3], __builtin_shufflevector(odd, odd, 2, 3));
+}
+
+// Adds the transpose of Nodes::mean for four points. Were the nodes themselves added to two at a
+// time, a load would often hang on two stores, one node off: pairs have a place each.
+[[gnu::always_inline]] inline void spread(const Four& u, const Four& a, const Four& b,
+                                          const int* node, Index stride, Real* pairs) {
+  const Four lower = (1 - b) * u, upper = b * u;
+  add_pairs((1 - a) * lower, a * lower, node, pairs);
+  add_pairs((1 - a) * upper, a * upper, node, pairs + 2 * stride);
 }
 
 inline Four floor_of(const Four& x) {

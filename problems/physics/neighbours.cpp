@@ -12,6 +12,11 @@ void put(Real value, Real& out) {
     out = value;
 }
 
+// The row j, or the one beside it.
+const Real* row_on(Side side, Index N, Index j, const Real* q) {
+  return q + N * (side == Side::above ? (j + 1 < N ? j + 1 : 0) : (j > 0 ? j - 1 : N - 1));
+}
+
 template <bool adds>
 void sweep(Index N, Real a, Real b, Side side, const Real* __restrict q, Real* __restrict out) {
   for (Index j = 0; j < N; ++j) {
@@ -24,15 +29,35 @@ void sweep(Index N, Real a, Real b, Side side, const Real* __restrict q, Real* _
       put<adds>(a * own[0] + b * own[N - 1], to[0]);
       for (Index i = 1; i < N; ++i) put<adds>(a * own[i] + b * own[i - 1], to[i]);
     } else {
-      const Index beside = side == Side::above ? (j + 1 < N ? j + 1 : 0) : (j > 0 ? j - 1 : N - 1);
-      const Real* other = q + N * beside;
+      const Real* other = row_on(side, N, j, q);
       for (Index i = 0; i < N; ++i) put<adds>(a * own[i] + b * other[i], to[i]);
     }
   }
 }
 
+template <bool adds>
+void sweep_squares(Index N, Real a, Side across, Side along, const Real* __restrict q,
+                   Real* __restrict out) {
+  const Index step = across == Side::right ? 1 : -1, last = step > 0 ? N - 1 : 0;
+  for (Index j = 0; j < N; ++j) {
+    const Real* own = q + N * j;
+    const Real* other = row_on(along, N, j, q);
+    Real* to = out + N * j;
+    const auto sum = [=](Index i) { return own[i] + other[i]; };
+    const Index first = step > 0 ? 0 : 1;
+    for (Index i = first; i < first + N - 1; ++i) put<adds>(a * (sum(i) + sum(i + step)), to[i]);
+    put<adds>(a * (sum(last) + sum(N - 1 - last)), to[last]);
+  }
+}
+
 }  // namespace
 
+void weigh_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out) {
+  sweep_squares<false>(N, a, across, along, q.data(), out.data());
+}
+void add_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out) {
+  sweep_squares<true>(N, a, across, along, q.data(), out.data());
+}
 void weigh(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out) {
   sweep<false>(N, a, b, side, q.data(), out.data());
 }

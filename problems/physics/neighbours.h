@@ -13,8 +13,13 @@ constexpr Side opposite(Side side) {
   return kOpposite[static_cast<int>(side)];
 }
 
-// out = a q + b (q of the neighbour on that side), or out += that. `out` is not q.
+// out = a q + b (q of the neighbour on that side), or out += that. `out` is never q.
 void weigh(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out);
 void add_weighed(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out);
+
+// out = a times the sum of the four in the square that lies towards a side across, left or right,
+// and one along, below or above; or out += that.
+void weigh_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out);
+void add_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out);
 
 }  // namespace isoline::problems

@@ -12,7 +12,6 @@ struct Rescaling {
   Real before, after, factor;  // Σ v₀², Σ v², √(Σ v₀² / Σ v²)
 
   Rescaling(VectorRef v0, VectorRef v);
-  void apply(VectorOut v) const { v *= factor; }  // in place
   // v' along (t₀, t), t in place.
   void pushforward(VectorRef v0, VectorRef v, VectorRef t0, VectorOut t) const;
   // The cotangent u of v' becomes that of v in place; that of v₀ is added to u0.

@@ -1,4 +1,5 @@
-// Advection where displacements leave the lattice, and where they are no numbers.
+// Advection where displacements leave the lattice, where they are no numbers, and its transpose;
+// the sums of neighbours that displacements are.
 #include "problems/physics/advection.h"
 
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "problems/physics/neighbours.h"
 
 namespace isoline::problems {
 namespace {
@@ -46,6 +48,46 @@ TEST(Advection, ByWhatIsNoNumberIsNone) {
   dx[9] = std::nan("");
   advection.value(q, dx, still, out);
   EXPECT_TRUE(std::isnan(out[9]));
+}
+
+// By sums to rounding, of rows that four go into and of others, and where the clamp holds: q is
+// noise.
+TEST(Advection, PullsBackTheTransposeOfWhatItPushes) {
+  for (const Index N : {4, 6, 7, 9, 16}) {
+    Advection advection(N);
+    RandomStream stream(0, "test", "transpose", static_cast<std::uint64_t>(N));
+    const auto draw = [&] { return stream.normal_vector(N * N); };
+    const Vector q = draw(), dx = draw(), dy = draw(), u = draw();
+    const Vector vq = draw(), vdx = draw(), vdy = draw();
+    Vector pushed(N * N);
+    advection.pushforward(q, dx, dy, vq, vdx, vdy, pushed);
+    Matrix pulled = Matrix::Ones(N * N, 3);  // to which it is added
+    advection.pullback(q, dx, dy, u, pulled.col(0), pulled.col(1), pulled.col(2));
+    pulled.array() -= 1;
+    const Real there = u.dot(pushed);
+    const Real back = pulled.col(0).dot(vq) + pulled.col(1).dot(vdx) + pulled.col(2).dot(vdy);
+    EXPECT_NEAR(there, back, 1e-13 * u.norm() * pushed.norm() * static_cast<Real>(N)) << N;
+    const Matrix first = pulled;
+    pulled.setZero();
+    advection.pullback(q, dx, dy, u, pulled.col(0), pulled.col(1), pulled.col(2));
+    EXPECT_LE((pulled - first).norm(), 1e-13 * first.norm()) << "the call before left something";
+  }
+}
+
+TEST(SquaresOfNeighbours, AreSumsOfSums) {
+  constexpr Index N = 6;
+  RandomStream stream(0, "test", "squares");
+  const Vector q = stream.normal_vector(N * N);
+  Vector row(N * N), twice(N * N), once(N * N);
+  for (const Side across : {Side::left, Side::right})
+    for (const Side along : {Side::below, Side::above}) {
+      weigh(N, 1, 1, along, q, row);
+      weigh(N, 0.3, 0.3, across, row, twice);
+      weigh_square(N, 0.3, across, along, q, once);
+      EXPECT_LE((once - twice).norm(), 1e-15 * twice.norm());
+      add_square(N, 0.3, across, along, q, once);
+      EXPECT_LE((once - 2 * twice).norm(), 1e-15 * twice.norm());
+    }
 }
 
 }  // namespace
