@@ -37,8 +37,9 @@ class Fields(InBrowser):
 
     @classmethod
     def made(cls, folder):
-        run("run", "--problem", f"poisson[N={cls.N}],heat[N={cls.N}],square", "--optimizer",
-            "gd,adam,sip,gauss-newton", "--iterations", "60", "--out", folder, "--quiet")
+        run("run", "--problem", f"poisson[N={cls.N}],heat[N={cls.N}],burgers[N={cls.N}],square",
+            "--optimizer", "gd,adam,sip,gauss-newton", "--iterations", "60", "--out", folder,
+            "--quiet")
         return pathlib.Path(folder, "report", "index.html")
 
     def setUp(self):
@@ -140,6 +141,26 @@ class Fields(InBrowser):
             steps = [math.dist(lab[i], lab[i + 8]) for i in range(0, 120, 8)]
             self.assertLess(max(steps) / min(steps), 2.2, f"{vision}: its steps are even")
 
+    def test_a_history_goes_from_x_at_the_bottom_to_y_at_the_top(self):
+        p = self.browser.run("return DATA.problems.findIndex((one) => one.name === 'burgers')")
+        self.open(f"#problem-{p}")
+        self.fields = f"#problem-{p} .fields"
+        self.browser.wait("return document.querySelector(arguments[0]) !== null",
+                          self.fields + " input")
+        given, truth = (self.cells(f".given .picture:nth-child({which}) img") for which in (1, 2))
+        self.assertGreater(len(truth), 2 * self.N)
+        self.assertEqual(given[:self.N], truth[:self.N], "y* is the highest row")
+        self.assertEqual(len(set(given[self.N:])), 1, "of y* nothing else is given")
+        self.assertGreater(max(map(distance, truth[:self.N], truth[-self.N:])), 10, "it moves")
+        found = self.browser.run("return DATA.problems[arguments[0]].fields.found", p)
+        self.slide("home")
+        for one in found:
+            first = self.picture(one["s"], 1)
+            self.assertEqual(len(set(first)), 1, "from x = 0 follows 0")
+            alt = self.browser.run("return document.querySelector(arguments[0]).alt",
+                                   f"{self.fields} figure[data-s='{one['s']}'] img")
+            self.assertRegex(alt, r"^x → y of .* at iteration 0")
+
     def test_they_fit_a_phone(self):
         resized(self.browser, 400, 800)
         self.open(f"#problem-{self.p}")
@@ -154,7 +175,7 @@ class Fields(InBrowser):
         text = pathlib.Path(self.folder.name, "report", "index.html").read_text()
         articles = text.split("<article ")[1:]
         grids = [one for one in articles if "class=fields" in one.split("</article>")[0]]
-        self.assertEqual(len(grids), 2)
+        self.assertEqual(len(grids), 3)
         for one in grids:
             inner = one.split("<noscript>")[1].split("</noscript>")[0]
             self.assertEqual(inner.count("<img "), 3 + 2 * len(self.found))
