@@ -70,7 +70,7 @@ TEST(Pictures, OfALongHistoryAreStatesAtEvenTimes) {
 }
 
 TEST(Pictures, OfTheLargestBurgersHaveRoom) {
-  const Field& field = *published("burgers[N=4096,steps=10000,time=0.001]").field();
+  const Field field = *published("burgers[N=4096,steps=10000,time=0.001]").field();
   EXPECT_EQ(field.rows, 4);
   EXPECT_LE(field.rows * field.columns, Trace::Frames::kCells);
 }
