@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "core/errors.h"
 #include "core/json.h"
@@ -71,10 +72,8 @@ class Said {
   std::vector<Real> numbers(const char* name, std::int64_t count, bool is_required) const {
     const std::string law = fmt::format("a list of {} numbers", count);
     if (!has(name) && !is_required) return {};
-    if (!has(name) || !json_[name].is_array() ||
-        json_[name].size() != static_cast<std::size_t>(count))
-      refuse(name, law);
-    return reals(json_[name], name, law);
+    if (!has(name)) refuse(name, law);
+    return reals(json_[name], count, name, law);
   }
   std::optional<Real> number(const char* name) const {
     if (!has(name)) return std::nullopt;
@@ -114,25 +113,22 @@ class Said {
     return all;
   }
   // The lower ones, and the upper ones; both empty where there are none.
-  std::array<std::vector<Real>, 2> bounds(std::int64_t count) const {
+  std::pair<std::vector<Real>, std::vector<Real>> bounds(std::int64_t count) const {
     const char* name = "bounds";
     if (!has(name)) return {};
     const std::string law = fmt::format(
         "two lists of {} numbers, each of the first less than its like in the second", count);
     const Json& both = json_[name];
     if (!both.is_array() || both.size() != 2) refuse(name, law);
-    std::array<std::vector<Real>, 2> found;
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (!both[side].is_array() || both[side].size() != static_cast<std::size_t>(count))
-        refuse(name, law);
-      found[side] = reals(both[side], name, law);
-    }
-    if (!std::ranges::equal(found[0], found[1], std::less())) refuse(name, law);
+    std::pair found(reals(both[0], count, name, law), reals(both[1], count, name, law));
+    if (!std::ranges::equal(found.first, found.second, std::less())) refuse(name, law);
     return found;
   }
 
  private:
-  std::vector<Real> reals(const Json& list, const char* name, const std::string& law) const {
+  std::vector<Real> reals(const Json& list, std::int64_t count, const char* name,
+                          const std::string& law) const {
+    if (!list.is_array() || list.size() != static_cast<std::size_t>(count)) refuse(name, law);
     try {
       return reals_of(list);
     } catch (const UsageError&) {
@@ -207,15 +203,16 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   problem.drawn = said.numbers("drawn", problem.inputs, false);
   problem.target = said.numbers("target", problem.outputs, true);
   problem.truth = said.numbers("truth", problem.inputs, false);
-  const auto [lower, upper] = said.bounds(problem.inputs);
-  problem.lower = lower;
-  problem.upper = upper;
-  for (const auto& [name, x] :
-       {std::pair("start", problem.start), {"drawn", problem.drawn}, {"truth", problem.truth}})
+  std::tie(problem.lower, problem.upper) = said.bounds(problem.inputs);
+  const auto require_within = [&](const char* name, const std::vector<Real>& x) {
     require(is_within(x, problem),
             [&] { return fmt::format("{} says a {} outside its bounds", who, name); });
+  };
+  require_within("start", problem.start);
+  require_within("drawn", problem.drawn);
+  require_within("truth", problem.truth);
   std::string& note = problem.foreign.note;
-  if (!lower.empty()) note += fmt::format("{}{}", note.empty() ? "" : " ", kOutside);
+  if (!problem.lower.empty()) note += fmt::format("{}{}", note.empty() ? "" : " ", kOutside);
   problem.minimum = said.number("minimum");
   problem.aim = said.choice("aim", kAimNames) == name_of(Aim::x) ? Aim::x : Aim::loss;
   require(problem.aim == Aim::loss || !problem.truth.empty(),
