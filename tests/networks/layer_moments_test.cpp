@@ -8,6 +8,7 @@
 
 #include "core/threads.h"
 #include "networks/network.h"
+#include "tests/networks/wave.h"
 
 namespace isoline::networks {
 namespace {
@@ -145,13 +146,6 @@ struct Case {
   const char* padding;
   Index N, levels, filters, in, samples;
 };
-
-Matrix wave(Index rows, Index columns, Real a, Real b) {
-  return (a * Vector::LinSpaced(rows * columns, 0, Real(rows * columns - 1)).array() + b)
-      .sin()
-      .matrix()
-      .reshaped(rows, columns);
-}
 
 struct Trial {
   std::unique_ptr<Network> network;

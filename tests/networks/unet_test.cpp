@@ -3,6 +3,7 @@
 
 #include "core/threads.h"
 #include "networks/network.h"
+#include "tests/networks/wave.h"
 
 namespace isoline::networks {
 
@@ -14,14 +15,6 @@ NetworkShape grids(Index N, Index in = 1, Index out = 1) {
           .grid = N,
           .input_channels = in,
           .output_channels = out};
-}
-
-// sin(a i + b), which PyTorch's side of the golden values can draw too.
-Matrix wave(Index rows, Index columns, Real a, Real b) {
-  return (a * Vector::LinSpaced(rows * columns, 0, Real(rows * columns - 1)).array() + b)
-      .sin()
-      .matrix()
-      .reshaped(rows, columns);
 }
 
 // A network at its start, and directions given by formulas.

@@ -26,10 +26,15 @@ class ShownFields : public testing::Test {
   // x* is (1, 2), y* (4, 4), and a run goes from x = 0 to `end` times x*.
   void add(const char* optimizer, const char* kind, std::int64_t per_hit, float end,
            std::uint64_t seed = 0) {
+    add_frames(
+        optimizer, kind, per_hit,
+        {.iterations = {0, 50}, .shape = {4, 1, 2}, .numbers = {4, 4, 1, 2, 0, 0, end, 2 * end}},
+        seed);
+  }
+  void add_frames(const char* optimizer, const char* kind, std::int64_t per_hit, FieldFrames fields,
+                  std::uint64_t seed = 0) {
     Record record = record_of(
         {.problem = "grid", .optimizer = optimizer, .seed = seed, .work_per_hit = per_hit});
-    FieldFrames fields{.iterations = {0, 50}, .shape = {4, 1, 2}};
-    fields.numbers = {4, 4, 1, 2, 0, 0, end, 2 * end};
     fields.digest = digest(field_file(fields));
     record.fields = fields;
     folder.add(record);
@@ -73,15 +78,8 @@ TEST_F(ShownFields, AreOfTheBestOfEachKind) {
 
 TEST_F(ShownFields, OfRunsThatKeptFewerStepsStandBesideTheOthers) {
   add("newton", "second-order", 1, 1.0F);
-  Record record = record_of({.problem = "grid", .optimizer = "fast", .work_per_hit = 2});
-  FieldFrames fields{.iterations = {0}, .shape = {3, 1, 2}};
-  fields.numbers = {4, 4, 1, 2, 0, 0};
-  fields.digest = digest(field_file(fields));
-  record.fields = fields;
-  folder.add(record);
-  write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
-  folder.add(sheet_of("optimizer", "fast", "gradient"));
-  records.push_back(record);
+  add_frames("fast", "gradient", 2,
+             {.iterations = {0}, .shape = {3, 1, 2}, .numbers = {4, 4, 1, 2, 0, 0}});
   const auto all = found();
   ASSERT_TRUE(all);
   EXPECT_EQ(all->found.size(), 2U);
@@ -149,15 +147,8 @@ class ShownHistory : public ShownFields {
  protected:
   // x* = 1 becomes y* = 4, and x = ½ of it 3; of y* the last row alone is known.
   void SetUp() override {
-    Record record = record_of({.problem = "grid", .optimizer = "fast", .work_per_hit = 2});
-    FieldFrames fields{.iterations = {7}, .shape = {3, 2, 1}};
-    fields.numbers = {0, 4, 1, 4, 0.5F, 3};
-    fields.digest = digest(field_file(fields));
-    record.fields = fields;
-    folder.add(record);
-    write_text(field_path(folder.path() / "runs" / record.file_name()), field_file(fields));
-    folder.add(sheet_of("optimizer", "fast", "gradient"));
-    records.push_back(record);
+    add_frames("fast", "gradient", 2,
+               {.iterations = {7}, .shape = {3, 2, 1}, .numbers = {0, 4, 1, 4, 0.5F, 3}});
   }
 };
 
