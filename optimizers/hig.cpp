@@ -52,9 +52,10 @@ struct Spectral : Options {
 };
 
 void way_fields(std::string& way, KrylovLimits& krylov, auto& field) {
-  field("way", way, Choices{"auto", "svd", "qr", "gram", "layers", "lanczos"},
+  field("way", way, Choices{"auto", "svd", "qr", "gram", "layers", "split", "lanczos"},
         "how the step is computed: by the thin SVD of J; by QR and the SVD of R; by the smaller "
-        "Gram matrix of J; by JJᵀ formed layer by layer; or by products with J and Jᵀ alone; "
+        "Gram matrix of J; by JJᵀ formed layer by layer, or that and again from the part of J that "
+        "belongs to its small eigenvalues; or by products with J and Jᵀ alone; "
         "auto: by size and accuracy, never by products");
   field("krylov-tolerance", krylov.tolerance, between(0, 1),
         "of way=lanczos: where to end, as an estimate of the relative error of the step");
@@ -102,8 +103,8 @@ void register_hig(OptimizerRegistry& registry) {
        .source = "Schnell, Holl, Thuerey (2022)",
        .note =
            "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2). "
-           "By a Gram matrix, of networks of dense layers formed layer by layer, where the cut-off "
-           "is at least 1e-7 and the least singular value kept 1e-5 of the largest; else by QR, "
+           "By a Gram matrix, of networks of dense layers formed layer by layer and where needed split "
+           "in two, if the cut-off is at least 1e-7 and the step loses no digits; else by QR, "
            "and with small=clamp by the SVD of J. way=lanczos is for Jacobians too large for all "
            "of these.",
        .needs = {Oracle::forward},

@@ -33,15 +33,17 @@ Way SpectralStep::choose(const Meter& f, const SpectralFilter& filter, bool is_w
 
 bool SpectralStep::add(Meter& f, Linearization& at, const SpectralFilter& filter, const Vector& w,
                        Real factor, Vector& out) {
-  Way way = choose(f, filter, w.size() < out.size());
+  const bool is_wide = w.size() < out.size();
+  Way way = choose(f, filter, is_wide);
   bool is_done = false;
-  if (way == Way::gram || way == Way::layers || way == Way::cholesky) {
+  if (way == Way::gram || way == Way::layers || way == Way::split || way == Way::cholesky) {
     const Outcome outcome = by_gram(way, f, at, filter, w, factor, out);
     is_done = outcome == Outcome::done;
     if (outcome == Outcome::too_small) way = Way::qr;
   }
   if (way == Way::svd) is_done = by_svd(at.jacobian(), filter, w, factor, out);
-  if (way == Way::qr) is_done = by_qr(at.jacobian(), filter, w, factor, out);
+  if (way == Way::qr && (is_done = by_qr(at.jacobian(), filter, w, factor, out)))
+    judge(is_wide && has_layers(f) ? Way::split : Way::gram, filter, is_wide, w.norm());
   if (way == Way::orthogonal) is_done = by_pivots(at.jacobian(), filter, w, factor, out);
   if (way == Way::lanczos) {
     is_done = lanczos_.add(f, at, filter, limits_, w, factor, out);
@@ -91,7 +93,6 @@ bool SpectralStep::by_qr(const Matrix& J, const SpectralFilter& filter, const Ve
   is_wide ? factored_.from_left(along_, result_) : factored_.from_right(along_, result_);
   out += factor * result_;
   sigma_ = sigma;
-  judge(filter, is_wide, w.norm());
   return true;
 }
 
@@ -102,17 +103,18 @@ bool SpectralStep::by_pivots(const Matrix& J, const SpectralFilter& filter, cons
   return true;
 }
 
-SpectralStep::Outcome SpectralStep::by_gram(Way way, Meter& f, Linearization& at,
+SpectralStep::Outcome SpectralStep::by_gram(Way& way, Meter& f, Linearization& at,
                                             const SpectralFilter& filter, const Vector& w,
                                             Real factor, Vector& out) {
   const bool is_wide = w.size() < out.size();
-  const bool is_layered =
-      is_wide && (way == Way::layers || (way == Way::cholesky && has_layers(f)));
+  const bool is_layered = is_wide && way != Way::gram && (way != Way::cholesky || has_layers(f));
   form_gram(is_layered, is_wide, at, w);
   spectrum_.mean_square = gram_.trace() / static_cast<Real>(w.size());
   const bool is_solved =
       way == Way::cholesky ? solve_damped(filter) : solve_filtered(filter, is_wide, w.norm());
   if (!is_solved) return Outcome::failed;
+  if (wanted_ == Way::automatic && was_too_small_ && way == Way::layers) way = Way::split;
+  if (way == Way::split && !solve_split(filter, w)) return Outcome::failed;
   if (wanted_ == Way::automatic && was_too_small_ && f.is_granted(Oracle::jacobian))
     return Outcome::too_small;
   if (!is_wide) {
@@ -131,7 +133,8 @@ SpectralStep::Outcome SpectralStep::by_gram(Way way, Meter& f, Linearization& at
 // K = JJᵀ and w where J is wide, else JᵀJ and Jᵀw.
 void SpectralStep::form_gram(bool is_layered, bool is_wide, Linearization& at, const Vector& w) {
   if (is_layered) {
-    layered_.form(at, gram_);
+    layered_.take(at);
+    layered_.gram(gram_);
   } else {
     const Matrix& J = at.jacobian();
     const Index r = is_wide ? J.rows() : J.cols();
@@ -154,7 +157,15 @@ bool SpectralStep::solve_filtered(const SpectralFilter& filter, bool is_wide, Re
   for (Index i = 0; i < r; ++i) along_[i] *= filter.over_sigma(sigma_[i], spectrum_);
   result_.noalias() = eigen_.V * along_;
   if (is_wide) along_.array() *= sigma_.array();  // of the step, as it is where J is tall
-  judge(filter, is_wide, length);
+  judge(Way::gram, filter, is_wide, length);
+  return true;
+}
+
+bool SpectralStep::solve_split(const SpectralFilter& filter, const Vector& w) {
+  if (!split_.solve(layered_, eigen_, filter, spectrum_, w, result_)) return false;
+  sigma_ = split_.sigma();
+  along_ = split_.along();
+  judge(Way::split, filter, true, w.norm());
   return true;
 }
 
@@ -170,14 +181,17 @@ bool SpectralStep::solve_damped(const SpectralFilter& filter) {
   return true;
 }
 
-// Whether a Gram matrix is not enough for a step with the components along_ in the basis V. What it
-// is rounded by, ε σ₁², changes the i-th component by a share ε q σ₁²/(σᵢ² + μ), as −h' changes
-// h(σ²) = f(σ)/σ; and turns into the i-th component of w a part ε σ₁²/σⱼ² of a larger one j, and a
-// part ε σ₁²/σᵢ² of all that is discarded. Where J is tall, Jᵀw is rounded by ε σ₁‖w‖ instead.
-void SpectralStep::judge(const SpectralFilter& filter, bool is_wide, Real length) {
+// Whether the squares of singular values are not enough for a step with the components along_ in
+// the basis V. What a Gram matrix is rounded by, ε σ₁², changes the i-th component by a share
+// ε q σ₁²/(σᵢ² + μ), as −h' changes h(σ²) = f(σ)/σ; and turns into the i-th component of w a part
+// ε σ₁²/σⱼ² of a larger one j, and a part ε σ₁²/σᵢ² of all that is discarded. Where J is tall, Jᵀw
+// is rounded by ε σ₁‖w‖ instead. Of a Gram matrix that is split, s σ₁ stands for σ₁ among the small
+// ones, and of what turns large ones a share s is left. What J is rounded by itself does not count,
+// since a SVD of it is off by that too.
+void SpectralStep::judge(Way way, const SpectralFilter& filter, bool is_wide, Real length) {
   const Real mu = filter.mu(spectrum_), largest = spectrum_.largest, q = (filter.kappa + 1) / 2;
   const Index r = along_.size();
-  const bool is_ascending = sigma_[0] < sigma_[r - 1];
+  const bool is_ascending = sigma_[0] < sigma_[r - 1], is_split = way == Way::split;
   const auto at = [&](Index step) { return is_ascending ? r - 1 - step : step; };  // largest first
   const auto is_kept = [&](Index i) { return sigma_[i] > filter.cutoff * largest; };
   Real discarded = length * length;
@@ -189,15 +203,19 @@ void SpectralStep::judge(const SpectralFilter& filter, bool is_wide, Real length
     const Index i = at(step);
     least = sigma_[i];
     const Real h = filter.over_sigma(least, spectrum_), f = least * h;
-    const Real share = largest * largest / (least * least + mu);
+    const Real square = least * least + mu, whole = largest * largest / square;
+    const bool is_large = least >= kSplit * largest;
+    const Real share = is_split && !is_large ? kSplit * kSplit * whole : whole;
+    const Real turn = is_split && is_large ? kSplit * whole : share;
     const Real spill =
-        is_wide ? f * std::sqrt(turned + share * share * discarded) : largest * h * length;
+        is_wide ? f * std::sqrt(turned + turn * turn * discarded) : largest * h * length;
     error += std::pow(q * share * along_[i], 2) + spill * spill;
-    turned += std::pow(share * along_[i] / f, 2);
+    turned += std::pow(turn * along_[i] / f, 2);
   }
   const Real share = std::max(least, std::sqrt(mu)) / largest;
   estimate_ = kEpsilon * std::sqrt(error) / along_.norm();
-  was_too_small_ = !(share >= kLeastShareByGram && estimate_ <= kMostErrorByGram);
+  was_too_small_ = !(share >= (is_split ? kLeastShareBySplit : kLeastShareByGram) &&
+                     estimate_ <= kMostErrorByGram);
 }
 
 }  // namespace isoline::optimizers

@@ -5,9 +5,10 @@
 #include "core/archive.h"
 #include "core/decompose.h"
 #include "optimizers/lanczos_step.h"
-#include "optimizers/layered_gram.h"
+#include "optimizers/layered_jacobian.h"
 #include "optimizers/meter.h"
 #include "optimizers/spectral_filter.h"
+#include "optimizers/split_gram.h"
 #include "optimizers/way.h"
 
 namespace isoline::optimizers {
@@ -35,28 +36,31 @@ class SpectralStep {
              Vector& out);
   bool by_pivots(const Matrix& J, const SpectralFilter& filter, const Vector& w, Real factor,
                  Vector& out);
-  // By K = JJᵀ where J is wide, else by JᵀJ; too_small: to be done again by QR.
+  // By K = JJᵀ where J is wide, else by JᵀJ; too_small: to be done again by QR. `way` becomes
+  // Way::split where it was automatic and is needed.
   enum class Outcome { done, failed, too_small };
-  Outcome by_gram(Way way, Meter& f, Linearization& at, const SpectralFilter& filter,
+  Outcome by_gram(Way& way, Meter& f, Linearization& at, const SpectralFilter& filter,
                   const Vector& w, Real factor, Vector& out);
   void form_gram(bool is_layered, bool is_wide, Linearization& at, const Vector& w);
   bool solve_filtered(const SpectralFilter& filter, bool is_wide, Real length);
   bool solve_damped(const SpectralFilter& filter);
-  void judge(const SpectralFilter& filter, bool is_wide, Real length);
+  bool solve_split(const SpectralFilter& filter, const Vector& w);
+  void judge(Way way, const SpectralFilter& filter, bool is_wide, Real length);
   void say(Meter& f, Way way);
 
   Way wanted_ = Way::automatic;
   KrylovLimits limits_;
-  // Whether the last spectrum had values too small for a Gram matrix, so that the next step is by
-  // QR at once.
+  // Whether the last spectrum had values too small for a Gram matrix, split or not, so that the
+  // next step is by QR at once.
   bool was_too_small_ = false;
   std::uint32_t ways_taken_ = 0;  // a bit each
 
   // All else is scratch, r = min(m·B, n).
   Svd svd_;
   FactoredSvd factored_;
-  LayeredGram layered_;
+  LayeredJacobian layered_;
   SymmetricEigen eigen_;
+  SplitGram split_;
   LanczosStep lanczos_;
   Spectrum spectrum_;
   Matrix gram_, column_, tall_;    // (r, r), (r, 1), and Jᵀ (n, m·B)

@@ -19,6 +19,7 @@ constexpr WayRow kWays[] = {
     {Way::qr, "qr", "QR and the SVD of R"},
     {Way::gram, "gram", "the Gram matrix of J"},
     {Way::layers, "layers", "the Gram matrix layer by layer"},
+    {Way::split, "split", "the Gram matrix layer by layer, split in two"},
     {Way::cholesky, "cholesky", "Cholesky of the Gram matrix"},
     {Way::orthogonal, "orthogonal", "a complete orthogonal factorization"},
     {Way::lanczos, "lanczos", "Lanczos"},
@@ -55,6 +56,7 @@ OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem
     case Way::lanczos:
       return {Oracle::forward, Oracle::pullback, Oracle::pushforward};
     case Way::layers:
+    case Way::split:
       return by_layers;
     case Way::cholesky:
       return has_layers ? by_layers : by_matrix;
@@ -71,9 +73,11 @@ OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem
 }
 
 std::string objection_to(Way way, const Problem& problem) {
-  if (way == Way::layers && problem.residuals() >= problem.unknowns())
-    return fmt::format("way=layers forms JJᵀ, and J is not wide: {} residuals, {} unknowns",
-                       problem.residuals(), problem.unknowns());
+  const bool forms_K = way == Way::layers || way == Way::split;
+  if (forms_K && problem.residuals() >= problem.unknowns())
+    return fmt::format("way={} forms JJᵀ, and J is not wide: {} residuals, {} unknowns",
+                       kWays[static_cast<std::size_t>(way)].name, problem.residuals(),
+                       problem.unknowns());
   return "";
 }
 

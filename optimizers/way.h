@@ -15,6 +15,7 @@ enum class Way {
   qr,        // Jᵀ = QR, or J = QR where it is tall, and the SVD of R, without forming U and V
   gram,      // eigenvalues of the smaller Gram matrix, from J
   layers,    // eigenvalues of K = JJᵀ formed layer by layer, and one pullback
+  split,     // the same, the small ones again from the part of J that belongs to them
   cholesky,  // of Tikhonov alone: (K + μ)⁻¹ or (JᵀJ + μ)⁻¹, which need no spectrum
   orthogonal,  // of 1/σ alone: J⁺ by a complete orthogonal factorization, the cut-off on its pivots
   lanczos,     // products with J and Jᵀ alone
@@ -26,8 +27,10 @@ std::string_view words_of(Way way);
 
 // Of `automatic`. A Gram matrix squares the condition number: it is used where the estimated
 // relative error of the step is at most 2e-9 by it, and the least σ that matters 1e-5 of the
-// largest; and is not tried where the cut-off is too near its rounding for that to be seen.
-inline constexpr Real kMostErrorByGram = 2e-9, kLeastShareByGram = 1e-5, kLeastCutoffByGram = 1e-7;
+// largest, or 1e-7 where it is split in two; and is not tried where the cut-off is too near its
+// rounding for that to be seen.
+inline constexpr Real kMostErrorByGram = 2e-9, kLeastShareByGram = 1e-5, kLeastShareBySplit = 1e-7;
+inline constexpr Real kLeastCutoffByGram = 1e-7;
 
 // Of `automatic`: whether no spectrum would let a Gram matrix be used.
 bool never_by_gram(const SpectralFilter& filter);

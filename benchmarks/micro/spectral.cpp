@@ -1,9 +1,9 @@
 // One step of half-inverse gradients over LAPACK's thin SVD of the same Jacobian alone, by the same
 // kernels in the same run: at the start, and where a hundred steps have led. The step includes the
 // forward pass and everything that J or its Gram matrix takes. At the published cut-offs the
-// spectra of these problems reach below 1e-5 of the largest, so that the default is by QR, which
-// agrees with the SVD to 1e-10; way=layers differs from it by up to 1e-5 there, as a SVD in single
-// precision does.
+// spectra of these problems reach below 1e-5 of the largest, so that the default is by a split Gram
+// matrix, and for the chain by QR, which agree with the SVD to 1e-9; way=layers differs from it by
+// up to 1e-5 there, as a SVD in single precision does.
 #include <lapacke.h>
 
 #include "benchmarks/micro/pairs.h"
@@ -19,9 +19,9 @@ struct Bench {
 };
 const Bench kBenches[] = {
     {"linear-chain[mode=learn,batch=32]", "hig[rate=2,cutoff=1e-10]", 1.0 / 2},
-    {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2]", 1.0 / 3},
+    {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2]", 1.0 / 5},
     {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2,way=layers]", 1.0 / 5},
-    {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5]", 1.0 / 4},
+    {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5]", 1.0 / 10},
     {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5,way=layers]", 1.0 / 10},
 };
 
