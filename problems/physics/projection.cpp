@@ -9,24 +9,12 @@
 namespace isoline::problems {
 namespace {
 
-// The divergence between faces, and its transpose with the opposite sign, each in one pass.
+// The divergence between faces, in one pass.
 void diverge(Index N, const Real* __restrict u, const Real* __restrict v, Real* __restrict out) {
   for (Index j = 0; j < N; ++j, u += N, out += N) {
     const Real *below = v + N * j, *above = v + (j + 1 < N ? N * (j + 1) : 0);
     for (Index i = 0; i + 1 < N; ++i) out[i] = (u[i + 1] - u[i]) + (above[i] - below[i]);
     out[N - 1] = (u[0] - u[N - 1]) + (above[N - 1] - below[N - 1]);
-  }
-}
-void subtract_gradient(Index N, const Real* __restrict pressure, Real* __restrict u,
-                       Real* __restrict v) {
-  for (Index j = 0; j < N; ++j, u += N, v += N) {
-    const Real *own = pressure + N * j, *below = pressure + N * (j > 0 ? j - 1 : N - 1);
-    u[0] += own[N - 1] - own[0];
-    v[0] += below[0] - own[0];
-    for (Index i = 1; i < N; ++i) {
-      u[i] += own[i - 1] - own[i];
-      v[i] += below[i] - own[i];
-    }
   }
 }
 
@@ -70,7 +58,8 @@ void Projection::apply(VectorOut u, VectorOut v) {
   fourier_.spectrum().array() *= inverse_.array();
   fourier_.inverse(pressure_);
   if (arrangement_ == Arrangement::staggered) {
-    subtract_gradient(N_, pressure_.data(), u.data(), v.data());
+    add_weighed(N_, -1, 1, Side::left, pressure_, u);
+    add_weighed(N_, -1, 1, Side::below, pressure_, v);
   } else {
     add_weighed(N_, 0, -0.5, Side::right, pressure_, u);
     add_weighed(N_, 0, 0.5, Side::left, pressure_, u);
