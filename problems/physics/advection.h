@@ -43,8 +43,8 @@ class Advection {
   // Where the points of the lattice come from, or go to.
   struct Points {
     Eigen::VectorXi
-        way;      // (N²) to the lower left of the four around a point, in the padded lattice
-    Vector a, b;  // (N²) how far it lies from there in x and in y, in [0, 1]
+        way;      // (N²) on the padded lattice, to the lower left of the four around a place
+    Vector a, b;  // (N²) how far the place lies from there in x and in y, in [0, 1]
   };
   class Places;
   template <class Rows>
