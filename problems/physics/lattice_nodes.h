@@ -60,7 +60,8 @@ inline Nodes<Real> nodes_at(const Real* q, Index stride) {
   return {q[0], q[1], q[stride], q[stride + 1]};
 }
 
-// Two pairs as one vector; as sums of doubles GCC would load each into a register of its own.
+// Two pairs as one vector. Of halves that are integers GCC makes one load and one insertion, of
+// pairs of doubles two loads and an insertion.
 inline Four pairs_at(const Real* left, const Real* right) {
   __extension__ using Half = __int128;
   using LooseHalf __attribute__((aligned(8), may_alias)) = Half;
