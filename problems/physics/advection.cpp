@@ -9,32 +9,11 @@ namespace isoline::problems {
 namespace {
 
 // The values, with 0 for those that were seen before.
-Four fresh(const Four& values, Index seen) {
+Four fresh(const Four &values, Index seen) {
   return Four{0, 1, 2, 3} < static_cast<Real>(seen) ? Four{} : values;
 }
 
 }  // namespace
-
-// Points as loops see them, by pointers that no store of theirs can move.
-class Advection::Places {
- public:
-  explicit Places(Points& points)
-      : node_(points.node.data()), a_(points.a.data()), b_(points.b.data()) {}
-
-  void keep(Index p, const Four& here, const Four& x, const Four& y, Real stride) const {
-    const Four across = floor_of(x), along = floor_of(y);
-    put_nodes(here + across + stride * along, node_ + p);
-    put(x - across, a_ + p);
-    put(y - along, b_ + p);
-  }
-  const int* node(Index p) const { return node_ + p; }
-  Four a(Index p) const { return four_at(a_ + p); }
-  Four b(Index p) const { return four_at(b_ + p); }
-
- private:
-  int* node_;
-  Real *a_, *b_;
-};
 
 Advection::Advection(Index N)
     : N_(N),
@@ -50,51 +29,40 @@ Advection::Advection(Index N)
       moved_(q_),
       pairs_(Vector::Zero(2 * margin_.size())) {}
 
-bool Advection::trace(VectorRef dx, VectorRef dy) {
-  const Real stride = static_cast<Real>(stride_), reach = static_cast<Real>(LatticeMargin::kReach);
-  auto are_near = Four{} == 0;  // a mask
+void Advection::trace(VectorRef dx, VectorRef dy) {
+  const Index N = N_;
   const Real *x = dx.data(), *y = dy.data();
-  const Places back(back_), ahead(ahead_);
-  margin_.by_fours([=, &are_near](Index p, Index first, Index) {
-    const Four across = four_at(x + p), along = four_at(y + p);
-    are_near &= (across <= reach) & (across >= -reach) & (along <= reach) & (along >= -reach);
-    const Four here = static_cast<Real>(first) + Four{0, 1, 2, 3};
-    ahead.keep(p, here, across, along, stride);
-    back.keep(p, here, -across, -along, stride);
+  trace([=](Index j) {
+    return [from_x = x + N * j, from_y = y + N * j](Index i) {
+      return Displacement{four_at(from_x + i), four_at(from_y + i)};
+    };
   });
-  return are_near[0] && are_near[1] && are_near[2] && are_near[3];
 }
 
 // Where a displacement is no number, or has lost its whole part to rounding, the node lies in the
 // lattice, and of the first the distance is no number either.
-void Advection::trace_far(VectorRef dx, VectorRef dy, Real sign, Points& out) const {
+void Advection::keep_far(Index i, Index j, Real x, Real y, Points &out) const {
   const Real N = static_cast<Real>(N_);
   const auto within = [N](Real place) {
     const Real inside = place - N * std::floor(place / N);
     return inside > 0 && inside < N ? static_cast<Index>(inside) : 0;
   };
-  for (Index j = 0, p = 0; j < N_; ++j)
-    for (Index i = 0; i < N_; ++i, ++p) {
-      const Real x = sign * dx[p], y = sign * dy[p], across = std::floor(x), along = std::floor(y);
-      out.node[p] = static_cast<int>(
-          margin_.own(within(static_cast<Real>(i) + across), within(static_cast<Real>(j) + along)));
-      out.a[p] = x - across;
-      out.b[p] = y - along;
-    }
+  const Real across = std::floor(x), along = std::floor(y);
+  const Index p = i + N_ * j, node = margin_.own(within(static_cast<Real>(i) + across),
+                                                 within(static_cast<Real>(j) + along));
+  out.way[p] = static_cast<int>(node - margin_.own(i, j));
+  out.a[p] = x - across;
+  out.b[p] = y - along;
 }
 
-void Advection::interpolate(VectorRef q, VectorRef dx, VectorRef dy) {
+void Advection::interpolate(VectorRef q) {
   margin_.pad(q, q_);
-  if (!trace(dx, dy)) {
-    trace_far(dx, dy, -1, back_);
-    trace_far(dx, dy, 1, ahead_);
-  }
   const Places back(back_);
   const Index stride = stride_;
-  const Real* from = q_.data();
+  const Real *from = q_.data();
   Real *to = s_.data(), *least = least_.data(), *most = most_.data();
   margin_.by_fours([=](Index p, Index here, Index) {
-    const Nodes<Four> nodes = nodes_at(from, back.node(p), stride);
+    const Nodes<Four> nodes = nodes_at(from + here, back.way(p), stride);
     put(nodes.mean(back.a(p), back.b(p)), to + here);
     put(nodes.least(), least + p);
     put(nodes.most(), most + p);
@@ -102,15 +70,15 @@ void Advection::interpolate(VectorRef q, VectorRef dx, VectorRef dy) {
   margin_.wrap(s_);
 }
 
-void Advection::value(VectorRef q, VectorRef dx, VectorRef dy, VectorOut out) {
-  interpolate(q, dx, dy);
+void Advection::value(VectorRef q, VectorOut out) {
+  interpolate(q);
   const Places ahead(ahead_);
   const Index stride = stride_;
   const Real *before = q_.data(), *there = s_.data();
   const Real *least = least_.data(), *most = most_.data();
-  Real* to = out.data();
+  Real *to = out.data();
   margin_.by_fours([=](Index p, Index here, Index) {
-    const Nodes<Four> found = nodes_at(there, ahead.node(p), stride);
+    const Nodes<Four> found = nodes_at(there + here, ahead.way(p), stride);
     const Four back = found.mean(ahead.a(p), ahead.b(p));
     const Four r = four_at(there + here) + 0.5 * (four_at(before + here) - back);
     const Four low = four_at(least + p), high = four_at(most + p);
@@ -119,29 +87,29 @@ void Advection::value(VectorRef q, VectorRef dx, VectorRef dy, VectorOut out) {
   });
 }
 
-void Advection::add_choices(VectorRef q, VectorRef dx, VectorRef dy, PieceDigest& digest) {
-  interpolate(q, dx, dy);
+void Advection::add_choices(VectorRef q, PieceDigest &digest) {
+  interpolate(q);
   for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Nodes<Real> found = nodes_at(s_.data() + ahead_.node[p], stride_);
+      const Index from = margin_.own(i, j) + back_.way[p], to = margin_.own(i, j) + ahead_.way[p];
+      const Nodes<Real> found = nodes_at(s_.data() + to, stride_);
       const Real back = found.mean(ahead_.a[p], ahead_.b[p]);
       const Real r = s_[margin_.own(i, j)] + 0.5 * (q_[margin_.own(i, j)] - back);
       const bool is_below = r<least_[p], is_above = r> most_[p];
-      const Nodes<Real> nodes = nodes_at(q_.data() + back_.node[p], stride_);
+      const Nodes<Real> nodes = nodes_at(q_.data() + from, stride_);
       const Index held =
           is_below || is_above ? 1 + nodes.place(is_below ? least_[p] : most_[p], stride_) : 0;
-      for (const Index choice : {Index(back_.node[p]), Index(ahead_.node[p]), held})
-        digest.add(static_cast<std::uint64_t>(choice));
+      for (const Index choice : {from, to, held}) digest.add(static_cast<std::uint64_t>(choice));
     }
 }
 
-void Advection::pushforward(VectorRef q, VectorRef dx, VectorRef dy, VectorRef vq, VectorRef vdx,
-                            VectorRef vdy, VectorOut out) {
-  interpolate(q, dx, dy);
+void Advection::pushforward(VectorRef q, VectorRef vq, VectorRef vdx, VectorRef vdy,
+                            VectorOut out) {
+  interpolate(q);
   margin_.pad(vq, tangent_);
   for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Index node = back_.node[p];
+      const Index node = margin_.own(i, j) + back_.way[p];
       const Real a = back_.a[p], b = back_.b[p];
       const Nodes<Real> nodes = nodes_at(q_.data() + node, stride_);
       const Nodes<Real> moving = nodes_at(tangent_.data() + node, stride_);
@@ -151,12 +119,12 @@ void Advection::pushforward(VectorRef q, VectorRef dx, VectorRef dy, VectorRef v
   margin_.wrap(moved_);
   for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
-      const Index node = ahead_.node[p];
+      const Index node = margin_.own(i, j) + ahead_.way[p];
       const Real a = ahead_.a[p], b = ahead_.b[p];
       const Nodes<Real> found = nodes_at(s_.data() + node, stride_);
       const Real r = s_[margin_.own(i, j)] + 0.5 * (q_[margin_.own(i, j)] - found.mean(a, b));
       if (r < least_[p] || r > most_[p]) {
-        const Index back = back_.node[p];
+        const Index back = margin_.own(i, j) + back_.way[p];
         const Nodes<Real> nodes = nodes_at(q_.data() + back, stride_);
         out[p] = tangent_[back + nodes.place(r < least_[p] ? least_[p] : most_[p], stride_)];
         continue;
@@ -167,9 +135,9 @@ void Advection::pushforward(VectorRef q, VectorRef dx, VectorRef dy, VectorRef v
     }
 }
 
-void Advection::pullback(VectorRef q, VectorRef dx, VectorRef dy, VectorRef u, VectorOut of_q,
-                         VectorOut of_dx, VectorOut of_dy) {
-  interpolate(q, dx, dy);
+void Advection::pullback(VectorRef q, VectorRef u, VectorOut of_q, VectorOut of_dx,
+                         VectorOut of_dy) {
+  interpolate(q);
   Vector &into_q = tangent_, &into_s = moved_;
   into_q.setZero();
   into_s.setZero();
@@ -182,7 +150,7 @@ void Advection::pullback(VectorRef q, VectorRef dx, VectorRef dy, VectorRef u, V
 }
 
 // Of q' as a function of q, s and p + d.
-void Advection::pull_correction(VectorRef u, Vector& into_q, Vector& into_s, VectorOut of_dx,
+void Advection::pull_correction(VectorRef u, Vector &into_q, Vector &into_s, VectorOut of_dx,
                                 VectorOut of_dy) {
   const Places back(back_), ahead(ahead_);
   const Index stride = stride_;
@@ -192,36 +160,36 @@ void Advection::pull_correction(VectorRef u, Vector& into_q, Vector& into_s, Vec
   Real *to_dx = of_dx.data(), *to_dy = of_dy.data();
   margin_.by_fours([=](Index p, Index here, Index seen) {
     const Four a = ahead.a(p), b = ahead.b(p), all = fresh(four_at(from + p), seen);
-    const Nodes<Four> found = nodes_at(there, ahead.node(p), stride);
+    const Nodes<Four> found = nodes_at(there + here, ahead.way(p), stride);
     const Four r = four_at(there + here) + 0.5 * (four_at(before + here) - found.mean(a, b));
     const Four low = four_at(least + p), high = four_at(most + p);
     const auto is_below = r < low, is_held = is_below | (r > high);
     if (is_held[0] | is_held[1] | is_held[2] | is_held[3])
       for (Index k = 0; k < 4; ++k) {
         if (is_held[k] == 0) continue;
-        const Index node = back.node(p)[k];
+        const Index node = here + k + back.way(p)[k];
         const Nodes<Real> nodes = nodes_at(before + node, stride);
         to_q[node + nodes.place(is_below[k] ? low[k] : high[k], stride)] += all[k];
       }
     const Four free = is_held ? Four{} : all, returned = -0.5 * free;
     add(free, to_s + here);
     add(0.5 * free, to_q + here);
-    spread(returned, a, b, ahead.node(p), stride, pairs);
+    spread(returned, a, b, ahead.way(p), stride, pairs + 2 * here);
     add(returned * found.slope_x(b), to_dx + p);
     add(returned * found.slope_y(a), to_dy + p);
   });
 }
 
 // Of s as a function of q and p − d.
-void Advection::pull_interpolation(const Vector& into_s, VectorOut of_dx, VectorOut of_dy) {
+void Advection::pull_interpolation(const Vector &into_s, VectorOut of_dx, VectorOut of_dy) {
   const Places back(back_);
   const Index stride = stride_;
   const Real *before = q_.data(), *from = into_s.data();
   Real *pairs = pairs_.data(), *to_dx = of_dx.data(), *to_dy = of_dy.data();
   margin_.by_fours([=](Index p, Index here, Index seen) {
     const Four a = back.a(p), b = back.b(p), passed = fresh(four_at(from + here), seen);
-    const Nodes<Four> nodes = nodes_at(before, back.node(p), stride);
-    spread(passed, a, b, back.node(p), stride, pairs);
+    const Nodes<Four> nodes = nodes_at(before + here, back.way(p), stride);
+    spread(passed, a, b, back.way(p), stride, pairs + 2 * here);
     add(-passed * nodes.slope_x(b), to_dx + p);
     add(-passed * nodes.slope_y(a), to_dy + p);
   });

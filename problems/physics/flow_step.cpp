@@ -45,26 +45,63 @@ FlowStep::FlowStep(const FlowOptions& options)
       projection_(options.N, options.arrangement),
       before_(3 * cells_) {
   check(options);
-  dx_ = dy_ = vdx_ = vdy_ = scratch_ = Vector::Zero(cells_);
+  vdx_ = vdy_ = scratch_ = Vector::Zero(cells_);
 }
 
-void FlowStep::displace(Index which, VectorRef velocity, Vector& dx, Vector& dy) {
-  const VectorRef u = velocity.head(cells_), v = velocity.tail(cells_);
+// Calls visit(rows): rows(j)(i) is of four points, from the i-th of row j on.
+template <class Visit>
+void FlowStep::displaced(Index which, VectorRef velocity, const Visit& visit) const {
   const Index N = options_.N;
   const Real unit = options_.dt / options_.dx(), half = unit / 2;  // cells a step
-  if (options_.arrangement == Arrangement::collocated) {
-    dx = unit * u;
-    dy = unit * v;
-  } else if (which == kU) {
-    dx = unit * u;
-    weigh_square(N, unit / 4, Side::left, Side::above, v, dy);
-  } else if (which == kV) {
-    weigh_square(N, unit / 4, Side::right, Side::below, u, dx);
-    dy = unit * v;
-  } else {
-    weigh(N, half, half, Side::right, u, dx);
-    weigh(N, half, half, Side::above, v, dy);
-  }
+  const Real *u = velocity.data(), *v = u + cells_;
+  const auto above = [N](Index j) { return N * (j + 1 < N ? j + 1 : 0); };
+  const auto below = [N](Index j) { return N * (j > 0 ? j - 1 : N - 1); };
+  if (options_.arrangement == Arrangement::collocated)
+    visit([=](Index j) {
+      return [=, x = u + N * j, y = v + N * j](Index i) {
+        return Displacement{unit * four_at(x + i), unit * four_at(y + i)};
+      };
+    });
+  else if (which == kU)
+    visit([=](Index j) {
+      return [=, x = u + N * j, y = v + N * j, y2 = v + above(j)](Index i) {
+        const Four own = four_at(y + i) + four_at(y2 + i);
+        const Four beside = left_of(y, i, N) + left_of(y2, i, N);
+        return Displacement{unit * four_at(x + i), unit / 4 * (own + beside)};
+      };
+    });
+  else if (which == kV)
+    visit([=](Index j) {
+      return [=, x = u + N * j, x2 = u + below(j), y = v + N * j](Index i) {
+        const Four own = four_at(x + i) + four_at(x2 + i);
+        const Four beside = right_of(x, i, N) + right_of(x2, i, N);
+        return Displacement{unit / 4 * (own + beside), unit * four_at(y + i)};
+      };
+    });
+  else
+    visit([=](Index j) {
+      return [=, x = u + N * j, y = v + N * j, y2 = v + above(j)](Index i) {
+        const Four beside = right_of(x, i, N);
+        return Displacement{half * four_at(x + i) + half * beside,
+                            half * four_at(y + i) + half * four_at(y2 + i)};
+      };
+    });
+}
+
+void FlowStep::trace(Index which, VectorRef velocity) {
+  displaced(which, velocity, [this](const auto& rows) { advection_.trace(rows); });
+}
+
+void FlowStep::displace(Index which, VectorRef velocity, Vector& dx, Vector& dy) const {
+  const LatticeMargin lattice(options_.N);
+  displaced(which, velocity, [&](const auto& rows) {
+    for (Index j = 0; j < options_.N; ++j)
+      lattice.by_fours_of_row(j, [&, row = rows(j)](Index i, Index p) {
+        const auto [x, y] = row(i);
+        put(x, dx.data() + p);
+        put(y, dy.data() + p);
+      });
+  });
 }
 
 void FlowStep::add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut velocity) {
@@ -89,8 +126,8 @@ void FlowStep::add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut 
 void FlowStep::forward(VectorRef state, VectorOut next, VectorOut projected) {
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   for (const Index which : {kU, kV}) {
-    displace(which, state.head(2 * cells_), dx_, dy_);
-    advection_.value(part(state, which, cells_), dx_, dy_, part_of(projected, which, cells_));
+    trace(which, state.head(2 * cells_));
+    advection_.value(part(state, which, cells_), part_of(projected, which, cells_));
   }
   projection_.apply(projected.head(cells_), projected.tail(cells_));
   for (const Index which : {kU, kV}) {
@@ -99,18 +136,18 @@ void FlowStep::forward(VectorRef state, VectorOut next, VectorOut projected) {
     component = (options_.rescales ? Rescaling(before, after).factor : 1) * after;
     if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
   }
-  displace(kMarker, next.head(2 * cells_), dx_, dy_);
-  advection_.value(state.tail(cells_), dx_, dy_, next.tail(cells_));
+  trace(kMarker, next.head(2 * cells_));
+  advection_.value(state.tail(cells_), next.tail(cells_));
 }
 
 void FlowStep::pushforward(VectorRef state, VectorRef next, VectorRef projected, VectorRef tangent,
                            VectorOut out) {
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   for (const Index which : {kU, kV}) {
-    displace(which, state.head(2 * cells_), dx_, dy_);
+    trace(which, state.head(2 * cells_));
     displace(which, tangent.head(2 * cells_), vdx_, vdy_);
-    advection_.pushforward(part(state, which, cells_), dx_, dy_, part(tangent, which, cells_), vdx_,
-                           vdy_, part_of(out, which, cells_));
+    advection_.pushforward(part(state, which, cells_), part(tangent, which, cells_), vdx_, vdy_,
+                           part_of(out, which, cells_));
   }
   projection_.apply(out.head(cells_), out.segment(cells_, cells_));
   for (const Index which : {kU, kV}) {
@@ -121,16 +158,15 @@ void FlowStep::pushforward(VectorRef state, VectorRef next, VectorRef projected,
           .pushforward(own(state), own(projected), own(tangent), component);
     if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
   }
-  displace(kMarker, next.head(2 * cells_), dx_, dy_);
+  trace(kMarker, next.head(2 * cells_));
   displace(kMarker, out.head(2 * cells_), vdx_, vdy_);
-  advection_.pushforward(state.tail(cells_), dx_, dy_, tangent.tail(cells_), vdx_, vdy_,
-                         out.tail(cells_));
+  advection_.pushforward(state.tail(cells_), tangent.tail(cells_), vdx_, vdy_, out.tail(cells_));
 }
 
 void FlowStep::add_choices(VectorRef state, VectorRef next, PieceDigest& digest) {
   for (const Index which : {kU, kV, kMarker}) {
-    displace(which, (which == kMarker ? next : state).head(2 * cells_), dx_, dy_);
-    advection_.add_choices(part(state, which, cells_), dx_, dy_, digest);
+    trace(which, (which == kMarker ? next : state).head(2 * cells_));
+    advection_.add_choices(part(state, which, cells_), digest);
   }
 }
 
@@ -138,10 +174,10 @@ void FlowStep::pullback(VectorRef state, VectorRef next, VectorRef projected, Ve
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   before_.setZero();
   const auto add_pulled = [&](Index which, VectorRef velocity, VectorOut of_velocity) {
-    displace(which, velocity, dx_, dy_);
+    trace(which, velocity);
     vdx_.setZero();
     vdy_.setZero();
-    advection_.pullback(part(state, which, cells_), dx_, dy_, part(cotangent, which, cells_),
+    advection_.pullback(part(state, which, cells_), part(cotangent, which, cells_),
                         part_of(before_, which, cells_), vdx_, vdy_);
     add_displaced(which, vdx_, vdy_, of_velocity);
   };

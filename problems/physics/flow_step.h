@@ -47,16 +47,20 @@ class FlowStep {
   Projection& projection() { return projection_; }
 
  private:
-  // The displacements of one of the three quantities, from the velocity (2N²), and the transpose.
-  void displace(Index which, VectorRef velocity, Vector& dx, Vector& dy);
+  // The displacements of one of the three quantities, from the velocity (2N²): as they are needed,
+  // told to the advection, or stored; and the transpose.
+  template <class Visit>
+  void displaced(Index which, VectorRef velocity, const Visit& visit) const;
+  void trace(Index which, VectorRef velocity);
+  void displace(Index which, VectorRef velocity, Vector& dx, Vector& dy) const;
   void add_displaced(Index which, VectorRef dx, VectorRef dy, VectorOut velocity);
 
   FlowOptions options_;
   Index cells_;  // N²
   Advection advection_;
   Projection projection_;
-  Vector dx_, dy_, vdx_, vdy_, scratch_;  // (N²)
-  Vector before_;                         // (3N²) the cotangent of the state, as it is gathered
+  Vector vdx_, vdy_, scratch_;  // (N²)
+  Vector before_;               // (3N²) the cotangent of the state, as it is gathered
 };
 
 }  // namespace isoline::problems

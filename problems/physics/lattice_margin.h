@@ -22,9 +22,16 @@ class LatticeMargin {
   // the one to the right. Leaves them 0.
   void settle(Vector& pairs, Vector& padded) const;
 
-  // visit(p, here, seen): four points of a row, the first of them the p-th of all and at `here` in
-  // the padded lattice. Where four do not go into a row its last four are visited at its end, of
-  // which so many have been seen before.
+  // visit(i, p): four points of a row from its i-th on, the p-th of all. Where four do not go into
+  // a row its last four are visited at its end.
+  template <class Visit>
+  void by_fours_of_row(Index j, const Visit& visit) const {
+    const Index N = N_, p = N * j;
+    for (Index i = 0; i + 4 <= N; i += 4) visit(i, p + i);
+    if (N % 4 != 0) visit(N - 4, p + N - 4);
+  }
+  // visit(p, here, seen): of all rows, the first of the four at `here` in the padded lattice. So
+  // many of them have been seen before.
   template <class Visit>
   void by_fours(const Visit& visit) const {
     const Index N = N_;

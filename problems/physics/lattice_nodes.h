@@ -17,6 +17,19 @@ inline Four four_at(const Real* from) { return *reinterpret_cast<const LooseFour
 inline void put(const Four& values, Real* to) { *reinterpret_cast<LooseFour*>(to) = values; }
 inline void add(const Four& values, Real* to) { *reinterpret_cast<LooseFour*>(to) += values; }
 
+// How far four points move.
+struct Displacement {
+  Four x, y;
+};
+
+// Beside four points of a periodic row, from its i-th on.
+inline Four left_of(const Real* row, Index i, Index N) {
+  return i > 0 ? four_at(row + i - 1) : Four{row[N - 1], row[0], row[1], row[2]};
+}
+inline Four right_of(const Real* row, Index i, Index N) {
+  return i + 4 < N ? four_at(row + i + 1) : Four{row[N - 3], row[N - 2], row[N - 1], row[0]};
+}
+
 // The four nodes around a point, or around four points, at distances a and b from the first.
 template <class T>
 struct Nodes {
@@ -47,13 +60,22 @@ inline Nodes<Real> nodes_at(const Real* q, Index stride) {
   return {q[0], q[1], q[stride], q[stride + 1]};
 }
 
-// Two of a row lie side by side: eight pairs, and their transpose.
-inline Nodes<Four> nodes_at(const Real* q, const int* node, Index stride) {
+// Two pairs as one vector. Of halves that are integers GCC makes one load and one insertion, of
+// pairs of doubles two loads and an insertion.
+inline Four pairs_at(const Real* left, const Real* right) {
+  __extension__ using Half = __int128;
+  using LooseHalf __attribute__((aligned(8), may_alias)) = Half;
+  using Halves = Half __attribute__((vector_size(32)));
+  return reinterpret_cast<Four>(Halves{*reinterpret_cast<const LooseHalf*>(left),
+                                       *reinterpret_cast<const LooseHalf*>(right)});
+}
+
+// Around four points that lie side by side from q on, each with its own way to the first of its
+// nodes. Two of a row lie side by side: eight pairs, and their transpose.
+inline Nodes<Four> nodes_at(const Real* q, const int* way, Index stride) {
   const auto turned = [&](const Real* row, Four& left, Four& right) {
-    const Four even =
-        __builtin_shufflevector(pair_at(row + node[0]), pair_at(row + node[2]), 0, 1, 2, 3);
-    const Four odd =
-        __builtin_shufflevector(pair_at(row + node[1]), pair_at(row + node[3]), 0, 1, 2, 3);
+    const Four even = pairs_at(row + way[0], row + way[2] + 2);
+    const Four odd = pairs_at(row + way[1] + 1, row + way[3] + 3);
     left = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
     right = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
   };
@@ -65,26 +87,26 @@ inline Nodes<Four> nodes_at(const Real* q, const int* node, Index stride) {
 
 // Adds to the pairs of four nodes: the n-th is of the n-th node and the one to its right. These two
 // are inline, for a call would spill all registers.
-[[gnu::always_inline]] inline void add_pairs(const Four& left, const Four& right, const int* node,
+[[gnu::always_inline]] inline void add_pairs(const Four& left, const Four& right, const int* way,
                                              Real* pairs) {
   const Four even = __builtin_shufflevector(left, right, 0, 4, 2, 6);
   const Four odd = __builtin_shufflevector(left, right, 1, 5, 3, 7);
   const auto add_pair = [pairs](Index n, const Pair& shares) {
     *reinterpret_cast<LoosePair*>(pairs + 2 * n) += shares;
   };
-  add_pair(node[0], __builtin_shufflevector(even, even, 0, 1));
-  add_pair(node[1], __builtin_shufflevector(odd, odd, 0, 1));
-  add_pair(node[2], __builtin_shufflevector(even, even, 2, 3));
-  add_pair(node[3], __builtin_shufflevector(odd, odd, 2, 3));
+  add_pair(way[0], __builtin_shufflevector(even, even, 0, 1));
+  add_pair(way[1] + 1, __builtin_shufflevector(odd, odd, 0, 1));
+  add_pair(way[2] + 2, __builtin_shufflevector(even, even, 2, 3));
+  add_pair(way[3] + 3, __builtin_shufflevector(odd, odd, 2, 3));
 }
 
 // Adds the transpose of Nodes::mean for four points. Were the nodes themselves added to two at a
 // time, a load would often hang on two stores, one node off: pairs have a place each.
 [[gnu::always_inline]] inline void spread(const Four& u, const Four& a, const Four& b,
-                                          const int* node, Index stride, Real* pairs) {
+                                          const int* way, Index stride, Real* pairs) {
   const Four lower = (1 - b) * u, upper = b * u;
-  add_pairs((1 - a) * lower, a * lower, node, pairs);
-  add_pairs((1 - a) * upper, a * upper, node, pairs + 2 * stride);
+  add_pairs((1 - a) * lower, a * lower, way, pairs);
+  add_pairs((1 - a) * upper, a * upper, way, pairs + 2 * stride);
 }
 
 inline Four floor_of(const Four& x) {
@@ -93,9 +115,21 @@ inline Four floor_of(const Four& x) {
   return four_at(whole.data());
 }
 
-inline void put_nodes(const Four& nodes, int* to) {
-  using LooseNodes = int __attribute__((vector_size(16), aligned(4), may_alias));
-  *reinterpret_cast<LooseNodes*>(to) = __builtin_convertvector(nodes, LooseNodes);
+inline Four ceiling_of(const Four& x) {
+  const Eigen::Map<const Eigen::Array4d> each(reinterpret_cast<const Real*>(&x));
+  const Eigen::Array4d whole = each.ceil();
+  return four_at(whole.data());
+}
+
+inline Four size_of(const Four& x) {
+  const Eigen::Map<const Eigen::Array4d> each(reinterpret_cast<const Real*>(&x));
+  const Eigen::Array4d size = each.abs();
+  return four_at(size.data());
+}
+
+inline void put_ways(const Four& ways, int* to) {
+  using LooseWays = int __attribute__((vector_size(16), aligned(4), may_alias));
+  *reinterpret_cast<LooseWays*>(to) = __builtin_convertvector(ways, LooseWays);
 }
 
 }  // namespace isoline::problems

@@ -35,7 +35,6 @@ void sweep(Index N, Real a, Real b, Side side, const Real* __restrict q, Real* _
   }
 }
 
-template <bool adds>
 void sweep_squares(Index N, Real a, Side across, Side along, const Real* __restrict q,
                    Real* __restrict out) {
   const Index step = across == Side::right ? 1 : -1, last = step > 0 ? N - 1 : 0;
@@ -45,18 +44,15 @@ void sweep_squares(Index N, Real a, Side across, Side along, const Real* __restr
     Real* to = out + N * j;
     const auto sum = [=](Index i) { return own[i] + other[i]; };
     const Index first = step > 0 ? 0 : 1;
-    for (Index i = first; i < first + N - 1; ++i) put<adds>(a * (sum(i) + sum(i + step)), to[i]);
-    put<adds>(a * (sum(last) + sum(N - 1 - last)), to[last]);
+    for (Index i = first; i < first + N - 1; ++i) to[i] += a * (sum(i) + sum(i + step));
+    to[last] += a * (sum(last) + sum(N - 1 - last));
   }
 }
 
 }  // namespace
 
-void weigh_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out) {
-  sweep_squares<false>(N, a, across, along, q.data(), out.data());
-}
 void add_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out) {
-  sweep_squares<true>(N, a, across, along, q.data(), out.data());
+  sweep_squares(N, a, across, along, q.data(), out.data());
 }
 void weigh(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out) {
   sweep<false>(N, a, b, side, q.data(), out.data());

@@ -17,9 +17,8 @@ constexpr Side opposite(Side side) {
 void weigh(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out);
 void add_weighed(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out);
 
-// out = a times the sum of the four in the square that lies towards a side across, left or right,
-// and one along, below or above; or out += that.
-void weigh_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out);
+// out += a times the sum of the four in the square that lies towards a side across, left or right,
+// and one along, below or above.
 void add_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out);
 
 }  // namespace isoline::problems
