@@ -71,7 +71,7 @@ void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const R
 }
 
 std::vector<std::size_t> chosen_frames(const Trace::Frames& frames) {
-  const std::vector<std::size_t> taken = taken_places(frames);
+  std::vector<std::size_t> taken = taken_places(frames);
   if (taken.size() <= kMostFrames) return taken;
   const auto depth_of = [&](std::size_t i) { return depth(frames.iteration[taken[i]]); };
   std::vector<std::size_t> chosen = {taken.front()};

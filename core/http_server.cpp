@@ -159,7 +159,8 @@ class HttpServer::Connections final : public httplib::Server {
   }
 
   bool is_asked(BoundedSocket& socket) const {
-    for (double waited = 0; waited < kKeptSeconds && !is_over_; waited += kStopSeconds)
+    constexpr int kLooks = static_cast<int>(kKeptSeconds / kStopSeconds);
+    for (int look = 0; look < kLooks && !is_over_; ++look)
       if (socket.can_be_read(kStopSeconds)) return true;
     return false;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -53,8 +54,8 @@ Real real_of(const Json& value) {
   if (value.is_number()) return value.get<Real>();
   const std::string text = value.is_string() ? value.get<std::string>() : "";
   if (text == "nan") return std::nan("");
-  if (text == "inf") return INFINITY;
-  if (text == "-inf") return -INFINITY;
+  if (text == "inf") return std::numeric_limits<Real>::infinity();
+  if (text == "-inf") return -std::numeric_limits<Real>::infinity();
   throw UsageError(fmt::format("expected a number, got {}", json_text(value)));
 }
 

@@ -86,16 +86,15 @@ void all_columns(Panel<Scalar> A, Panel<Scalar> B, Index rows, Index width, Inde
   constexpr Index kDeepest = 256;
   for (Index p = 0; p < std::max<Index>(depth, 1); p += kDeepest) {
     const Index deep = std::min(kDeepest, depth - p);
-    Index c = 0;
-    const auto next = [&]<int Columns>() {
+    const auto columns_from = [&]<int Columns>(Index c) {
       const Panel<Scalar> part{B.numbers + p * B.along + c * B.across, B.along, B.across};
       columns<Columns>({A.numbers + p * A.along, A.along, A.across}, part, rows, deep,
                        {C.numbers + c * C.stride, C.stride, C.keep});
-      c += Columns;
     };
-    while (c + kColumns <= width) next.template operator()<kColumns>();
-    while (c + 2 <= width) next.template operator()<2>();
-    if (c < width) next.template operator()<1>();
+    Index c = 0;
+    for (; c + kColumns <= width; c += kColumns) columns_from.template operator()<kColumns>(c);
+    for (; c + 2 <= width; c += 2) columns_from.template operator()<2>(c);
+    if (c < width) columns_from.template operator()<1>(c);
     C.keep = 1;
   }
 }

@@ -34,7 +34,7 @@ std::unique_ptr<BurgersFlow> flow_of(const Options& o) {
 // x*: four waves of random phase, the n-th of the size 1/n, the largest speed 1. (N)
 Vector random_state(Index N, RandomStream& stream) {
   constexpr int kWaves = 4;
-  const Vector coefficients = stream.normal_vector(2 * kWaves);
+  const Vector coefficients = stream.normal_vector(Index{2} * kWaves);
   Vector state = Vector::Zero(N);
   for (int n = 1; n <= kWaves; ++n)
     for (Index j = 0; j < N; ++j) {

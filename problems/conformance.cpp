@@ -251,7 +251,8 @@ class Examination {
       if (now > floor) slopes.push_back(std::log2(previous / now));
       previous = now;
     }
-    std::nth_element(slopes.begin(), slopes.begin() + slopes.size() / 2, slopes.end());
+    std::nth_element(slopes.begin(), slopes.begin() + static_cast<Index>(slopes.size() / 2),
+                     slopes.end());
     return slopes.empty() ? 2 : slopes[slopes.size() / 2];
   }
   static bool same_bits(const Matrix& a, const Matrix& b) {

@@ -110,7 +110,8 @@ constexpr Real kNoiseFloor = 1e-8;
 // The error in x that the damped inverse leaves of exact data: rounding has eaten the modes that it
 // holds back.
 template <class Error>
-std::function<Real(const Batch&)> floor_of(std::shared_ptr<const Heat> physics, Error error) {
+std::function<Real(const Batch&)> floor_of(const std::shared_ptr<const Heat>& physics,
+                                           const Error& error) {
   return [physics, error](const Batch& batch) {
     const Matrix nothing = Matrix::Zero(physics->inputs(), batch.samples());
     Matrix x = nothing;

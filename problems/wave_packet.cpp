@@ -98,7 +98,7 @@ class WavePacket final : public DensePhysics {
   bool fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const;
 
  private:
-  static constexpr int kSteps = 5;
+  static constexpr Index kSteps = 5;
 };
 
 bool WavePacket::fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const {
@@ -138,7 +138,7 @@ struct Signal {
   Vector observed;        // y*, (m)
 
   Signal(const WavePacket& physics, Real noise, RandomStream& stream) : observed(kTimes) {
-    for (std::size_t i = 0; i < 4; ++i) truth[i] = stream.uniform(kLeast[i], kMost[i]);
+    for (Index i = 0; i < 4; ++i) truth[i] = stream.uniform(kLeast[i], kMost[i]);
     physics.value(truth, observed);
     observed += noise * stream.normal_vector(kTimes);
   }

@@ -46,7 +46,8 @@ class Contents {
     const fs::file_status status = fs::symlink_status(folder_ / name, unknown);
     if (!fs::exists(status) || name.ends_with(".tmp")) return;
     if (fs::is_directory(status))
-      for (const std::string& inside : names_in(folder_ / name)) add(name + "/" + inside);
+      for (const std::string& inside : names_in(folder_ / name))
+        add((fs::path(name) / inside).string());
     else
       (fs::is_regular_file(status) ? names_ : left_out_).push_back(name);
   }

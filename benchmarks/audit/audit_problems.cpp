@@ -16,7 +16,6 @@ using problems::Draw;
 using problems::HalfSquared;
 using problems::Inverse;
 using problems::Loss;
-using problems::Point;
 namespace {
 
 class Affine final : public Link {

@@ -53,7 +53,7 @@ Path Subject::run(const Problem& problem, std::int64_t iterations) const {
     Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle(), *trace);
     Checkpoint checkpoint;
     drive(recorded, meter, problem.start(), checkpoint);
-  } catch (const std::exception&) {
+  } catch (const std::exception&) {  // what it did until then is judged
   }
   path.counts = trace->last.counts;
   path.iterations = trace->last.iteration;

@@ -8,9 +8,9 @@
 #include <deque>
 
 #include "benchmarks/cli/notes.h"
-#include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verb_arguments.h"
+#include "benchmarks/cli/verb_table.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/suggest.h"
@@ -164,17 +164,6 @@ std::string sentence_on(const CLI::App& verb, const std::string& unexpected) {
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
 
-// The libraries that a verb is given, where it takes any.
-template <class Arguments>
-std::vector<std::string> plugins_of(const Arguments& given) {
-  if constexpr (requires { given.plugins; })
-    return given.plugins;
-  else if constexpr (requires { given.run.plugins; })
-    return given.run.plugins;
-  else
-    return {};
-}
-
 template <class Kind>
 bool is_a(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
@@ -185,26 +174,12 @@ class CommandLine {
   // `runs`: or only reads.
   CommandLine(const std::string& program, Session& session, bool runs);
   int read(int count, char** arguments);  // and runs; the exit code
-  const RunArguments& run() const { return *run_; }
+  const RunArguments& run() const { return *table_.run; }
 
  private:
-  template <class Arguments>
-  Arguments& add(const char* name, const char* about, int (*verb)(const Arguments&, Session&)) {
-    const auto given = std::make_shared<Arguments>();
-    CLI::App& declared = *app_.add_subcommand(name, about);
-    ParsedVerb parsed(declared);
-    declare(parsed, *given);
-    declared.footer(notes_of(name));
-    declared.callback([this, given, verb] {
-      if (!runs_) return;
-      session_.set_plugins(plugins_of(*given));
-      exit_code_ = verb(*given, session_);
-    });
-    return *given;
-  }
-  void add_verbs_on_results();
-  void add_verbs_on_components();
-  void add_verbs_on_the_program();
+  void add(const Verb& verb);
+  void add_help();
+  void add_version();
   void require_verb(const std::string& name) const;
   std::vector<std::string> verbs() const;
   std::string help_text() const;
@@ -213,8 +188,8 @@ class CommandLine {
   const std::string program_;
   Session& session_;
   const bool runs_;
+  const VerbTable table_ = verb_table();
   CLI::App app_;
-  const RunArguments* run_ = nullptr;
   std::string helped_;  // the verb that help is wanted of; empty: of the program
   int exit_code_ = kGood;
 };
@@ -225,52 +200,24 @@ CommandLine::CommandLine(const std::string& program, Session& session, bool runs
   app_.set_version_flag("--version", "isoline " + version());
   app_.require_subcommand(1);
   app_.get_formatter()->label("SUBCOMMAND", "VERB");
-  add_verbs_on_results();
-  add_verbs_on_components();
-  add_verbs_on_the_program();
+  for (const Verb& verb : table_.verbs) add(verb);
+  add_help();
+  add_version();
+  table_.completion->verbs = verbs();
   for (CLI::App* verb : app_.get_subcommands({})) verb->group("Verbs");
 }
 
-void CommandLine::add_verbs_on_results() {
-  run_ = &add("run", "Run a suite or a matrix of your own; what is done already is not repeated",
-              run_verb);
-  add("plan", "Tell what a run would do, how long it may take, and how it divides into shards",
-      plan_verb);
-  const std::string about = "Write " + format_names();
-  add("report", about.c_str(), report_verb);
-  add("compare", "Compare two results and list regressions", compare_verb);
-  add("baseline", "Keep what later results are compared with, as one small file", baseline_verb);
-  add("replay", "Run the cell of a record again, and check the two for equality bit for bit",
-      replay_verb);
-  add("merge", "Unite result folders into a new one", merge_verb);
-  add("submit", "Hand a run to a cluster's scheduler, as two jobs", submit_verb);
-  add("status", "Tell how far a run is, while it goes on", status_verb);
-  add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
-  add("claims", "Judge what papers claim by runs; what is missing is run first", claims_verb);
-  add("export", "Write curves as CSV, as data of COCO, or as metrics of Bencher", export_verb);
-  add("import", "Take a curve that others computed as a record, by its own claims", import_verb);
-  add("archive", "Pack results into one file that others can cite and read", archive_verb);
+void CommandLine::add(const Verb& verb) {
+  CLI::App& declared = *app_.add_subcommand(verb.name, verb.about);
+  ParsedVerb parsed(declared);
+  verb.declare(parsed);
+  declared.footer(notes_of(verb.name));
+  declared.callback([this, &verb] {
+    if (runs_) exit_code_ = verb.run(session_);
+  });
 }
 
-void CommandLine::add_verbs_on_components() {
-  add("list", "List the problems, networks, optimizers and suites", list_verb);
-  add("describe", "Show the formula, options, needs and source of a component", describe_verb);
-  add("check", "Check a problem's derivatives, adjoint and inverse against each other", check_verb);
-  add("audit", "Measure optimizers' scaling, invariance, order, consistency and oracles",
-      audit_verb);
-  add("new", "Write the file that a problem or optimizer of your own starts from", new_verb);
-  add("validate", "Validate records, suites and all other JSON files of Isoline by their schemas",
-      validate_verb);
-  add("tune", "Choose one option of each method for each problem, with an equal budget for all",
-      tune_verb);
-  add("train", "Train a network on a learning problem and write it to a file", train_verb);
-  add("infer", "Apply a network that `isoline train` wrote to observations", infer_verb);
-  add("serve", "Offer problems as models of UM-Bridge, to optimizers of any language", serve_verb);
-}
-
-void CommandLine::add_verbs_on_the_program() {
-  const auto completion =
-      &add("completion", "Print the completion script of a shell", completion_verb);
+void CommandLine::add_help() {
   CLI::App& help = *app_.add_subcommand("help", "Print the help of the program or of a verb");
   option(help, "VERB", helped_, "The verb (default: the program)");
   help.footer(notes_of("help"));
@@ -278,12 +225,14 @@ void CommandLine::add_verbs_on_the_program() {
     if (!helped_.empty()) require_verb(helped_);
     if (runs_) say(stdout, help_text());
   });
+}
+
+void CommandLine::add_version() {
   CLI::App& version_of = *app_.add_subcommand("version", "Print the version");
   version_of.footer(notes_of("version"));
   version_of.callback([this] {
     if (runs_) say(stdout, fmt::format("isoline {}\n", version()));
   });
-  completion->verbs = verbs();
 }
 
 std::vector<std::string> CommandLine::verbs() const {

@@ -55,6 +55,12 @@ void open_page(const fs::path& page) {
 
 }  // namespace
 
+std::string format_names() {
+  std::vector<std::string> names;
+  for (const reports::Format& format : reports::kFormats) names.emplace_back(format.file);
+  return reports::joined(names);
+}
+
 int report_verb(const ReportArguments& given, Session& session) {
   const OpenedResults results(given.folders);
   Study study = read_study(results.folders(), on_terminal("reading records"));

@@ -7,7 +7,6 @@
 
 #include "benchmarks/cli/session.h"
 #include "core/text.h"
-#include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
 
@@ -22,12 +21,6 @@ using reports::write_report;
 
 std::vector<Judgement> judged(const std::vector<Claim>& claims, const std::vector<Record>& runs) {
   return judge(json_of(claims), runs);
-}
-
-std::string format_names() {
-  std::vector<std::string> names;
-  for (const reports::Format& format : reports::kFormats) names.emplace_back(format.file);
-  return reports::joined(names);
 }
 
 void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,

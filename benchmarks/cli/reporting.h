@@ -21,8 +21,6 @@ struct Reporting {
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,
                      Session& session, const Reporting& how = {});
 
-std::string format_names();  // "index.html, report.csv, …"
-
 std::vector<reports::Judgement> judged(const std::vector<Claim>& claims,
                                        const std::vector<Record>& runs);
 

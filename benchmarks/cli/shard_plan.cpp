@@ -10,7 +10,7 @@ namespace isoline::benchmarks {
 namespace fs = std::filesystem;
 
 Preview foreseen(const Undertaking& all, const RunArguments& given,
-                 const std::vector<std::string>& earlier, std::vector<fs::path> folders,
+                 const std::vector<std::string>& earlier, const std::vector<fs::path>& folders,
                  Session& session) {
   require_sound(session.catalog(), all.requests);
   std::vector<fs::path> timed = result_folders(all.folder);

@@ -16,7 +16,7 @@ class Session;
 // The preview of an undertaking, by the records below its folder and in other result folders.
 Preview foreseen(const Undertaking& all, const RunArguments& given,
                  const std::vector<std::string>& earlier,
-                 std::vector<std::filesystem::path> folders, Session& session);
+                 const std::vector<std::filesystem::path>& folders, Session& session);
 
 struct ShardPlan {
   Weights weights = Weights::written;

@@ -43,6 +43,7 @@ struct ReportArguments {
   bool opens = false;
 };
 int report_verb(const ReportArguments& given, Session& session);
+std::string format_names();  // of what it writes: "index.html, report.csv, …"
 
 struct CompareArguments {
   std::string before, after;

@@ -42,7 +42,7 @@ std::string fields_violation(const Json& record, const std::filesystem::path& fi
     const Json& fields = record.at("fields");
     require_sound({.iterations = fields.at("iterations"), .shape = fields.at("shape")});
     const std::string bytes = read_text(field_path(file), kMostRecordBytes);
-    if (digest(bytes) == fields.at("digest")) return "";
+    if (fields.at("digest") == digest(bytes)) return "";
     return fmt::format("{} beside it is not the file of fields that it names",
                        field_path(file).filename().string());
   } catch (const UsageError& error) {

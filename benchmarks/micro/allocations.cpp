@@ -10,7 +10,9 @@ std::int64_t calls = 0;  // plain: the program has one thread
 
 #ifndef ISOLINE_SANITIZE
 extern "C" {
-void* __libc_malloc(std::size_t size);  // glibc's own, under a second name
+// glibc's own, under a second name that is not ours to choose.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
+void* __libc_malloc(std::size_t size);
 
 __attribute__((visibility("default"))) void* malloc(std::size_t size) noexcept {
   ++calls;

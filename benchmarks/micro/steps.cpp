@@ -1,5 +1,7 @@
 // One step of each method written here over the bare linear algebra that it needs.
 
+#include <fmt/format.h>
+
 #include "benchmarks/micro/bare_steps.h"
 #include "benchmarks/micro/pairs.h"
 #include "benchmarks/micro/trial.h"
@@ -56,7 +58,7 @@ void register_steps() {
       if (!is_written_here(entry.family)) continue;
       if (!why_inapplicable(entry, options, problem).empty()) continue;
       const int pairs = factorizes(needs(name, problem)) ? 41 : 401;
-      register_pair("step/" + name + "/" + problem_spec, pairs, {},
+      register_pair(fmt::format("step/{}/{}", name, problem_spec), pairs, {},
                     [name = name, problem_spec] { return make(name, problem_spec); });
     }
   }

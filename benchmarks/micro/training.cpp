@@ -56,9 +56,9 @@ Problem toy() {
   Matrix target(2, kSamples);
   target << (6 * t.array()).sin().matrix(), (9 * t.array()).cos().matrix();
   RandomStream stream(0, "toy", "network");
-  Vector start = network->start(stream);
+  const Vector start = network->start(stream);
   return Problem({.physics = std::make_unique<Unchanged>(),
-                  .start = std::move(start),
+                  .start = start,
                   .target = target,
                   .network = std::move(network),
                   .input = t,

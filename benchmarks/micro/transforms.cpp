@@ -23,7 +23,7 @@ struct BareTransforms {
   int lines = 1;
 
   BareTransforms(int N, Bare kind)
-      : grid(Vector::Ones(N * N)), spectrum(Eigen::VectorXcd::Zero((N / 2 + 2) * N)) {
+      : grid(Vector::Ones(Index{N} * N)), spectrum(Eigen::VectorXcd::Zero((Index{N} / 2 + 2) * N)) {
     constexpr unsigned kThere = FFTW_ESTIMATE | FFTW_PRESERVE_INPUT;
     auto* const complex = reinterpret_cast<fftw_complex*>(spectrum.data());
     auto* const real = reinterpret_cast<double*>(spectrum.data());

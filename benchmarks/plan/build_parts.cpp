@@ -59,7 +59,8 @@ BuildParts build_parts(const Request& request) {
 
 std::string build_digest(const Request& request) {
   std::string text;
-  for (const auto& [part, one] : build_parts(request)) text += part + " " + one + "\n";
+  for (const auto& [part, one] : build_parts(request))
+    text.append(part).append(" ").append(one).append("\n");
   return digest(text);
 }
 

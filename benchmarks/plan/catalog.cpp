@@ -29,7 +29,7 @@ std::string asked_spec(const OptionTable& table, const std::string& name, const 
 }
 
 // A changed script is another build.
-std::string with_foreign(const Component& component, std::string sources) {
+std::string with_foreign(const Component& component, const std::string& sources) {
   return component.foreign ? digest(sources + digest_of(*component.foreign)) : sources;
 }
 
@@ -42,7 +42,7 @@ Component complete(const Entry& entry, const OptionValues& given) {
                       .is_learned = asks_to_learn(options),
                       .sources = source_digest(entry.file)};
   if (entry.introduce) component.foreign = entry.introduce(options);
-  component.sources = with_foreign(component, std::move(component.sources));
+  component.sources = with_foreign(component, component.sources);
   component.options = std::move(options);
   return component;
 }
@@ -50,9 +50,8 @@ Component complete(const Entry& entry, const OptionValues& given) {
 // Of a method and what steps inside it.
 std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
                       const OptionValues& options, bool is_learning) {
-  const std::string own = source_digest(entry.file);
-  if (!entry.inside) return own;
-  std::string all = own;
+  std::string all = source_digest(entry.file);
+  if (!entry.inside) return all;
   for (const std::string& spec : entry.inside(options, is_learning))
     all += source_digest(catalog.optimizers.at(parse_spec(spec).name).file);
   return digest(all);

@@ -61,7 +61,7 @@ void answer_by(const std::function<std::string()>& work, int descriptor) {
 
 // Nothing where the child left, or was ended, before its answer was whole.
 std::optional<IsolatedText> read_answer(std::string bytes) {
-  Heading heading{};
+  Heading heading{.kind = Heading::Kind::thrown, .size = 0};
   if (bytes.size() < sizeof heading) return std::nullopt;
   std::memcpy(&heading, bytes.data(), sizeof heading);
   bytes.erase(0, sizeof heading);

@@ -103,7 +103,7 @@ std::string Judges::end(Judge& judge) {
 
 // All that it was asked goes to a new judge; but a point that two have died of, or that was waited
 // for too long, is answered so.
-void Judges::lose(Judge& judge, std::string reason, std::vector<Verdict>& verdicts) {
+void Judges::lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts) {
   const std::string ended = end(judge);
   std::deque<Question> open;
   open.swap(judge.open);

@@ -67,7 +67,7 @@ class Judges {
   void start(Judge& judge, const Component& problem);
   void send(Judge& judge, const Question& question);
   std::string end(Judge& judge);  // how it ended
-  void lose(Judge& judge, std::string reason, std::vector<Verdict>& verdicts);
+  void lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts);
   void collect(Judge& judge, std::vector<Verdict>& verdicts);
 
   const Catalog& catalog_;

@@ -167,7 +167,7 @@ std::vector<char> cached_in(const std::vector<std::filesystem::path>& folders,
   for (const std::filesystem::path& folder : folders) {
     const Kept kept(folder, options);
     share(requests.size(), [&](std::size_t i) {
-      if (is_cached[i] == 0) is_cached[i] = kept.has(requests[i]);
+      if (is_cached[i] == 0) is_cached[i] = kept.has(requests[i]) ? 1 : 0;
     });
   }
   return is_cached;

@@ -110,7 +110,7 @@ double seconds_of(const Problem& problem, double expected, const std::function<v
 }
 
 Real at_share(std::vector<Real>& values, Real share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<Real>(values.size() - 1) + 0.5);
+  const auto at = std::lround(share * static_cast<Real>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + at);
   return values[static_cast<std::size_t>(at)];
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -46,11 +47,18 @@ void append_numbers(const std::string& text, std::vector<pid_t>& numbers) {
   }
 }
 
+// 0 where a name of /proc is no process.
+pid_t number_of(const std::string& name) {
+  pid_t process = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
+  return error == std::errc() && end == name.data() + name.size() ? process : 0;
+}
+
 std::vector<pid_t> all_processes() {
   std::vector<pid_t> all;
   std::error_code error;
   for (fs::directory_iterator at("/proc", error), end; !error && at != end; at.increment(error))
-    if (const int process = std::atoi(at->path().filename().c_str()); process > 0)
+    if (const pid_t process = number_of(at->path().filename().string()); process > 0)
       all.push_back(process);
   return all;
 }
@@ -80,6 +88,7 @@ std::optional<ProcessFigures> figures_of(pid_t process) {
   int parent = 0;
   unsigned long user = 0, system = 0, address_space = 0;
   long children_user = 0, children_system = 0, resident_pages = 0;
+  // The kernel's numbers fit. NOLINTNEXTLINE(bugprone-unchecked-string-to-number-conversion)
   const int read = std::sscanf(
       text.c_str() + name_end + 1,
       " %*c %d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu %ld %ld %*d %*d %*d %*d %*u %lu %ld",

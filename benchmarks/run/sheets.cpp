@@ -13,9 +13,9 @@ namespace isoline::benchmarks {
 using optimizers::privileges_of;
 namespace {
 
-constexpr Index kGrid = 81;                // points a side of a landscape
-constexpr Index kSmall = 16;               // largest target and truth that a sheet shows
-constexpr Index kMostEntries = 256 * 256;  // of a Jacobian that is factorized: 20 ms
+constexpr Index kGrid = 81;                       // points a side of a landscape
+constexpr Index kSmall = 16;                      // largest target and truth that a sheet shows
+constexpr Index kMostEntries = Index{256} * 256;  // of a Jacobian that is factorized: 20 ms
 constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate", "approximate"};
 
 std::vector<std::string> names_of(OracleSet oracles) {

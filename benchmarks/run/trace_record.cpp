@@ -49,7 +49,8 @@ std::map<std::string, std::vector<Real>> series_of(const Trace& trace) {
 }
 
 Grid grid_of(const Trace::Exhibit& shown) {
-  return {shown.rows, shown.columns, {shown.value, shown.value + shown.rows * shown.columns}};
+  return {
+      shown.rows, shown.columns, {shown.value, shown.value + Index{shown.rows} * shown.columns}};
 }
 
 std::optional<Exhibit> exhibit_of(const Trace& trace) {

@@ -64,7 +64,7 @@ Texts environment_of(std::vector<std::pair<std::string, std::string>> own) {
   Texts all;
   for (char** entry = environ; *entry != nullptr; ++entry)
     if (!is_set_by(own, *entry)) all.texts.emplace_back(*entry);
-  for (const auto& [name, value] : own) all.texts.push_back(name + "=" + value);
+  for (const auto& [name, value] : own) all.texts.push_back(fmt::format("{}={}", name, value));
   return all;
 }
 
@@ -89,12 +89,16 @@ struct Launch {
       setrlimit(RLIMIT_AS, &memory);
     }
     const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-    dup2(nothing, STDIN_FILENO);
+    if (nothing < 0 || dup2(nothing, STDIN_FILENO) < 0) give_up();  // else it reads our own input
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
     close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
     if (kept >= 0) fcntl(kept, F_SETFD, 0);
     execvpe(words[0], words, environment);
+    give_up();
+  }
+
+  [[noreturn]] void give_up() const {
     const int why = errno;
     if (write(failure, &why, sizeof why) < 0) _exit(1);
     _exit(127);
@@ -205,7 +209,7 @@ bool ChildProgram::has_ended() {
 
 void ChildProgram::await_end(double seconds) {
   constexpr int kMilliseconds = 2;
-  for (double waited = 0; !has_ended() && waited < seconds; waited += 1e-3 * kMilliseconds)
+  for (int waited = 0; !has_ended() && waited < 1e3 * seconds; waited += kMilliseconds)
     poll(nullptr, 0, kMilliseconds);
   drain();
 }

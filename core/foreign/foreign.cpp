@@ -23,7 +23,8 @@ std::string digest_of_files(std::span<const std::string> words) {
 std::string digest_of(const Foreign& foreign) {
   std::string all = foreign.door + "\n" + foreign.command + "\n" + foreign.digest + "\n" +
                     foreign.interpreter + "\n";
-  for (const auto& [name, version] : foreign.packages) all += name + " " + version + "\n";
+  for (const auto& [name, version] : foreign.packages)
+    all.append(name).append(" ").append(version).append("\n");
   return digest(all);
 }
 

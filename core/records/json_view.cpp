@@ -44,8 +44,8 @@ Real real(const element& value) {
   std::string_view text;
   if (value.get(text) != simdjson::SUCCESS) fail("a number", value);
   if (text == "nan") return std::nan("");
-  if (text == "inf") return INFINITY;
-  if (text == "-inf") return -INFINITY;
+  if (text == "inf") return std::numeric_limits<Real>::infinity();
+  if (text == "-inf") return -std::numeric_limits<Real>::infinity();
   fail("a number", value);
 }
 

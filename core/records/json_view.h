@@ -15,6 +15,12 @@
 
 namespace isoline {
 
+// What a view's get_to() reads. A name of its own: within the class its members are not known yet.
+template <class Value, class View>
+concept ReadBy = requires(const View& view, Value& out) {
+  view.get_to(out);
+};
+
 // Valid until its reader parses the next text. Reads as `const nlohmann::json&` would. Two words,
 // which json_view.cpp alone knows to be simdjson's place on its tape: its header is large.
 class JsonView {
@@ -49,9 +55,10 @@ class JsonView {
     get_to(value);
     return value;
   }
-  template <class Value>
-  requires requires(const JsonView& view, Value& out) { view.get_to(out); }
-  operator Value() const { return get<Value>(); }
+  template <ReadBy<JsonView> Value>
+  operator Value() const {
+    return get<Value>();
+  }
 
  private:
   Place place_;

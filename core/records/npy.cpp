@@ -132,7 +132,7 @@ std::size_t length_field(const std::string& bytes, std::size_t size) {
 
 Header header_of(const std::string& bytes) {
   require(bytes.starts_with(kMagic) && bytes.size() > kPreamble + 4, "it is no .npy file");
-  const int version = bytes[kMagic.size()];
+  const int version = static_cast<unsigned char>(bytes[kMagic.size()]);
   require(version >= 1 && version <= 3, [&] {
     return fmt::format("its version of the format is {}; 1 to 3 can be read", version);
   });
@@ -195,7 +195,10 @@ std::vector<Real> turned(const std::vector<Real>& values, const std::vector<Inde
     Index from = 0;
     for (std::size_t d = shape.size(); d-- > 0;) from = from * shape[d] + at[d];
     value = values[static_cast<std::size_t>(from)];
-    for (std::size_t d = shape.size(); d-- > 0 && ++at[d] == shape[d];) at[d] = 0;
+    for (std::size_t d = shape.size(); d-- > 0;) {
+      if (++at[d] < shape[d]) break;
+      at[d] = 0;
+    }
   }
   return out;
 }

@@ -17,7 +17,7 @@ namespace {
 // "1e-4", "1e4", "0.9": the shorter of two ways.
 std::string option_text(const OptionValue& value) {
   const Real* const number = std::get_if<Real>(&value);
-  const std::string plain = text_of(value);
+  std::string plain = text_of(value);
   if (number == nullptr || !std::isfinite(*number) || *number == 0) return plain;
   const int exponent = static_cast<int>(std::floor(std::log10(std::abs(*number))));
   const std::string scientific = fmt::format(

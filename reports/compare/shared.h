@@ -15,7 +15,7 @@
 namespace isoline::reports {
 
 // What tells two values apart.
-inline const std::string& key_of(const std::string& text) { return text; }
+inline std::string key_of(const std::string& text) { return text; }
 std::string key_of(const OptionValues& options);
 std::string key_of(const std::map<std::string, std::string>& texts);
 
@@ -34,7 +34,7 @@ class Shared {
   friend bool operator==(const Shared& a, const Shared& b) { return a.value_ == b.value_; }
 
  private:
-  static const Value* pooled(Value value) {
+  static const Value* pooled(Value&& value) {
     static std::mutex mutex;
     static std::unordered_map<std::string, Value> pool;
     std::string key = key_of(value);

@@ -121,7 +121,7 @@ std::string key_of(const OptionValues& options) { return json_text(isoline::to_j
 
 std::string key_of(const std::map<std::string, std::string>& texts) {
   std::string key;
-  for (const auto& [name, text] : texts) key += name + "=" + text + "\n";
+  for (const auto& [name, text] : texts) key.append(name).append("=").append(text).append("\n");
   return key;
 }
 

@@ -12,7 +12,8 @@ namespace {
 Json table_json(const Table& table) {
   Json rows = Json::array(), values = rows;
   for (const auto& row : table.rows) {
-    Json texts = Json::array(), numbers = texts;
+    Json texts = Json::array();
+    Json numbers = Json::array();
     for (const TableCell& cell : row) {
       texts.push_back(cell.text);
       Json named = Json::object();

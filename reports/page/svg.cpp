@@ -244,7 +244,7 @@ std::string plot_svg(const Plot& plot) {
 }
 
 std::string plot_html(const Plot& plot) {
-  const std::string figure = fmt::format(
+  std::string figure = fmt::format(
       "<figure class=plot id={}><figcaption><b>{}.</b> {}</figcaption>{}{}<p class=legend>{}</p>"
       "</figure>\n",
       plot.id, html_text(plot.title), html_text(plot.reading), plot_svg(plot), marks_html(plot),
