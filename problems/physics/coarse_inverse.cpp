@@ -17,7 +17,8 @@ CoarseInverse::CoarseInverse(Index N) : cells_(N * N), modes_(Matrix::Zero(2 * N
     for (Index p = 0; p < cells_; ++p) {
       const Real nx = static_cast<Real>(kNumbers[mode][0]);
       const Real ny = static_cast<Real>(kNumbers[mode][1]);
-      const Real x = static_cast<Real>(p % N) + 0.5, y = static_cast<Real>(p / N) + 0.5;
+      const Index column = p % N, row = p / N;
+      const Real x = static_cast<Real>(column) + 0.5, y = static_cast<Real>(row) + 0.5;
       const Real angle = 2 * std::numbers::pi * (nx * x + ny * y) / static_cast<Real>(N);
       for (const Index phase : {0, 1}) {
         const Real wave = phase == 0 ? std::sin(angle) : std::cos(angle);

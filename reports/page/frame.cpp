@@ -48,9 +48,11 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
     Real factor = high / low <= kFewDoublings ? 2 : 10;
     const Real powers = std::log(high / low) / std::log(factor);
     factor = std::pow(factor, std::max(1.0, std::ceil(powers / kMost)));
-    const Real first = std::pow(factor, std::ceil(std::log(low) / std::log(factor) - 1e-9));
-    for (Real tick = first; tick <= high * (1 + 1e-9) && std::ssize(ticks) < kBound; tick *= factor)
+    Real tick = std::pow(factor, std::ceil(std::log(low) / std::log(factor) - 1e-9));
+    while (tick <= high * (1 + 1e-9) && std::ssize(ticks) < kBound) {
       ticks.push_back(tick);
+      tick *= factor;
+    }
     return ticks;
   }
   const Real rough = (high - low) / kMost, power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -72,10 +74,12 @@ std::vector<Real> heights_of(const Frame& frame) {
     return ticks_of(frame.y_low, frame.y_high, frame.is_log_y);
   std::vector<Real> ticks;
   Real power = std::pow(10.0, std::floor(std::log10(frame.y_low)));
-  for (int decade = 0; decade <= 3 && power <= frame.y_high; ++decade, power *= 10)
+  for (int decade = 0; decade <= 3; ++decade) {
     for (const Real digit : {1, 2, 5})
       if (digit * power >= frame.y_low && digit * power <= frame.y_high)
         ticks.push_back(digit * power);
+    power *= 10;
+  }
   return ticks;
 }
 

@@ -38,7 +38,7 @@ void add_inner(const std::string& name, const std::string& text, Features& out) 
   if (out[name].text == text) return;
   try {
     for (const auto& [option, value] : parse_spec(text).options)
-      out[name + "." + option] = {value, number_of(value)};
+      out[fmt::format("{}.{}", name, option)] = {value, number_of(value)};
   } catch (const UsageError&) {
     out[name] = {text, std::nullopt};  // a text of another kind
   }

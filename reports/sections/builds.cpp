@@ -20,7 +20,8 @@ const std::vector<std::string> kTerms = {"version",      "commit",    "compiler"
 
 Lines lines_of(const Build& build) {
   std::vector<std::string> libraries;
-  for (const auto& [name, version] : build.libraries) libraries.push_back(name + " " + version);
+  for (const auto& [name, version] : build.libraries)
+    libraries.push_back(fmt::format("{} {}", name, version));
   const bool is_changed = build.is_dirty.value_or(false) && !build.commit.empty();
   return {build.version,
           build.commit + (is_changed ? " with uncommitted changes" : ""),

@@ -24,7 +24,7 @@ std::string tolerance_text(const Json& tolerance) {
   if (from == "digits")
     return fmt::format("±{} in its digits", figure(real_of(tolerance["absolute"])));
   const Real t = real_of(tolerance["relative"]);
-  const std::string of_one = fmt::format("±{:.0f} % {}", 100 * t, words_of_source(from));
+  std::string of_one = fmt::format("±{:.0f} % {}", 100 * t, words_of_source(from));
   if (!is_ratio) return of_one;
   // The law of agreement.cpp for a ratio of two readings.
   return fmt::format("{}, each value: {:+.0f} to {:+.0f} %", of_one, 100 * ((1 - t) / (1 + t) - 1),

@@ -25,7 +25,7 @@ std::string interval_text(const Judgement& judgement) {
 
 // "10–30 (range of 3)": so few seeds have no interval.
 std::string over_seeds(const Judgement& judgement) {
-  const std::string text = interval_text(judgement);
+  std::string text = interval_text(judgement);
   if (text == kNothing || judgement.measured->n >= kFewestForInterval) return text;
   return fmt::format("{} ({})", text, interval_name(judgement.measured->n));
 }

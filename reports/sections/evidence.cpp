@@ -109,11 +109,11 @@ std::string denominators(const Comparison& c, std::size_t shown) {
 }
 
 std::vector<Real> cost_grid(Measure by, Real most) {
-  constexpr Real kPerDecade = 8;
-  const Real first = by == Measure::time ? -3 * kPerDecade : 0;
+  constexpr int kPerDecade = 8;
+  const int first = by == Measure::time ? -3 * kPerDecade : 0;
   std::vector<Real> grid;
   const Real last = std::ceil(kPerDecade * std::log10(std::max(most, 10.0)));
-  for (Real i = first; i <= last; ++i) grid.push_back(std::pow(10.0, i / kPerDecade));
+  for (int i = first; i <= last; ++i) grid.push_back(std::pow(10.0, Real(i) / kPerDecade));
   return grid;
 }
 

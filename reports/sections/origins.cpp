@@ -24,7 +24,8 @@ std::string values_text(const Request& request) {
   if (end == std::string::npos) return "default";
   const Spec spec = parse_spec(whole.substr(0, end + 1));
   std::vector<std::string> shown;  // long numbers cut
-  for (const auto& [name, value] : spec.options) shown.push_back(shown_spec(name + "=" + value));
+  for (const auto& [name, value] : spec.options)
+    shown.push_back(shown_spec(fmt::format("{}={}", name, value)));
   if (shown.empty()) return "default";
   return shown.size() > 1 ? joined(shown) : shown[0].substr(spec.options[0].first.size() + 1);
 }

@@ -48,7 +48,7 @@ Plots profile_plot(const Comparison& c) {
   Costs ratios;
   for (const auto& row : common_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
   std::vector<Real> grid;
-  for (Real i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8));
+  for (int i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8.0));
   add_lines(c, plot, ratios, grid);
   const PlotSeries& last = plot.series.back();
   plot.reading = fmt::format("The least most often: {}; most within 64 times the least: {}.",
@@ -95,7 +95,7 @@ Plots accuracy_plot(const Comparison& c) {
     for (const std::size_t s : c.order.methods)
       lacking[p][s] = lacking_digits(c, c.cell(p, s), &Summary::best_loss);
   std::vector<Real> grid;
-  for (Real i = -64; i <= 0; ++i) grid.push_back(i / 4);
+  for (int i = -64; i <= 0; ++i) grid.push_back(i / 4.0);
   add_lines(c, plot, lacking, grid);
   for (PlotSeries& line : plot.series) {  // at least so many digits, from none to 16
     for (auto* column : {&line.x, &line.y, &line.low, &line.high}) std::ranges::reverse(*column);

@@ -29,7 +29,7 @@ Plot pair_plot(const Comparison& c, const Costs& costs, std::size_t rival) {
     other[p] = ratios[1];
   }
   std::vector<Real> grid;
-  for (Real i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8));
+  for (int i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8.0));
   const Pairing pairing = pairing_of(costs, groups_of(c), 0, rival);
   const std::size_t even = pairing.ties + pairing.neither;
   const std::string names[] = {optimizer_text(c, 0), optimizer_text(c, rival)};

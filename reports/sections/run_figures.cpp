@@ -2,9 +2,11 @@
 #include "reports/sections/run_figures.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <ranges>
 
 #include "reports/statistics/statistics.h"
 
@@ -33,10 +35,14 @@ const std::vector<Real>* column_of(const Record& record, const std::string& name
     const auto found = record.series.find(name.substr(kSeries.size()));
     return found == record.series.end() ? nullptr : &found->second;
   }
-  const std::size_t end = name.rfind('_');
+  const std::size_t digits = name.rfind('_') + 1;
+  std::int64_t length = 0;
+  if (!name.starts_with("batch_") ||
+      std::from_chars(name.data() + digits, name.data() + name.size(), length).ec != std::errc())
+    return nullptr;
   const auto& windows = name.starts_with("batch_x") ? curve.batch_x_error : curve.batch_loss;
-  const auto window = windows.find(std::atoll(name.c_str() + end + 1));
-  return name.starts_with("batch_") && window != windows.end() ? &window->second : nullptr;
+  const auto window = windows.find(length);
+  return window != windows.end() ? &window->second : nullptr;
 }
 
 using Path = std::vector<std::vector<Real>>;
@@ -157,7 +163,7 @@ Real figure_of(const Record& record, const Place& place) {
   if (record.curve.iteration.empty()) return kAbsent;
   const std::size_t index = index_at(record.curve, place);
   if (place.column == "loss_peak")
-    return *std::max_element(record.curve.loss.begin(), record.curve.loss.begin() + index + 1);
+    return std::ranges::max(record.curve.loss | std::views::take(index + 1));
   if (place.column == "loss_drop") return record.curve.loss[0] - record.curve.loss[index];
   if (place.column == "slowdown") return slowdown(record.curve, index);
   if (const auto* column = column_of(record, place.column)) {

@@ -89,9 +89,8 @@ std::size_t interval_order(std::size_t n, std::size_t m) {
   const std::vector<Real> chance = rank_sum_distribution(ranks, n);
   std::size_t k = 0;
   constexpr Real kRounding = 1e-12;  // of sums of probabilities
-  for (Real below = chance[n * (n + 1) / 2]; below <= kTail + kRounding;
-       below += chance[n * (n + 1) / 2 + k])
-    ++k;
+  Real below = chance[n * (n + 1) / 2];
+  while (below <= kTail + kRounding) below += chance[n * (n + 1) / 2 + ++k];
   return k;
 }
 
