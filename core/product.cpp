@@ -57,6 +57,7 @@ void product(Form form, Gemm<double>::In A, Gemm<double>::In B, Gemm<double>::Ou
 void lower_gram(Gemm<double>::In A, Gemm<double>::Out C) {
   if (C.rows() != A.cols() || C.cols() != A.cols())
     throw UsageError("the matrices of a product do not fit");
+  C.setZero();
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, as_int(A.cols()), as_int(A.rows()), 1,
               A.data(), stride(A), 0, C.data(), stride(C));
 }

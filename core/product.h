@@ -23,7 +23,7 @@ struct Gemm {
 void product(Form form, Gemm<float>::In A, Gemm<float>::In B, Gemm<float>::Out C, float keep = 0);
 void product(Form form, Gemm<double>::In A, Gemm<double>::In B, Gemm<double>::Out C,
              double keep = 0);
-// The lower half of C = AᵀA, in half the time; the upper half of C stays what it was.
+// The lower half of C = AᵀA, above it zeros, in half the time. C may hold anything before.
 void lower_gram(Gemm<double>::In A, Gemm<double>::Out C);
 using Complex = std::complex<float>;
 void product(Form form, Gemm<Complex>::In A, Gemm<Complex>::In B, Gemm<Complex>::Out C,

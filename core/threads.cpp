@@ -124,10 +124,13 @@ void share(std::size_t count, const std::function<void(std::size_t)>& work,
   std::exception_ptr failure;
   std::mutex mutex;
   const auto some = [&](const Listener& told) {
+    std::size_t due = 0;  // whichever of them this thread happens to draw
     try {
       for (std::size_t i = next++; i < count; i = next++) {
         work(i);
-        if (told && i % kOften == 0) told(i + 1, count);
+        if (!told || i < due) continue;
+        told(i + 1, count);
+        due = i + kOften;
       }
     } catch (...) {
       next = count;

@@ -186,13 +186,14 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
-  try {
-    write_files(record);
-  } catch (const std::exception&) {
-    std::error_code unknown;
-    if (fs::is_directory(folder_ / "runs", unknown)) throw;
-    make_folders();  // they were removed while the run goes on
-    write_files(record);
+  constexpr int kTries = 3;  // for the folders may be removed while the run goes on
+  for (int i = 1;; ++i) {
+    try {
+      return write_files(record);
+    } catch (const std::exception&) {
+      if (i == kTries) throw;
+      make_folders();
+    }
   }
 }
 

@@ -88,5 +88,19 @@ TYPED_TEST(ProductByRows, WhatDoesNotFitIsAUsageError) {
   EXPECT_THROW(product_by_rows(Form::A_B, few, square, out), UsageError);  // no whole register
 }
 
+// What was there before does not show: a factorization refuses a matrix with a number that is none.
+TEST(LowerGram, IsTheLowerHalfAndZerosAboveIt) {
+  for (const Index rows : {0, 1, 40})
+    for (const Index columns : {1, 7, 33}) {
+      const Array<double> A = random_array<double>(rows, columns, "A");
+      Array<double> C = Array<double>::Constant(columns, columns, std::nan(""));
+      lower_gram(A, C);
+      const Array<double> exact = (A.transpose() * A).triangularView<Eigen::Lower>();
+      EXPECT_LE((C - exact).cwiseAbs().maxCoeff(), 1e-13) << rows << " × " << columns;
+    }
+  Array<double> small(2, 2);
+  EXPECT_THROW(lower_gram(random_array<double>(3, 3, "A"), small), UsageError);
+}
+
 }  // namespace
 }  // namespace isoline
