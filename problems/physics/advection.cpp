@@ -9,7 +9,7 @@ namespace isoline::problems {
 namespace {
 
 // The values, with 0 for those that were seen before.
-Four fresh(const Four &values, Index seen) {
+Four fresh(const Four& values, Index seen) {
   return Four{0, 1, 2, 3} < static_cast<Real>(seen) ? Four{} : values;
 }
 
@@ -41,7 +41,7 @@ void Advection::trace(VectorRef dx, VectorRef dy) {
 
 // Where a displacement is no number, or has lost its whole part to rounding, the node lies in the
 // lattice, and of the first the distance is no number either.
-void Advection::keep_far(Index i, Index j, Real x, Real y, Points &out) const {
+void Advection::keep_far(Index i, Index j, Real x, Real y, Points& out) const {
   const Real N = static_cast<Real>(N_);
   const auto within = [N](Real place) {
     const Real inside = place - N * std::floor(place / N);
@@ -59,7 +59,7 @@ void Advection::interpolate(VectorRef q) {
   margin_.pad(q, q_);
   const Places back(back_);
   const Index stride = stride_;
-  const Real *from = q_.data();
+  const Real* from = q_.data();
   Real *to = s_.data(), *least = least_.data(), *most = most_.data();
   margin_.by_fours([=](Index p, Index here, Index) {
     const Nodes<Four> nodes = nodes_at(from + here, back.way(p), stride);
@@ -76,7 +76,7 @@ void Advection::value(VectorRef q, VectorOut out) {
   const Index stride = stride_;
   const Real *before = q_.data(), *there = s_.data();
   const Real *least = least_.data(), *most = most_.data();
-  Real *to = out.data();
+  Real* to = out.data();
   margin_.by_fours([=](Index p, Index here, Index) {
     const Nodes<Four> found = nodes_at(there + here, ahead.way(p), stride);
     const Four back = found.mean(ahead.a(p), ahead.b(p));
@@ -87,7 +87,7 @@ void Advection::value(VectorRef q, VectorOut out) {
   });
 }
 
-void Advection::add_choices(VectorRef q, PieceDigest &digest) {
+void Advection::add_choices(VectorRef q, PieceDigest& digest) {
   interpolate(q);
   for (Index j = 0, p = 0; j < N_; ++j)
     for (Index i = 0; i < N_; ++i, ++p) {
@@ -150,7 +150,7 @@ void Advection::pullback(VectorRef q, VectorRef u, VectorOut of_q, VectorOut of_
 }
 
 // Of q' as a function of q, s and p + d.
-void Advection::pull_correction(VectorRef u, Vector &into_q, Vector &into_s, VectorOut of_dx,
+void Advection::pull_correction(VectorRef u, Vector& into_q, Vector& into_s, VectorOut of_dx,
                                 VectorOut of_dy) {
   const Places back(back_), ahead(ahead_);
   const Index stride = stride_;
@@ -181,7 +181,7 @@ void Advection::pull_correction(VectorRef u, Vector &into_q, Vector &into_s, Vec
 }
 
 // Of s as a function of q and p − d.
-void Advection::pull_interpolation(const Vector &into_s, VectorOut of_dx, VectorOut of_dy) {
+void Advection::pull_interpolation(const Vector& into_s, VectorOut of_dx, VectorOut of_dy) {
   const Places back(back_);
   const Index stride = stride_;
   const Real *before = q_.data(), *from = into_s.data();
