@@ -24,6 +24,10 @@ void gemm(CBLAS_TRANSPOSE a, CBLAS_TRANSPOSE b, int m, int n, int k, const Compl
   cblas_cgemm(CblasColMajor, a, b, m, n, k, &one, A, lda, B, ldb, &keep, C, ldc);
 }
 
+void require_fit(bool do_fit) {  // `require` would make its text
+  if (!do_fit) throw UsageError("the matrices of a product do not fit");
+}
+
 int as_int(Index n) { return static_cast<int>(n); }
 
 template <class Array>
@@ -38,8 +42,7 @@ void multiply(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scalar>::In 
   const bool left = form == Form::AH_B, right = form == Form::A_BH;
   const Index m = left ? A.cols() : A.rows(), k = left ? A.rows() : A.cols();
   const Index n = right ? B.rows() : B.cols();
-  if (C.rows() != m || C.cols() != n || k != (right ? B.cols() : B.rows()))
-    throw UsageError("the matrices of a product do not fit");  // `require` would make its text
+  require_fit(C.rows() == m && C.cols() == n && k == (right ? B.cols() : B.rows()));
   gemm(flag(left), flag(right), as_int(m), as_int(n), as_int(k), A.data(), stride(A), B.data(),
        stride(B), keep, C.data(), stride(C));
 }
@@ -55,8 +58,7 @@ void product(Form form, Gemm<double>::In A, Gemm<double>::In B, Gemm<double>::Ou
 }
 
 void lower_gram(Gemm<double>::In A, Gemm<double>::Out C) {
-  if (C.rows() != A.cols() || C.cols() != A.cols())
-    throw UsageError("the matrices of a product do not fit");
+  require_fit(C.rows() == A.cols() && C.cols() == A.cols());
   C.setZero();
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, as_int(A.cols()), as_int(A.rows()), 1,
               A.data(), stride(A), 0, C.data(), stride(C));

@@ -12,6 +12,7 @@ namespace isoline::problems {
 namespace {
 
 // Σ x² and Σ y² side by side, for alone each would wait for its own sums; in the order of Eigen's.
+// Whole fours, as the squares of even numbers are.
 std::pair<Real, Real> squared_norms(Index size, const Real* x, const Real* y) {
   Four even_x{}, odd_x{}, even_y{}, odd_y{};
   const auto add_square = [](const Real* from, Four& sum) {
