@@ -196,6 +196,23 @@ class Packages(WithTree):
         self.assertEqual(tree.calls('ninja'), [])
 
 
+class Waiting(WithTree):
+    """Without a terminal a long installation and a long build print a line per interval."""
+
+    def test_an_installation_and_a_build_are_reported_while_they_go_on(self):
+        tree = Tree(self.folder)
+        launcher = tree.path / 'isoline'
+        launcher.write_text(launcher.read_text().replace('interval=60 ', 'interval=1 '))
+        wait = 'read -r -t 2.5 <> <(:) || true\n'
+        write_program(tree.bin / 'apt-get', NOTE + wait)
+        write_program(tree.bin / 'ninja', NINJA.replace('echo', 'echo "[2/9] Building CXX object y.o"\n'
+                                                        + wait + 'echo', 1))
+        result = tree.run('run', MISSING='libdnnl-dev')
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn('installing packages (1 min)', result.stderr)
+        self.assertIn('building [2/9]', result.stderr)
+
+
 class Arguments(WithTree):
     def test_all_are_handed_to_the_program(self):
         tree = Tree(self.folder)
