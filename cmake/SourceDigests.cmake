@@ -3,8 +3,9 @@
 # Digests of what computes a run, written as the C++ function tree_sources(): "harness" is all of
 # core/ outside core/records/ and whatever benchmarks/run/execute.cpp reaches; each file that
 # registers a component, or adds those of others, has the digest of itself and of what it reaches
-# besides. A file reaches what it includes; a header reaches the file of its name that implements it,
-# and those without a header of their own that include it first.
+# besides. A file reaches what it includes; a header reaches the file of its name that implements it. A
+# file without a header of its own implements the headers of its own folder that it includes, so those
+# reach it.
 cmake_minimum_required(VERSION 3.25)
 set(rooms core networks problems optimizers benchmarks/plan benchmarks/run)
 
@@ -34,10 +35,15 @@ foreach(file IN LISTS files)
   cmake_path(REPLACE_EXTENSION file .h OUTPUT_VARIABLE header)
   if(definition)
     list(APPEND components ${file})
-  elseif(NOT header IN_LIST files AND included)
-    list(GET included 0 header)
+  elseif(NOT header IN_LIST files)
+    cmake_path(GET file PARENT_PATH folder)
+    set(header ${included})
+    list(FILTER header INCLUDE REGEX "^${folder}/[^/]*$")
+    list(APPEND without_header ${file})
   endif()
-  list(APPEND reached_by_${header} ${file})
+  foreach(implemented IN LISTS header)
+    list(APPEND reached_by_${implemented} ${file})
+  endforeach()
 endforeach()
 
 # closure(out first...): the files that these reach, and they themselves, sorted.
@@ -80,7 +86,19 @@ foreach(component IN LISTS components)
   list(REMOVE_ITEM parts ${harness})
   list(REMOVE_ITEM parts ${component})
   add_entry(${component} ${component} ${parts})
+  list(APPEND digested ${component} ${parts})
 endforeach()
+
+# An edit of a file that no digest covers would reuse records of the old one. A file with a header of
+# its own that no component reaches takes no part in a run.
+list(APPEND digested ${harness})
+set(forgotten ${without_header})
+list(FILTER forgotten INCLUDE REGEX "^(networks|problems|optimizers)/")
+list(REMOVE_ITEM forgotten ${digested})
+if(forgotten)
+  message(FATAL_ERROR "No digest covers ${forgotten}: include the header of the same folder that declares "
+                      "what these files define, or give each a header of its own name.")
+endif()
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 // Generated from the sources: what computes each component, as digests.

@@ -2,6 +2,7 @@
 // Unit by unit from the last, `cotangents` holds g, that of the unit's y before the rectifier.
 #include "core/threads.h"
 #include "networks/unet/cotangents.h"
+#include "networks/unet/passes.h"
 
 namespace isoline::networks {
 namespace {

@@ -4,6 +4,7 @@
 // Sums over a task are in single precision, those over tasks in double, in order.
 #include "core/threads.h"
 #include "networks/unet/cotangents.h"
+#include "networks/unet/passes.h"
 
 namespace isoline::networks {
 namespace {
