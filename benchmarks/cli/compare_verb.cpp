@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "benchmarks/cli/on_terminal.h"
-#include "benchmarks/cli/opened_results.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -35,17 +34,16 @@ namespace {
 namespace fs = std::filesystem;
 
 // Said before anything is read.
-void require_folders(const OpenedResults& results) {
-  for (const std::string& side : results.folders())
+void require_folders(const CompareArguments& given) {
+  for (const std::string& side : {given.before, given.after})
     require(fs::is_directory(side), [&] {
       return fmt::format("--html compares the curves of two result folders, and {} is none", side);
     });
 }
 
-void write_page(const CompareArguments& given, const OpenedResults& results,
-                const GateResult& result) {
-  const Study both = study_of_both(read_study({results.folders()[0]}, on_terminal("reading BASE")),
-                                   read_study({results.folders()[1]}, on_terminal("reading NEW")));
+void write_page(const CompareArguments& given, const GateResult& result) {
+  const Study both = study_of_both(read_study({given.before}, on_terminal("reading BASE")),
+                                   read_study({given.after}, on_terminal("reading NEW")));
   const std::string headline = fmt::format("BASE: {} · NEW: {}", given.before, given.after);
   write_text(given.page, comparison_page(compare_sides(both), gate_section(result), headline));
   say(stderr, fmt::format("page: {}\n", given.page));
@@ -54,8 +52,7 @@ void write_page(const CompareArguments& given, const OpenedResults& results,
 }  // namespace
 
 int compare_verb(const CompareArguments& given, Session&) {
-  const OpenedResults results({given.before, given.after});
-  if (!given.page.empty()) require_folders(results);
+  if (!given.page.empty()) require_folders(given);
   require(given.timed.size() <= kMostTimed, [&] {
     return fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed,
                        given.timed.size());
@@ -66,11 +63,11 @@ int compare_verb(const CompareArguments& given, Session&) {
   if (!given.allowed.empty()) options.allowed = read_allowed(given.allowed);
   if (!given.trend.empty()) options.earlier = given.trend;
   options.listener = on_terminal("reading records");
-  const GateResult result = compare_results(results.folders()[0], results.folders()[1], options);
+  const GateResult result = compare_results(given.before, given.after, options);
   say(stdout, given.as_json       ? gate_json(result)
               : given.as_markdown ? gate_markdown(result)
                                   : gate_terminal(result, given.lists_all));
-  if (!given.page.empty()) write_page(given, results, result);
+  if (!given.page.empty()) write_page(given, result);
   const bool is_fault = result.exit_code == kWorse || result.exit_code == kNotComparable;
   if (is_fault && (given.as_json || given.as_markdown))
     say(stderr, fmt::format("{}\n", result.verdict));  // the terminal's text begins with it

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "benchmarks/cli/on_terminal.h"
-#include "benchmarks/cli/opened_results.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
 #include "core/files.h"
@@ -46,8 +45,7 @@ void write_folder(const fs::path& out, const CocoExport& coco) {
 }  // namespace
 
 int export_verb(const ExportArguments& given, Session&) {
-  const OpenedResults results(given.folders);
-  const Study study = read_study(results.folders(), on_terminal("reading records"));
+  const Study study = read_study(given.folders, on_terminal("reading records"));
   require(!study.runs.empty(), [&] {
     return fmt::format("no records in {}: `isoline run --out FOLDER` writes them",
                        joined(given.folders));

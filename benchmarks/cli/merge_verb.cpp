@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "benchmarks/cli/on_terminal.h"
-#include "benchmarks/cli/opened_results.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/merge/merge.h"
 #include "core/text.h"
@@ -13,19 +12,17 @@ namespace isoline::benchmarks {
 using reports::counted;
 
 int merge_verb(const MergeArguments& given, Session&) {
-  const OpenedResults results(given.folders);
-  const std::vector<std::filesystem::path> folders(results.folders().begin(),
-                                                   results.folders().end());
+  const std::vector<std::filesystem::path> folders(given.folders.begin(), given.folders.end());
   const MergeOutcome outcome = merge_folders(folders, given.out, on_terminal("files"));
   if (outcome.is_interrupted) {
     say(stderr, fmt::format("interrupted; nothing is left of {}\n", given.out));
     return kInterrupted;
   }
-  say(stderr, results.by_given_names(told(outcome.conflicts)));
+  say(stderr, told(outcome.conflicts));
   if (!outcome.conflicts.empty())
     say(stderr, fmt::format("all conflicts: {}/conflicts.json\n", given.out));
   for (const std::string& sentence : outcome.unreadable)
-    say(stderr, results.by_given_names(fmt::format("left out: {}\n", sentence)));
+    say(stderr, fmt::format("left out: {}\n", sentence));
   for (const std::string& sentence : outcome.remarks) say(stdout, sentence + "\n");
   say(stdout, fmt::format("{} in {}: {} with timings of several folders, {} left out\n",
                           counted(std::size_t(outcome.records), "record"), given.out,

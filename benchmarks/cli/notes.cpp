@@ -147,11 +147,6 @@ constexpr const char* kImportNotes =
     "where they are known. The record stands in every table, marked §: it is judged by its own figures\n"
     "and never verified.";
 
-constexpr const char* kArchiveNotes =
-    "The same folder gives the same bytes. The archive begins with manifest.json, which names each file\n"
-    "with its size and SHA-256, and the commits that computed the records. `report`, `merge`,\n"
-    "`compare`, `validate` and `export` read an archive as the folder, once every digest is right.";
-
 const std::map<std::string_view, Notes>& notes() {
   static const std::map<std::string_view, Notes> all = {
       {"run", {kRun, kRunNotes}},
@@ -183,10 +178,6 @@ const std::map<std::string_view, Notes>& notes() {
        {"  isoline import curve.csv --out results/quick\n"
         "  isoline import curve.csv --description theirs.json --out results/quick",
         kImportNotes}},
-      {"archive",
-       {"  isoline archive results/quick --out quick.tar.gz\n"
-        "  isoline report quick.tar.gz --out report",
-        kArchiveNotes}},
       {"completion", {"  isoline completion bash > ~/.isoline-completion"}},
       {"help", {"  isoline help\n  isoline help run"}},
       {"version", {"  isoline version"}}};

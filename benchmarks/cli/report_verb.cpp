@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "benchmarks/cli/on_terminal.h"
-#include "benchmarks/cli/opened_results.h"
 #include "benchmarks/cli/reporting.h"
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
@@ -37,13 +36,6 @@ reports::Yardstick yardstick_of(const ReportArguments& given) {
   return yardstick;
 }
 
-// Where a report goes unless that is said: into its folder, or beside its archive.
-fs::path report_of(const fs::path& results) {
-  if (!is_archive(results)) return results / "report";
-  const std::string name = results.filename();
-  return results.parent_path() / (name.substr(0, name.find(".t")) + "-report");
-}
-
 // By the desktop's own program, which goes on after this one; where there is none, that is told.
 void open_page(const fs::path& page) {
   std::string program = "xdg-open", path = page.string();
@@ -62,12 +54,7 @@ std::string format_names() {
 }
 
 int report_verb(const ReportArguments& given, Session& session) {
-  const OpenedResults results(given.folders);
-  Study study = read_study(results.folders(), on_terminal("reading records"));
-  for (reports::Unreadable& file : study.unreadable) {
-    file.file = results.by_given_names(file.file);
-    file.reason = results.by_given_names(file.reason);
-  }
+  const Study study = read_study(given.folders, on_terminal("reading records"));
   require(!study.runs.empty(), [&] {
     const std::string damaged =
         study.unreadable.empty()
@@ -77,9 +64,9 @@ int report_verb(const ReportArguments& given, Session& session) {
                        fmt::join(given.folders, ", "), damaged);
   });
   const reports::Yardstick yardstick = yardstick_of(given);
-  const fs::path out = given.out.empty() ? report_of(given.folders.front()) : fs::path(given.out);
-  write_and_print(study, out, session,
-                  {.is_of_archive = results.folders() != given.folders, .yardstick = yardstick});
+  const fs::path out =
+      given.out.empty() ? given.folders.front() / fs::path("report") : fs::path(given.out);
+  write_and_print(study, out, session, {.yardstick = yardstick});
   if (given.opens) open_page(out / "index.html");
   return kGood;
 }

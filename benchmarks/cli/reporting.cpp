@@ -28,7 +28,7 @@ void write_and_print(const Study& study, const std::filesystem::path& out, Sessi
   std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
   std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
   Document document = document_of(compare_optimizers(study, how.yardstick), std::move(claims));
-  if (!how.is_of_archive) document.out = out.string();
+  document.out = out.string();
   write_report(document, out);
   if (!how.is_quiet)
     say(stdout,

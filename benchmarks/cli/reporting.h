@@ -15,7 +15,6 @@ class Session;
 
 struct Reporting {
   bool is_quiet = false;
-  bool is_of_archive = false;  // whose folder does not last: the page leads to no record
   reports::Yardstick yardstick = {};
 };
 void write_and_print(const reports::Study& study, const std::filesystem::path& out,

@@ -8,7 +8,7 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr WholeLaw kJobs{1, 1024}, kThreads{1, 256}, kShards{1, 100'000};
-constexpr const char* kFolders = "Result folders of `isoline run`, or archives of them";
+constexpr const char* kFolders = "Result folders of `isoline run`";
 
 void declare_plugins(VerbArguments& verb, std::vector<std::string>& plugins) {
   verb.texts("--plugin", plugins,
@@ -100,7 +100,7 @@ void declare(VerbArguments& verb, PlanArguments& given) {
 void declare(VerbArguments& verb, ReportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--out", given.out,
-            "Where to write (default: report/ in the first DIR; beside an archive)");
+            "Where to write (default: report/ in the first DIR)");
   verb.text("--by", given.by, "What is counted, in orders, tables and plots")
       .one_of({reports::kMeasureNames.begin(), reports::kMeasureNames.end()})
       .shown();
@@ -111,8 +111,8 @@ void declare(VerbArguments& verb, ReportArguments& given) {
 }
 
 void declare(VerbArguments& verb, CompareArguments& given) {
-  verb.text("BASE", given.before, "Result folder, archive, baseline, or a report.json").required();
-  verb.text("NEW", given.after, "Result folder, archive, or a report.json").required();
+  verb.text("BASE", given.before, "Result folder, baseline, or a report.json").required();
+  verb.text("NEW", given.after, "Result folder, or a report.json").required();
   verb.real("--tolerance", given.tolerance, between(0, 1),
             "Relative tolerance of figures (default: equal bit for bit)");
   verb.texts("--time-cells", given.timed,
@@ -220,7 +220,7 @@ void declare(VerbArguments& verb, AuditArguments& given) {
 }
 
 void declare(VerbArguments& verb, ValidateArguments& given) {
-  verb.texts("PATH", given.paths, "Files, folders to search for *.json, or archives").required();
+  verb.texts("PATH", given.paths, "Files, or folders to search for *.json").required();
 }
 
 void declare(VerbArguments& verb, TuneArguments& given) {
@@ -308,11 +308,6 @@ void declare(VerbArguments& verb, ImportArguments& given) {
   verb.text("--description", given.description,
             "What it is, isoline.import/1 (default: CURVE with .json for its ending)");
   verb.text("--out", given.out, "Result folder that the record joins").required();
-}
-
-void declare(VerbArguments& verb, ArchiveArguments& given) {
-  verb.text("DIR", given.folder, "Result folder").required();
-  verb.text("--out", given.out, "The archive: a file that ends in .tar.gz").required();
 }
 
 void declare(VerbArguments& verb, CompletionArguments& given) {

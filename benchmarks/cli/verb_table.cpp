@@ -54,7 +54,6 @@ std::shared_ptr<const RunArguments> add_verbs_on_results(VerbList& to) {
   to.add("claims", "Judge what papers claim by runs; what is missing is run first", claims_verb);
   to.add("export", "Write curves as CSV, as data of COCO, or as metrics of Bencher", export_verb);
   to.add("import", "Take a curve that others computed as a record, by its own claims", import_verb);
-  to.add("archive", "Pack results into one file that others can cite and read", archive_verb);
   return run;
 }
 

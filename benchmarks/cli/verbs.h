@@ -194,11 +194,6 @@ struct ImportArguments {
 };
 int import_verb(const ImportArguments& given, Session& session);
 
-struct ArchiveArguments {
-  std::string folder, out;
-};
-int archive_verb(const ArchiveArguments& given, Session& session);
-
 struct CompletionArguments {
   std::string shell = "bash";
   std::vector<std::string> verbs;  // filled in by the command line, which knows them

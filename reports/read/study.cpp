@@ -113,9 +113,14 @@ std::optional<FieldFrames> Study::fields_of(const Record& record) const {
 
 Study read_study(const std::vector<std::string>& folders, const Listener& listener) {
   std::error_code unknown;
-  for (const fs::path folder : folders)
+  for (const fs::path folder : folders) {
+    require(!fs::is_regular_file(folder, unknown), [&] {
+      return folder.string() +
+             " is a file, not a result folder: unpack an archive first, with tar -xf";
+    });
     require(fs::is_directory(folder, unknown),
             [&] { return folder.string() + ": no such result folder"; });
+  }
   Study study;
   study.folders = folders;
   std::set<std::string> cells, sheets;

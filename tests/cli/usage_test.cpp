@@ -17,7 +17,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
        {"run",    "plan",    "report", "compare", "baseline", "merge",      "submit",
         "status", "best",    "claims", "list",    "describe", "check",      "audit",
         "new",    "replay",  "tune",   "train",   "infer",    "completion", "help",
-        "serve",  "version", "export", "import",  "archive",  "validate"}) {
+        "serve",  "version", "export", "import",  "validate"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
@@ -32,7 +32,7 @@ TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   const std::string completion = Shell()("./isoline completion bash").out;
   EXPECT_TRUE(contains(
       completion,
-      "\"run plan report compare baseline replay merge submit status best claims export import archive list "
+      "\"run plan report compare baseline replay merge submit status best claims export import list "
       "describe check audit new "
       "validate tune train infer serve completion help version  --help --version\""))
       << completion;
@@ -177,8 +177,6 @@ const std::vector<Mistake> kMistakes = {
     {"export . --out x.csv", "no records in .: `isoline run"},
     {"export nowhere.tar.gz --out x.csv", "nowhere.tar.gz"},
     {"import nowhere.csv --out results", "nowhere.csv"},
-    {"archive . --out x.tar.gz", "no records in .: `isoline run"},
-    {"archive . --out x.zip", "--out must be a file that ends in .tar.gz or .tgz, got x.zip"},
     {"list problms", "problms"}};
 
 TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {

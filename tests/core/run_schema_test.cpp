@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/records/manifest.h"
 #include "core/records/plan.h"
 #include "core/records/record.h"
 #include "core/records/schema.h"
@@ -30,7 +29,6 @@ TEST(Schemas, AreWhatTheFieldsSay) {
   expect_renewed("run.json", run_schema());
   expect_renewed("component.json", sheet_schema());
   expect_renewed("plan.json", plan_schema());
-  expect_renewed("archive.json", manifest_schema());
 }
 
 // A record with all that it must have and nothing more.

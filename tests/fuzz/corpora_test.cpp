@@ -26,8 +26,7 @@ const std::map<std::string, void (*)(std::string_view)> kTargets = {
     {"npy", npy},
     {"wire", wire},
     {"bridge", bridge},
-    {"foreign_curve", foreign_curve},
-    {"packed_results", packed_results}};
+    {"foreign_curve", foreign_curve}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";
 

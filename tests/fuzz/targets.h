@@ -24,7 +24,6 @@ void npy(std::string_view bytes);
 void wire(std::string_view bytes);
 void bridge(std::string_view bytes);
 void foreign_curve(std::string_view bytes);
-void packed_results(std::string_view bytes);
 
 // Calls `read`. A refusal must be a sentence, not what a library says to itself.
 void expect_read_or_refused(const std::function<void()>& read);
