@@ -99,8 +99,7 @@ void declare(VerbArguments& verb, PlanArguments& given) {
 
 void declare(VerbArguments& verb, ReportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.text("--out", given.out,
-            "Where to write (default: report/ in the first DIR)");
+  verb.text("--out", given.out, "Where to write (default: report/ in the first DIR)");
   verb.text("--by", given.by, "What is counted, in orders, tables and plots")
       .one_of({reports::kMeasureNames.begin(), reports::kMeasureNames.end()})
       .shown();
@@ -111,8 +110,8 @@ void declare(VerbArguments& verb, ReportArguments& given) {
 }
 
 void declare(VerbArguments& verb, CompareArguments& given) {
-  verb.text("BASE", given.before, "Result folder, baseline, or a report.json").required();
-  verb.text("NEW", given.after, "Result folder, or a report.json").required();
+  verb.text("BASE", given.before, "Result folder or baseline").required();
+  verb.text("NEW", given.after, "Result folder").required();
   verb.real("--tolerance", given.tolerance, between(0, 1),
             "Relative tolerance of figures (default: equal bit for bit)");
   verb.texts("--time-cells", given.timed,
@@ -123,12 +122,7 @@ void declare(VerbArguments& verb, CompareArguments& given) {
   verb.text("--allow", given.allowed,
             "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
   verb.flag("--common", given.is_common_only, "Let NEW lack any cell of BASE");
-  verb.text("--trend", given.trend,
-            "Folder of earlier baselines, whose headline figures are shown, by file name");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
-  verb.text("--html", given.page,
-            "Also write a page, one file, in which each method is compared with itself; of two "
-            "result folders");
   const Argument& json = verb.flag("--json", given.as_json, "Print JSON");
   verb.flag("--markdown", given.as_markdown, "Print Markdown").excludes(json);
 }

@@ -49,8 +49,7 @@ struct CompareArguments {
   std::string before, after;
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
   std::vector<std::string> timed;
-  std::string allowed, trend;  // a list of cells that NEW may lack; a folder of earlier baselines
-  std::string page;            // a file of HTML
+  std::string allowed;  // a list of cells that NEW may lack
   bool is_common_only = false, as_markdown = false, as_json = false, lists_all = false;
 };
 int compare_verb(const CompareArguments& given, Session& session);

@@ -126,19 +126,6 @@ Json minima_json(const Study& study, const BestKnown& best) {
 
 }  // namespace
 
-Json headline_json(const Headline& headline) {
-  Json leaders = Json::array();
-  for (const HeadlineMethod& method : headline.leaders)
-    leaders.push_back({{"optimizer", method.name},
-                       {"solved", method.solved},
-                       {"runs", method.runs},
-                       {"median_work", json_number(method.median_work)}});
-  return {{"runs", headline.runs},
-          {"failed", headline.failed},
-          {"solved", headline.solved},
-          {"leaders", std::move(leaders)}};
-}
-
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed) {
   const BestKnown best(study);
   const std::vector<Subject> subjects = subjects_of(study, best);
@@ -155,11 +142,11 @@ std::string baseline_json(const Study& study, const std::vector<Study>& perturbe
     cells += (i == 0 ? "\n" : ",\n") + json_text(cell);
   }
   return fmt::format(
-      "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n\"headline\": {},\n"
+      "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n"
       "\"minima\": {},\n\"given\": {},\n\"terms\": {},\n\"parts\": {},\n\"cells\": [{}\n]}}\n",
       kBaselineSchema, json_text(Json(study.plan.suites)), perturbed.size(),
-      json_text(headline_json(headline_of("", subjects))), json_text(minima_json(study, best)),
-      tables.given.text(), tables.terms.text(), tables.parts.text(), cells);
+      json_text(minima_json(study, best)), tables.given.text(), tables.terms.text(),
+      tables.parts.text(), cells);
 }
 
 }  // namespace isoline::reports

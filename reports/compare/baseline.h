@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "reports/compare/subject.h"
-#include "reports/compare/trend.h"
 
 namespace isoline::reports {
 
@@ -13,8 +12,7 @@ inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
 
 struct Baseline {
   std::vector<Subject> subjects;
-  BestKnown minima;   // where a problem declares none
-  Headline headline;  // as it was when the file was made
+  BestKnown minima;  // where a problem declares none
 };
 
 // Keeps what is compared bit for bit (status, build, digest of the trace, final figures, work to

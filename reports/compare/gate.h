@@ -1,6 +1,6 @@
 // What changed from one set of results to another: the gate of continuous integration.
 //
-//   subject, folder_subjects, report_subjects   the two sides in one form
+//   subject, folder_subjects   the two sides in one form
 //   pairing       which of NEW answers which of BASE
 //   changes       options and parts of the build that differ
 //   differences   figures, exactly or within a tolerance
@@ -10,8 +10,7 @@
 //   gate          the verdict
 //   causes        what differs, by what explains it
 //   groups        differences by cause and optimizer
-//   trend         headline figures of earlier baselines beside
-//   sides         reads both: result folders, a baseline, reports
+//   sides         reads both: result folders, or a baseline and a folder
 //   baseline      what of results stands in a repository
 //   gate_words, gate_section, gate_json
 #pragma once
@@ -28,7 +27,6 @@
 #include "reports/compare/causes.h"
 #include "reports/compare/groups.h"
 #include "reports/compare/timing.h"
-#include "reports/compare/trend.h"
 
 namespace isoline::reports {
 
@@ -38,8 +36,7 @@ struct GateOptions {
   std::vector<std::string> timed;  // beginnings of the keys of cells whose times are judged
   AllowedList allowed;             // cells that NEW may lack
   bool is_common_only = false;     // it may lack any
-  std::optional<std::filesystem::path> earlier;  // a folder of baselines, for the trend
-  Listener listener;                             // of the records read
+  Listener listener;               // of the records read
 };
 
 struct AllowedCell {
@@ -61,13 +58,11 @@ struct GateResult {
   std::vector<AllowedCell> allowed;                  // only in BASE
   std::vector<Incomparable> incomparable;
   std::vector<std::string> remarks;
-  std::vector<Headline> trend;  // oldest first, NEW last; empty where none was asked for
-  std::string verdict;          // one sentence, which names the cause
+  std::string verdict;  // one sentence, which names the cause
   ExitCode exit_code = kGood;
 };
 
-// Two result folders; or a baseline and a folder; or two report.json, or one and a folder, which is
-// then compared as a report.
+// Two result folders, or a baseline and a result folder.
 GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
                            const GateOptions& options);
 GateResult compare_subjects(const std::vector<Subject>& before, const std::vector<Subject>& after,
@@ -77,8 +72,6 @@ GateResult compare_subjects(const std::vector<Subject>& before, const std::vecto
 std::string gate_terminal(const GateResult& result, bool lists_all = false);
 std::string gate_markdown(const GateResult& result);
 std::string gate_json(const GateResult& result);  // schema isoline.comparison/1
-struct Section;
-Section gate_section(const GateResult& result);  // its title is the verdict; all of its lines
 
 inline constexpr const char* kComparisonSchema = "isoline.comparison/1";
 

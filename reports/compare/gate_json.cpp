@@ -63,12 +63,6 @@ Json json_of(const AllowedCell& cell) { return {{"title", cell.title}, {"reason"
 
 Json json_of(const Incomparable& one) { return {{"title", one.title}, {"reason", one.reason}}; }
 
-Json json_of(const Headline& headline) {
-  Json json = headline_json(headline);
-  json["label"] = headline.label;
-  return json;
-}
-
 template <class Value>
 Json list_of(const std::vector<Value>& values) {
   Json list = Json::array();
@@ -96,7 +90,6 @@ std::string gate_json(const GateResult& result) {
                   {"only_in_base", result.only_before},
                   {"allowed", list_of(result.allowed)},
                   {"only_in_new", result.only_after},
-                  {"trend", list_of(result.trend)},
                   {"remarks", result.remarks}};
   return json_text(json, 1) + "\n";
 }

@@ -119,17 +119,6 @@ Row row_of(const IncomparableGroup& group) {
           names_text({group.problems.begin(), group.problems.end()}), group.first};
 }
 
-Row row_of(const Headline& headline) {
-  const auto share = [&](std::size_t t) {
-    return fmt::format("{}/{}", headline.solved[t], headline.runs);
-  };
-  std::string leaders;
-  for (const HeadlineMethod& method : headline.leaders)
-    leaders += fmt::format("{}{} {}/{} ({})", leaders.empty() ? "" : ", ", method.name,
-                           method.solved, method.runs, reached_figure(method.median_work));
-  return {headline.label, share(2), share(1), share(0), std::to_string(headline.failed), leaders};
-}
-
 // A table a cause, in the order of the causes.
 void add_differences(Section& section, const GateResult& result,
                      const std::vector<DifferenceGroup>& groups) {
@@ -205,22 +194,10 @@ Section section_of(const GateResult& result, bool lists_all) {
                   lists_all ? grouped_by_problem(result.differences) : result.groups);
   add_what_differs(section, result);
   add_what_is_apart(section, result);
-  add_table(section,
-            {.title = "Trend",
-             .columns = {"results", "runs that reach 1e-6", "1e-3", "1e-1", "failed",
-                         "methods that solve most (median work)"},
-             .align = "lrrrrl"},
-            result.trend, [](const Headline& headline) { return row_of(headline); });
   return section;
 }
 
 }  // namespace
-
-Section gate_section(const GateResult& result) {
-  Section section = section_of(result, true);
-  section.title = result.verdict;
-  return section;
-}
 
 std::string gate_terminal(const GateResult& result, bool lists_all) {
   const Section section = section_of(result, lists_all);

@@ -107,29 +107,13 @@ BestKnown minima_from_json(const Json& minima) {
 
 }  // namespace
 
-Headline headline_from_json(const std::string& label, const Json& json) {
-  Headline headline{.label = label, .leaders = {}};
-  json.at("runs").get_to(headline.runs);
-  json.at("failed").get_to(headline.failed);
-  json.at("solved").get_to(headline.solved);
-  for (const Json& method : json.at("leaders"))
-    headline.leaders.push_back({.name = method.at("optimizer").get<std::string>(),
-                                .solved = method.at("solved").get<std::size_t>(),
-                                .runs = method.at("runs").get<std::size_t>(),
-                                .median_work = real_of(method.at("median_work"))});
-  return headline;
-}
-
 Baseline baseline_from_json(const Json& json) {
   try {
     require(json.at("schema") == kBaselineSchema,
             [&] { return fmt::format("the schema is not {}", kBaselineSchema); });
-    Baseline baseline{
-        .subjects = {}, .minima = minima_from_json(json.at("minima")), .headline = {}};
+    Baseline baseline{.subjects = {}, .minima = minima_from_json(json.at("minima"))};
     for (const Json& cell : json.at("cells"))
       baseline.subjects.push_back(subject_from_json(cell, json));
-    baseline.headline = json.contains("headline") ? headline_from_json("BASE", json.at("headline"))
-                                                  : headline_of("BASE", baseline.subjects);
     return baseline;
   } catch (const Json::exception& error) {
     throw UsageError(fmt::format("no {}: {}", kBaselineSchema, error.what()));

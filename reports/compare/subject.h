@@ -1,5 +1,4 @@
-// What two results can have in common, in the one form in which they are compared: a cell of two
-// record folders, or a pair of problem and optimizer in two reports.
+// A cell of a result folder or of a baseline, in the one form in which two results are compared.
 #pragma once
 
 #include <array>
@@ -85,6 +84,5 @@ Subject subject_without_figures(const Record& record);
 void add_figures(Subject& subject, const Record& record, const BestKnown& reference);
 
 std::vector<Subject> subjects_of(const Study& study, const BestKnown& reference);
-std::vector<Subject> subjects_of_report(const Json& report);  // schema isoline.report/1
 
 }  // namespace isoline::reports

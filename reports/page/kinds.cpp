@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <map>
 
-#include "reports/read/both_sides.h"
-
 namespace isoline::reports {
 namespace {
 
@@ -28,10 +26,6 @@ LineStyle style_of(const OptimizerAxis& optimizer) {
       std::min<std::ptrdiff_t>(at - kMathematics.begin(), std::ssize(kMathematics) - 1);
   // Settings of a method differ by their options.
   const std::uint32_t method = digest_of(optimizer.method), setting = digest_of(optimizer.label);
-  // Of two results the line of NEW is whole, and that of BASE broken.
-  if (!optimizer.side.empty())
-    return {static_cast<std::size_t>(kind), optimizer.side == kSides[0] ? 1U : 0U,
-            method % kMarkers};
   return {static_cast<std::size_t>(kind), method % kDashes.size(), setting % kMarkers};
 }
 

@@ -21,7 +21,6 @@ namespace isoline::reports {
 
 std::string_view embedded_outer_html();
 std::string_view embedded_page_html();
-std::string_view embedded_comparison_html();
 std::string_view embedded_page_css();
 std::string_view embedded_parts_css();
 std::string_view embedded_plots_css();
@@ -38,7 +37,6 @@ std::string_view embedded_figures_js();
 std::string_view embedded_tables_js();
 std::string_view embedded_overview_js();
 std::string_view embedded_pair_js();
-std::string_view embedded_sides_js();
 std::string_view embedded_problem_js();
 std::string_view embedded_fields_js();
 std::string_view embedded_page_js();
@@ -106,10 +104,10 @@ std::string profile_html(const Comparison& c) {
 }
 
 constexpr std::string_view (*kScripts[])() = {
-    embedded_chart_js,   embedded_lines_js,   embedded_view_js,     embedded_cells_js,
-    embedded_tabs_js,    embedded_bar_js,     embedded_charts_js,   embedded_planes_js,
-    embedded_figures_js, embedded_tables_js,  embedded_overview_js, embedded_pair_js,
-    embedded_sides_js,   embedded_problem_js, embedded_fields_js,   embedded_page_js,
+    embedded_chart_js,   embedded_lines_js,  embedded_view_js,     embedded_cells_js,
+    embedded_tabs_js,    embedded_bar_js,    embedded_charts_js,   embedded_planes_js,
+    embedded_figures_js, embedded_tables_js, embedded_overview_js, embedded_pair_js,
+    embedded_problem_js, embedded_fields_js, embedded_page_js,
 };
 
 std::string scripts_html() {
@@ -180,20 +178,6 @@ std::string html_report(const Document& document) {
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
   return framed(embedded_page_html(), "Isoline report", "The page of a report.", std::move(parts));
-}
-
-std::string comparison_page(const Comparison& sides, const Section& changes,
-                            const std::string& headline) {
-  const Document document{.comparison = sides};
-  const std::vector<Interval> none(sides.optimizers.size());  // no order of both is shown
-  const AllFields fields = all_found_fields(sides);
-  Parts parts = common_parts(sides, fields);
-  parts.merge(Parts{{"headline", html_text(headline)},
-                    {"verdict", html_text(changes.title)},
-                    {"changes", section_html(changes)},
-                    {"data", page_data(document, none, fields)}});
-  return framed(embedded_comparison_html(), "Isoline: two results compared",
-                "The page of two results compared.", std::move(parts));
 }
 
 }  // namespace isoline::reports

@@ -12,11 +12,6 @@ namespace isoline::reports {
 
 std::string html_report(const Document& document);  // one file that asks nothing of the network
 
-// Two results compared, of reports/read/both_sides.h: a method against itself, what changed (its
-// title is the verdict), and the problems.
-std::string comparison_page(const Comparison& sides, const Section& changes,
-                            const std::string& headline);
-
 // A section as every other: sentences, plots, tables. Complete without scripts.
 std::string section_html(const Section& section);
 std::string plot_html(const Plot& plot);

@@ -12,7 +12,6 @@
 #include "reports/page/compact_json.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
-#include "reports/read/both_sides.h"
 #include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 
@@ -64,16 +63,6 @@ std::string standings_json(const Comparison& c, const Ladders& ladders) {
     text += !is_first && all[i] == all[i - 1] ? "0" : all[i];
   }
   return text + "]]";
-}
-
-// [method in BASE, the same in NEW, what both call it] of two results compared; else nothing.
-std::string sides_json(const Comparison& c) {
-  const std::vector<InBoth> both = methods_in_both(c);
-  if (both.empty()) return "";
-  return ",\"sides\":" + list(both, [](const InBoth& one) {
-           return fmt::format("[{},{},{}]", one.before, one.after,
-                              json_quoted(shown_spec(one.label)));
-         });
 }
 
 // What does not change from target to target: [settings, runs, failed, score's interval].
@@ -155,7 +144,7 @@ std::string page_data(const Document& document, const std::vector<Interval>& int
       standings_json(c, ladders));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     text += (p > 0 ? "," : "") + problem_data(c, ladders, p, fields[p]);
-  return safe(text + "]" + sides_json(c) + "}");
+  return safe(text + "]}");
 }
 
 }  // namespace isoline::reports

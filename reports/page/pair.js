@@ -153,7 +153,6 @@ function learnedSection() {
 }
 
 function drawPair(place) {
-  if (DATA.sides !== undefined) return drawSides(place);
   const told = pairOf(pair.a, pair.b), redraw = () => drawPair(place);
   place.replaceChildren(
       element('p', {className: 'chosen-two'}, pairSelect('a', redraw), ' against ', pairSelect('b', redraw)),

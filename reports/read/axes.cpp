@@ -77,10 +77,8 @@ void OptimizerLabels::find_foreign(const Study& study) {
     const std::string& spec = record.request.optimizer.spec;
     if (foreign_.contains(spec)) continue;
     const std::string& name = record.foreign.optimizer->label;
-    // Behind the options may stand the side of two results (read/both_sides.h).
-    const std::string label = name + spec.substr(std::min(spec.rfind(']'), spec.size() - 1) + 1);
-    const bool is_free = !name.empty() && taken.insert(label).second;
-    foreign_[spec] = is_free ? label : spec;
+    const bool is_free = !name.empty() && taken.insert(name).second;
+    foreign_[spec] = is_free ? name : spec;
   }
 }
 

@@ -91,7 +91,6 @@ struct OptimizerAxis {
   std::string whole;
   bool is_meaning = false;
   bool is_foreign = false;  // another program runs it
-  std::string side;         // "BASE" or "NEW", where two results are compared (read/both_sides.h)
   const Sheet* sheet = nullptr;
   std::vector<std::string> privileges;                   // on any problem
   bool is_imported = false;                              // some run of it is a claim of others

@@ -18,11 +18,7 @@ const Request* request_of(const Comparison& c, std::size_t p, std::size_t s) {
 
 // "3.8e-5" of gd[rate=3.8e-5], "rate=1, momentum=0.9" where there are several, "default" of gd.
 std::string values_text(const Request& request) {
-  // Behind the options may stand the side of two results (read/both_sides.h).
-  const std::string& whole = request.optimizer.spec;
-  const std::size_t end = whole.rfind(']');
-  if (end == std::string::npos) return "default";
-  const Spec spec = parse_spec(whole.substr(0, end + 1));
+  const Spec spec = parse_spec(request.optimizer.spec);
   std::vector<std::string> shown;  // long numbers cut
   for (const auto& [name, value] : spec.options)
     shown.push_back(shown_spec(fmt::format("{}={}", name, value)));

@@ -163,7 +163,7 @@ const std::vector<Mistake> kMistakes = {
     {"check rosenbrok", "did you mean 'rosenbrock'"},
     {"validate nowhere", "nowhere: no such file or folder"},
     {"report nowhere", "nowhere: no such result folder"},
-    {"compare nowhere .", "nowhere: no such result folder, baseline or report"},
+    {"compare nowhere .", "nowhere: no such result folder or baseline"},
     {"compare . . --tolerance -1", "--tolerance"},
     {"compare . . --json --markdown", "--json"},
     {"compare . . --allow nowhere.json", "nowhere.json"},

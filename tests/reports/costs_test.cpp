@@ -102,28 +102,6 @@ TEST(Costs, AreNotAtThePricesOfOtherSettings) {
   EXPECT_EQ(compare_optimizers(study).cell(0, 0).taken[Measure::cost][kTightest].median, 30 * 3.5);
 }
 
-// Two machines measure different prices: what is compared between results is none of it.
-TEST(Costs, ChangeNoFigureThatResultsAreComparedBy) {
-  Study cheap, dear;
-  cheap.runs = dear.runs = {counted()};
-  cheap.sheets = {priced("square", 0.5)};
-  dear.sheets = {priced("square", 40)};
-  const Comparison one = compare_optimizers(cheap), other = compare_optimizers(dear);
-  EXPECT_NE(one.cell(0, 0).taken[Measure::cost][kTightest].median,
-            other.cell(0, 0).taken[Measure::cost][kTightest].median);
-  EXPECT_EQ(one.cell(0, 0).taken[Measure::work][kTightest].median,
-            other.cell(0, 0).taken[Measure::work][kTightest].median);
-  const auto subjects = [](const Comparison& c) {
-    return subjects_of_report(parse_json(json_report(document_of(c)), "report.json"));
-  };
-  const auto left = subjects(one), right = subjects(other);
-  ASSERT_EQ(left.size(), 1U);
-  ASSERT_EQ(left[0].quantities.size(), right[0].quantities.size());
-  for (std::size_t i = 0; i < left[0].quantities.size(); ++i)
-    EXPECT_EQ(left[0].quantities[i].value, right[0].quantities[i].value)
-        << *left[0].quantities[i].name;
-}
-
 // 30 forward solves and 30 pullbacks at 2.5: 105.
 TEST(Costs, StandBesideTheRawCounts) {
   Study study;

@@ -162,24 +162,12 @@ TEST(Gate, AnUndeclaredMinimumIsTheBestOfTheFirst) {
     EXPECT_NE(difference.change, Change::worse) << difference.what;
 }
 
-TEST(Gate, ReportsAreComparedToo) {
-  const ResultFolder before, after;
-  fill(before, [](Record&) {});
-  fill(after, [](Record& record) {
-    record.hits->work.assign(51, -1);
-    record.hits->iteration.assign(51, -1);
-  });
-  for (const ResultFolder* folder : {&before, &after}) {
-    const Study study = read_study({folder->path()});
-    folder->add_file("report.json", json_report(document_of(compare_optimizers(study))));
-  }
-  const auto old_report = before.path() / "report.json", report = after.path() / "report.json";
-  EXPECT_EQ(compare_results(old_report, old_report, {}).exit_code, 0);
-  EXPECT_EQ(compare_results(old_report, before.path(), {}).exit_code, 0);
-  const GateResult worse = compare_results(old_report, report, {});
-  EXPECT_EQ(worse.exit_code, 2);
-  EXPECT_TRUE(has(worse.differences.at(0).what, "runs without work to"))
-      << worse.differences[0].what;
+TEST(Gate, AReportIsNoSide) {
+  const ResultFolder folder;
+  fill(folder, [](Record&) {});
+  folder.add_file("report.json", "{\"schema\": \"isoline.report/1\"}");
+  EXPECT_THROW(compare_results(folder.path() / "report.json", folder.path(), {}), UsageError);
+  EXPECT_THROW(compare_results(folder.path(), folder.path() / "report.json", {}), UsageError);
 }
 
 TEST(Gate, AllFormatsTellTheSame) {

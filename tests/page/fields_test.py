@@ -1,9 +1,7 @@
-"""Fields of grid problems, and two results compared, in a real browser. Skipped (77) where Chromium
-is not installed."""
+"""Fields of grid problems in a real browser. Skipped (77) where Chromium is not installed."""
 
 import math
 import pathlib
-import statistics
 import sys
 import unittest
 
@@ -22,10 +20,6 @@ const {data} = context.getImageData(0, 0, canvas.width, canvas.height), cells = 
 for (let i = 0; i < data.length; i += 4)
   cells.push('#' + [0, 1, 2].map((j) => data[i + j].toString(16).padStart(2, '0')).join(''));
 return cells;"""
-IS_DRAWN = """const canvas = document.querySelector(arguments[0])?.querySelector('canvas');
-if (!canvas || canvas.width === 0) return false;
-const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-return new Set(new Uint32Array(data.buffer)).size > 20;"""
 
 
 def distance(one, other):
@@ -180,108 +174,6 @@ class Fields(InBrowser):
             inner = one.split("<noscript>")[1].split("</noscript>")[0]
             self.assertEqual(inner.count("<img "), 3 + 2 * len(self.found))
             self.assertNotIn("type=range", inner)
-
-
-def doublings(a, b):
-    """log2 of what BASE takes over what NEW takes; unsolved is 64 times as much."""
-    if a is None or b is None:
-        return 6 if b is not None else -6
-    return max(-6, min(6, math.log2(max(a, 1)) - math.log2(max(b, 1))))
-
-
-class Sides(InBrowser):
-    PROBLEMS = "rosenbrock,square,beale,helical-valley,wood"
-    OPTIMIZERS = "gd,adam,newton,gauss-newton"
-
-    @classmethod
-    def made(cls, folder):
-        cls.sides = [pathlib.Path(folder, name) for name in ("old", "new")]
-        for side, iterations in zip(cls.sides, ("400", "25")):
-            run("run", "--problem", cls.PROBLEMS, "--optimizer", cls.OPTIMIZERS, "--iterations",
-                iterations, "--out", str(side), "--quiet")
-        page = pathlib.Path(folder, "compared.html")
-        cls.answer = run("compare", *map(str, cls.sides), "--html", str(page))
-        return page
-
-    def test_it_is_written_and_the_answer_is_that_of_the_gate(self):
-        plain = run("compare", *map(str, self.sides))
-        self.assertEqual(self.answer.returncode, plain.returncode)
-        self.assertEqual(self.answer.stdout, plain.stdout)
-        self.open("#changes")
-        told = self.browser.run("return document.getElementById('changes').innerText")
-        self.assertIn(plain.stdout.split("\n")[0].split(": ", 1)[1][:40], " ".join(told.split()))
-
-    def test_it_opens_with_new_against_base_over_all_methods(self):
-        self.open("")
-        sentence = self.browser.wait("return document.querySelector('#pair .verdict')?.innerText")
-        self.assertRegex(sentence, r"^NEW needs less declared work than BASE on \d of \d problems")
-        rows = self.browser.run("return [...document.querySelectorAll('#pair tbody tr')]"
-                                ".map((row) => row.cells[0].innerText)")
-        self.assertEqual(sorted(rows), sorted(self.OPTIMIZERS.split(",")))
-
-    def test_a_method_against_itself_has_the_figures_of_a_pair(self):
-        self.open("")
-        for a, b, name in self.browser.run("return SIDES"):
-            told, same = self.browser.run(
-                "return [pairOfAll([[arguments[0], arguments[1]]]), pairOf(arguments[0], arguments[1])]"
-                ".map((one) => [one.wins, one.losses, one.ties, one.neither, one.typical])", a, b)
-            self.assertEqual(told, same)
-            self.browser.run("side.chosen = SIDES.findIndex((one) => one[2] === arguments[0]);"
-                             "refreshAll()", name)
-            sentence = self.browser.wait(
-                "const text = document.querySelector('#pair .verdict').innerText;"
-                "return text.startsWith(arguments[0] + ':') && text", name)
-            self.assertRegex(sentence, r"NEW|neither")
-
-    def test_all_methods_together_are_medians_over_them(self):
-        self.open("")
-        own = self.browser.run(
-            "return DATA.problems.map((problem) => [problem.name, SIDES.map(([a, b]) => [a, b].map((s) => {"
-            " const cell = cellOf(problem, s), work = cell === undefined ? undefined : takenBy(cell);"
-            " return work === undefined ? undefined : work === Infinity ? null : work; }))])")
-        medians = {}
-        for name, pairs in own:
-            values = [doublings(a, b) for a, b in pairs if a is not None or b is not None]
-            if values:
-                medians[name] = statistics.median(values)
-        told = self.browser.run("const told = pairOfAll(SIDES); return [told.wins, told.losses, told.ties,"
-                                " told.typical]")
-        values = list(medians.values())
-        self.assertEqual(told[:3], [sum(v < 0 for v in values), sum(v > 0 for v in values),
-                                    sum(v == 0 for v in values)])
-        self.assertAlmostEqual(told[3], 2 ** -statistics.median(values))
-
-    def test_a_bar_opens_the_curves_of_both_sides(self):
-        self.open("")
-        self.browser.wait("return document.querySelector('#pair tbody button') !== null")
-        self.browser.click("#pair tbody button")
-        self.browser.wait("return side.chosen >= 0")
-        self.browser.click("#pair .bars-of a")
-        self.browser.wait(IS_DRAWN, ".problem.chosen .curves")
-        names, dashes = self.browser.run(
-            "const sets = Chart.getChart(document.querySelector('.problem.chosen .curves canvas'))"
-            ".data.datasets.filter((set) => set.optimizer !== undefined);"
-            "return [sets.map((set) => set.label), sets.map((set) => set.borderDash.length)]")
-        self.assertEqual(len(names), 2)
-        for name, dash in zip(names, dashes):
-            self.assertEqual(dash > 0, name.endswith(", BASE"), name)
-
-    def test_each_tab_fits_a_phone_and_the_file_stands_alone(self):
-        resized(self.browser, 400, 800)
-        for tab in ("compare", "changes", "problems"):
-            self.open(f"#{tab}")
-            self.assertLessEqual(self.browser.run(WIDER), 0, f"{tab} is wider than the window")
-        text = pathlib.Path(self.folder.name, "compared.html").read_text()
-        self.assertIn("Content-Security-Policy", text)
-        for outside in ("src=\"http", "href=\"http", "@import"):
-            self.assertNotIn(outside, text)
-
-    def test_anything_but_two_folders_is_refused_before_it_is_read(self):
-        report = self.sides[0] / "report" / "report.json"
-        refused = run("compare", str(report), str(self.sides[1]), "--html", "x.html")
-        self.assertEqual(refused.returncode, 1)
-        self.assertIn("two result folders", refused.stderr)
-        self.assertFalse(pathlib.Path("x.html").exists())
 
 
 if __name__ == "__main__":
