@@ -85,13 +85,15 @@ class FieldParser {
 
 bool contains(const Range& range, Real value) {
   const bool above = range.low_is_open ? value > range.low : value >= range.low;
-  return above && value <= range.high && std::isfinite(value);  // no range is closed at infinity
+  const bool below = range.high_is_open ? value < range.high : value <= range.high;
+  return above && below && std::isfinite(value);  // no range is closed at infinity
 }
 
 std::string text_of(const Range& range) {
-  const bool is_bounded = std::isfinite(range.high), from_below = std::isfinite(range.low);
+  const bool is_closed = std::isfinite(range.high) && !range.high_is_open;
+  const bool from_below = std::isfinite(range.low);
   return fmt::format("{}{}, {}{}", range.low_is_open || !from_below ? "(" : "[", range.low,
-                     range.high, is_bounded ? "]" : ")");
+                     range.high, is_closed ? "]" : ")");
 }
 
 std::string text_of(const OptionValue& value) {

@@ -21,12 +21,14 @@ namespace isoline {
 struct Range {
   Real low = -std::numeric_limits<Real>::infinity();
   Real high = std::numeric_limits<Real>::infinity();
-  bool low_is_open = false;
+  bool low_is_open = false, high_is_open = false;
 };
 inline Range any() { return {}; }
 inline Range above(Real low) { return {.low = low, .low_is_open = true}; }
 inline Range at_least(Real low) { return {.low = low}; }
 inline Range between(Real low, Real high) { return {.low = low, .high = high}; }
+// Of a running mean. At 1 it would never take in a value, and its bias correction would be 0/0.
+inline Range decay() { return {.low = 0, .high = 1, .high_is_open = true}; }
 bool contains(const Range& range, Real value);
 std::string text_of(const Range& range);  // "[1, 1000]", "(0, inf)"
 

@@ -24,7 +24,7 @@ struct Adadelta {
 
 void fields(Adadelta& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
-  field("rho", o.rho, between(0, 1), "decay ρ of the mean squares");
+  field("rho", o.rho, decay(), "decay ρ of the mean squares");
   field("epsilon", o.epsilon, above(0), "ε: makes the first steps and floors the scale");
 }
 

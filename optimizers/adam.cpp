@@ -26,8 +26,8 @@ struct Adam {
 
 void fields(Adam& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
-  field("beta1", o.beta1, between(0, 1), "decay β₁ of the mean gradient");
-  field("beta2", o.beta2, between(0, 1), "decay β₂ of the mean squared gradient");
+  field("beta1", o.beta1, decay(), "decay β₁ of the mean gradient");
+  field("beta2", o.beta2, decay(), "decay β₂ of the mean squared gradient");
   field("epsilon", o.epsilon, at_least(0), "floor ε of the scale");
 }
 

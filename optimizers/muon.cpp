@@ -106,8 +106,8 @@ struct Muon {
 void fields(Muon& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
   field("momentum", o.momentum, between(0, 1), "share of the momentum that is kept, of matrices");
-  field("beta1", o.beta1, between(0, 1), "decay β₁ of the mean gradient, of vectors");
-  field("beta2", o.beta2, between(0, 1), "decay β₂ of the mean squared gradient, of vectors");
+  field("beta1", o.beta1, decay(), "decay β₁ of the mean gradient, of vectors");
+  field("beta2", o.beta2, decay(), "decay β₂ of the mean squared gradient, of vectors");
 }
 
 std::string objection(const OptionValues&, const Problem& problem) {

@@ -21,7 +21,7 @@ struct Rmsprop {
 
 void fields(Rmsprop& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
-  field("alpha", o.alpha, between(0, 1), "decay α of the mean square");
+  field("alpha", o.alpha, decay(), "decay α of the mean square");
   field("epsilon", o.epsilon, at_least(0), "floor ε of the scale");
 }
 

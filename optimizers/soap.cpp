@@ -120,8 +120,8 @@ struct Soap {
 
 void fields(Soap& o, auto& field) {
   field("rate", o.rate, above(0), "step length η");
-  field("beta1", o.beta1, between(0, 1), "decay β₁ of the mean gradient");
-  field("beta2", o.beta2, between(0, 1), "decay β₂ of the mean squares and of the preconditioner");
+  field("beta1", o.beta1, decay(), "decay β₁ of the mean gradient");
+  field("beta2", o.beta2, decay(), "decay β₂ of the mean squares and of the preconditioner");
   field("epsilon", o.epsilon, at_least(0), "floor ε of the scale");
   field("every", o.every, between(1, 1e6), "steps from one renewal of the basis to the next");
   field("longest", o.longest, between(1, 4096), "longest side that has a basis");

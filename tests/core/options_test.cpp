@@ -70,6 +70,12 @@ TEST(Options, TheLawAndWhatWasGivenAreNamed) {
   EXPECT_EQ(complaint({{"rte", 1}}), "sample: unknown option 'rte'; did you mean 'rate'?");
 }
 
+TEST(Options, ADecayIsBelowOne) {
+  EXPECT_TRUE(contains(decay(), 0));
+  EXPECT_FALSE(contains(decay(), 1));
+  EXPECT_EQ(text_of(decay()), "[0, 1)");
+}
+
 TEST(Options, WithoutAnUpperBoundAreFiniteAllTheSame) {
   EXPECT_EQ(complaint({{"rate", "inf"}}), "sample: rate must be in (0, inf), got inf");
   EXPECT_NE(complaint({{"rate", "1e400"}}), "");

@@ -79,6 +79,21 @@ TEST(Rules, DefaultsAreThoseOfPyTorch) {
   EXPECT_EQ(standard("adagrad", "epsilon"), 1e-10);
 }
 
+// At 1 the mean would stay at zero, and its bias correction would divide 0 by 0.
+TEST(Rules, ADecayOfOneIsRefused) {
+  std::size_t refused = 0;
+  for (const auto& [name, entry] : optimizers())
+    for (const OptionField& option : entry.options)
+      for (const std::string decay : {"beta1", "beta2", "rho", "alpha"})
+        if (option.name == decay) {
+          EXPECT_THROW(complete_options(entry.options, name, {{decay, 1.0}}), UsageError)
+              << name << "[" << decay << "=1]";
+          EXPECT_NO_THROW(complete_options(entry.options, name, {{decay, 0.0}}));
+          ++refused;
+        }
+  EXPECT_GE(refused, 12U);
+}
+
 TEST(Rules, OnlyGradientRulesCanBeUsedInside) {
   EXPECT_THROW(make_descent(optimizers(), "newton"), UsageError);
 }
