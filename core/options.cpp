@@ -141,6 +141,8 @@ void OptionValues::erase(std::string_view name) {
   std::erase_if(values_, [&](const NamedOption& each) { return each.name == name; });
 }
 
+std::string_view option_name(std::string_view given) { return given == "lr" ? "rate" : given; }
+
 OptionValues complete_options(const OptionTable& table, const std::string& component,
                               const OptionValues& given) {
   OptionValues complete;
@@ -150,7 +152,7 @@ OptionValues complete_options(const OptionTable& table, const std::string& compo
     complete.set(field.name, field.standard);
   }
   for (const auto& [key, value] : given) {
-    const std::string name = key == "lr" ? "rate" : key;
+    const std::string name(option_name(key));
     const auto field = std::ranges::find(table, name, &OptionField::name);
     if (names.empty()) throw UsageError(fmt::format("{} takes no options, got {}", component, key));
     if (field == table.end())

@@ -80,8 +80,11 @@ struct OptionField {
 };
 using OptionTable = std::vector<OptionField>;
 
+// The declared name of an option: `lr` is an alias of `rate`.
+std::string_view option_name(std::string_view given);
+
 // Every field of the table, defaults filled in, each of its field's type. `component` opens the
-// error message. Numbers may come as text, as from a command line; `lr` is an alias of `rate`.
+// error message. Numbers may come as text, as from a command line.
 OptionValues complete_options(const OptionTable& table, const std::string& component,
                               const OptionValues& given);
 

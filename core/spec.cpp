@@ -201,9 +201,10 @@ std::string quoted(const std::string& value) {
 OptionValues options_of(const Spec& spec) {
   OptionValues options;
   for (const auto& [key, value] : spec.options) {
-    require(!options.contains(key),
-            [&] { return fmt::format("{}: {} is given twice", spec.name, key); });
-    options.set(key, value);
+    const std::string name(option_name(key));
+    require(!options.contains(name),
+            [&] { return fmt::format("{}: {} is given twice", spec.name, name); });
+    options.set(name, value);
   }
   return options;
 }

@@ -36,7 +36,8 @@ Spec parse_spec(std::string_view text);  // UsageError unless it is exactly one
 // A text as the value of a spec, in double quotes where it would not come back the same without.
 std::string quoted(const std::string& value);
 
-OptionValues options_of(const Spec& spec);  // as texts; UsageError where a name is given twice
+// As texts, by their declared names; UsageError where a name is given twice.
+OptionValues options_of(const Spec& spec);
 
 // "sine" of "sine[xi=32]", for labels made of specs that are no component's. Components, records
 // and sheets carry their names.

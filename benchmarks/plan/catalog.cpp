@@ -17,9 +17,7 @@ std::string asked_spec(const OptionTable& table, const std::string& name, const 
                        const OptionValues& complete) {
   OptionTable asked;
   for (const OptionField& field : table) {
-    const bool is_given =
-        given.contains(field.name) || (field.name == "rate" && given.contains("lr"));
-    if (!is_given) continue;
+    if (!given.contains(field.name)) continue;
     asked.push_back(field);
     // A default of another type equals no value, and what differs from its default is written.
     const bool is_flag = std::holds_alternative<bool>(field.standard);

@@ -36,10 +36,8 @@ std::vector<Wanted> wanted_in(const Registered& registry, const std::string& tex
     if (!is_selector(spec.name)) {
       const auto& table = registry.at(spec.name).options;
       const OptionValues complete = complete_options(table, spec.name, options_of(spec));
-      for (const auto& [name, value] : options_of(spec)) {
-        const std::string known = name == "lr" ? "rate" : name;
-        wanted.options.set(known, complete.at(known));
-      }
+      for (const auto& [name, value] : options_of(spec))
+        wanted.options.set(name, complete.at(name));
     }
     all.push_back(std::move(wanted));
   }

@@ -160,7 +160,7 @@ class Expansion {
 
 Component with_rates(const Catalog& catalog, const Spec& spec, const Rates::Row* row) {
   OptionValues options = row ? row->options : OptionValues();
-  for (const auto& [key, value] : options_of(spec)) options.set(key == "lr" ? "rate" : key, value);
+  options.set_all(options_of(spec));
   Component optimizer = complete_optimizer(catalog, spec.name, options);
   optimizer.asked = complete_optimizer(catalog, spec).asked;
   return optimizer;

@@ -97,6 +97,11 @@ TEST(Spec, AnyTextComesBackFromTheSpecThatIsMadeOfIt) {
   EXPECT_EQ(short_spec(table, "sip", plain), "sip[command=adam[rate=1e-3,beta1=0.8]]");
 }
 
+TEST(Spec, AnAliasIsReadAsTheOptionItStandsFor) {
+  EXPECT_EQ(options_of(parse_spec("gd[lr=2]")), options_of(parse_spec("gd[rate=2]")));
+  EXPECT_THROW(options_of(parse_spec("gd[lr=1,rate=2]")), UsageError);
+}
+
 TEST(Spec, WhatDoesNotParseIsAUsageError) {
   for (const char* wrong : {"sine[", "sine]", "sine[xi]", "[xi=1]", "sine[xi=1]x", "a,,b", "",
                             "a[b=\"c]", "a[b=\"c\"d]"})
