@@ -29,7 +29,7 @@ Json table_json(const Table& table) {
 }
 
 Json plot_json(const Plot& plot, const Comparison& c) {
-  constexpr const char* kKinds[] = {"steps", "dots", "bars", "matrix", "lines"};
+  constexpr const char* kKinds[] = {"steps", "dots", "bars", "lines"};
   const auto numbers = [](const std::vector<Real>& values) { return json_numbers(values); };
   Json rows = Json::array(), series = Json::array();
   for (const PlotRow& row : plot.rows) rows.push_back(row.name);

@@ -172,39 +172,9 @@ std::string bars_svg(const Plot& plot) {
   return svg;
 }
 
-// p in the cell; rows have names, columns their numbers.
-std::string matrix_svg(const Plot& plot) {
-  constexpr Real kCell = 46, kHigh = 22, kSure = 0.05, kNearly = 0.2;
-  std::string svg;
-  for (std::size_t a = 0; a < plot.series.size(); ++a) {
-    const PlotSeries& row = plot.series[a];
-    const Real y = kTop + kHigh * static_cast<Real>(a);
-    svg += fmt::format("<g data-s={}><text x={:.0f} y={:.0f} text-anchor=end>{}. {}</text>",
-                       *row.optimizer, kNames - 8, y + 15, a + 1, html_text(row.name));
-    for (std::size_t b = 0; b < row.y.size(); ++b) {
-      if (std::isnan(row.y[b])) continue;
-      const char* shade = row.y[b] <= kSure ? "sure" : row.y[b] <= kNearly ? "nearly" : "unsure";
-      const Real x = kNames + kCell * static_cast<Real>(b);
-      svg += fmt::format(
-          "<g data-s={}><rect class=\"cell {}\" x={:.0f} y={:.0f} width={:.0f} height={:.0f} "
-          "/><text "
-          "class={} x={:.0f} y={:.0f} text-anchor=middle>{:.2g}</text></g>",
-          *plot.series[b].optimizer, shade, x + 1, y + 1, kCell - 2, kHigh - 2, shade,
-          x + kCell / 2, y + 15, row.y[b]);
-    }
-    svg += "</g>";
-  }
-  for (std::size_t b = 0; b < plot.series.size(); ++b)
-    svg += fmt::format("<text data-s={} class=tick x={:.0f} y={:.0f} text-anchor=middle>{}.</text>",
-                       *plot.series[b].optimizer, kNames + kCell * (static_cast<Real>(b) + 0.5),
-                       kTop - 8, b + 1);
-  return svg;
-}
-
 Real height_of(const Plot& plot) {
   const Real rows = static_cast<Real>(plot.rows.size());
   if (plot.kind == Plot::Kind::steps) return kTop + 250 + kBelow;
-  if (plot.kind == Plot::Kind::matrix) return kTop + 22 * rows + 8;
   return kTop + kRow * rows + kBelow;
 }
 
@@ -235,7 +205,7 @@ std::string closing_rows(const Plot& plot) {
 std::string plot_svg(const Plot& plot) {
   if (plot.kind == Plot::Kind::lines) return lines_svg(plot);
   using Draw = std::string (*)(const Plot&);
-  constexpr Draw kDraw[] = {steps_svg, dots_svg, bars_svg, matrix_svg};  // by kind
+  constexpr Draw kDraw[] = {steps_svg, dots_svg, bars_svg};  // by kind
   return fmt::format(
              "<svg{} viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\"><title>{}</title>",
              closing_rows(plot), kWidth, height_of(plot),

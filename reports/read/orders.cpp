@@ -37,49 +37,4 @@ Real friedman_of(const Comparison& c) {
   return friedman_p(blocks);
 }
 
-Real lacking_digits(const Comparison& c, const Cell& cell, Real Summary::*loss) {
-  if (!cell.is_measured()) return kNever;
-  std::vector<Real> lacking;
-  for (const std::size_t index : cell.runs) {
-    const Run& run = c.runs[index];
-    const Summary& summary = run.record->summary;
-    const Real scale = run.record->scale.value_or(summary.start_loss - run.minimum);
-    const Real digits =
-        accuracy(summary.*loss, run.minimum, scale, run.record->request.budget.target);
-    lacking.push_back(is_failure(run.record->status) ? kNever : -digits);
-  }
-  return median_of(lacking);
-}
-
-std::vector<Real> lacking_digits(const Comparison& c, std::size_t s, Real Summary::*loss) {
-  std::vector<Real> all;
-  const bool is_ranked = c.order.has(s);
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const bool is_common = std::ranges::find(c.order.settings, p) != c.order.settings.end();
-    if (c.cell(p, s).planned > 0 && (is_common || !is_ranked))
-      all.push_back(lacking_digits(c, c.cell(p, s), loss));
-  }
-  return all;
-}
-
-SignedRanks signed_ranks(const Comparison& c, std::size_t k) {
-  const Costs costs = common_costs(c, kTightest);
-  const Groups groups = groups_of(c);
-  SignedRanks all;
-  std::vector<Real> p;
-  for (std::size_t a = 0; a < k; ++a)
-    for (std::size_t b = a + 1; b < k; ++b) {
-      const Pairing pairing = pairing_of(costs, groups, a, b);
-      p.push_back(signed_rank_p(pairing.doublings));
-      all.pairs.push_back({a, b, p.back(), 1, pairing.wins, pairing.doublings.size()});
-    }
-  const std::vector<Real> adjusted = holm(p);
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    all.pairs[i].adjusted = adjusted[i];
-    all.told += adjusted[i] <= kSignificant;
-    all.least = std::min(all.least, adjusted[i]);
-  }
-  return all;
-}
-
 }  // namespace isoline::reports

@@ -68,12 +68,6 @@ Real BestKnown::minimum(const Record& record) const {
   return record.imported ? record.summary.best_loss : std::nan("");
 }
 
-bool returns(const Run& run, Real tau) {
-  const Record& record = *run.record;
-  if (run.aim == Aim::loss) return record.summary.loss <= goal(run, tau);
-  return record.x_scale && record.summary.x_error <= x_goal(tau, *record.x_scale, record.x_floor);
-}
-
 std::vector<Real> losses_left(const Run& run) {
   std::vector<Real> left;
   for (const Real loss : run.record->curve.loss)

@@ -30,9 +30,6 @@ class BestKnown {
 // The loss that counts as reached at τ: f_L + τ s. The one place that says so.
 inline Real goal(const Run& run, Real tau) { return run.minimum + tau * run.scale; }
 
-// Whether the point a run returned is a success at τ, of the kind its problem aims at.
-bool returns(const Run& run, Real tau);
-
 // What is left of the way at each kept point: (f − f_L) / s, or the error in x over the solution's
 // norm. Infinite where the way has no length.
 std::vector<Real> losses_left(const Run& run);

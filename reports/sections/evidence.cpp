@@ -44,10 +44,6 @@ TableCell count_cell(std::size_t count) {
   return {std::to_string(count), {{"count", Real(count)}}};
 }
 
-TableCell digits_cell(Real digits) {
-  return {digits == -kNever ? "✗" : fmt::format("{:.3g}", digits + 0.0), {{"digits", digits}}};
-}
-
 TableCell share_cell(std::size_t part, std::size_t whole) {
   if (whole == 0) return "";
   const Real share = Real(part) / Real(whole);

@@ -16,15 +16,9 @@ namespace isoline::reports {
 using Plots = std::vector<Plot>;  // none where there is too little to show
 
 Table profile_table(const Comparison& comparison);
-Table rank_table(const Comparison& comparison);
 Table leader_table(const Comparison& comparison);
-Table signed_rank_table(const Comparison& comparison);
-Table pairwise_table(const Comparison& comparison);
-Table flip_table(const Comparison& comparison);
 Table loss_without_x_table(const Comparison& comparison);
 Table condition_table(const Comparison& comparison);
-Table returned_table(const Comparison& comparison);
-Table accuracy_table(const Comparison& comparison);
 Table data_profile_table(const Comparison& comparison);
 Table anytime_table(const Comparison& comparison);
 Table interval_table(const Comparison& comparison);
@@ -33,24 +27,17 @@ Table calls_table(const Comparison& comparison);
 Table prices_table(const Comparison& comparison);
 
 Plots profile_plot(const Comparison& comparison);
-Plots pairwise_plots(const Comparison& comparison);
 Plots log_ratio_plot(const Comparison& comparison);
-Plots rank_plot(const Comparison& comparison);
-Plots signed_rank_plot(const Comparison& comparison);
 Plots data_profile_plot(const Comparison& comparison);
 Plots runtime_plot(const Comparison& comparison);
-Plots accuracy_plot(const Comparison& comparison);
 Plots target_plot(const Comparison& comparison);
 
 // In the order of a report: what is declared above stands in it once it is named here.
 inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
-    profile_table,  leader_table,   rank_table,           signed_rank_table,
-    pairwise_table, flip_table,     loss_without_x_table, condition_table,
-    returned_table, accuracy_table, data_profile_table,   anytime_table,
-    interval_table, restart_table,  calls_table,          prices_table};
+    profile_table, leader_table,   loss_without_x_table, condition_table, data_profile_table,
+    anytime_table, interval_table, restart_table,        calls_table,     prices_table};
 inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {
-    profile_plot,      pairwise_plots, log_ratio_plot, rank_plot,  signed_rank_plot,
-    data_profile_plot, runtime_plot,   accuracy_plot,  target_plot};
+    profile_plot, log_ratio_plot, data_profile_plot, runtime_plot, target_plot};
 
 // Of the section on rates: without rows where no method ran both ways.
 Table tuned_and_defaults_table(const Comparison& comparison);
@@ -58,11 +45,10 @@ Table tuned_and_defaults_table(const Comparison& comparison);
 // What so few problems, seeds or runs cannot show, a sentence each.
 std::vector<std::string> limits_of_evidence(const Comparison& comparison);
 
-inline constexpr std::size_t kMostTableRows = 40;   // the best optimizers
-inline constexpr std::size_t kMostTablePairs = 10;  // the best of them against each other
-inline constexpr std::size_t kMostLines = 8;        // of a plot, the best optimizers
-inline constexpr std::size_t kMostRivals = 4;       // of the leader, each in a plot of two lines
-inline constexpr std::size_t kMostPlotRows = 25;    // problems
+inline constexpr std::size_t kMostTableRows = 40;  // the best optimizers
+inline constexpr std::size_t kMostLines = 8;       // of a plot, the best optimizers
+inline constexpr std::size_t kMostRivals = 4;      // of the leader, each in a plot of two lines
+inline constexpr std::size_t kMostPlotRows = 25;   // problems
 
 // What they share.
 // The best of the common order: of tables that compare. And of all, those apart after them.
@@ -74,7 +60,6 @@ void columns_are_optimizers(Table& table, std::size_t count);
 void columns_are_problems(Table& table, std::size_t count);
 TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);  // "2/80"
 TableCell count_cell(std::size_t count);
-TableCell digits_cell(Real digits);                         // ✗ where there are none
 TableCell share_cell(std::size_t part, std::size_t whole);  // "33 %"
 // What costs of single runs are told in: at measured prices where orders go by declared work, else
 // by the yardstick too.

@@ -78,32 +78,4 @@ Plots data_profile_plot(const Comparison& c) {
   return {std::move(plot)};
 }
 
-Plots accuracy_plot(const Comparison& c) {
-  Plot plot{.id = "plot-accuracy",
-            .title = "Accuracy profile",
-            .reading = "",
-            .caption = fmt::format(
-                "{}Of the loss at the best point seen within the budget, no more than the target "
-                "at which a run is stopped; {}.",
-                kBand, denominators(c, shown_optimizers(c, kMostLines))),
-            .x_label = "digits gained",
-            .y_label = fmt::format("share of {}s", setting_noun(c))};
-  Costs lacking(c.problems.size());
-  if (c.order.settings.empty()) return {};
-  for (auto& row : lacking) row.resize(c.optimizers.size());
-  for (const std::size_t p : c.order.settings)
-    for (const std::size_t s : c.order.methods)
-      lacking[p][s] = lacking_digits(c, c.cell(p, s), &Summary::best_loss);
-  std::vector<Real> grid;
-  for (int i = -64; i <= 0; ++i) grid.push_back(i / 4.0);
-  add_lines(c, plot, lacking, grid);
-  for (PlotSeries& line : plot.series) {  // at least so many digits, from none to 16
-    for (auto* column : {&line.x, &line.y, &line.low, &line.high}) std::ranges::reverse(*column);
-    for (Real& digits : line.x) digits = 0 - digits;
-  }
-  plot.reading = fmt::format("Three digits most often: {}; ten: {}.", highest_at(plot, 3),
-                             highest_at(plot, 10));
-  return {std::move(plot)};
-}
-
 }  // namespace isoline::reports

@@ -1,4 +1,4 @@
-// Orders over problems: mean ranks, signed ranks, and what so few problems cannot show.
+// The leader against each other method, and what so few problems cannot show.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,70 +16,7 @@
 #include "reports/statistics/runtimes.h"
 
 namespace isoline::reports {
-namespace {
-
-std::string rank_reading(const Comparison& c, const std::vector<Real>& means, std::size_t names) {
-  if (names == 0) return "No problem was given to every method: ranks are not defined.";
-  const auto best = static_cast<std::size_t>(std::ranges::min_element(means) - means.begin());
-  return fmt::format(
-      "{} has the least mean rank, {:.3g} of {}, over {}; Nemenyi’s test of all pairs resolves no "
-      "gap below {:.3g}.",
-      optimizer_text(c, best), means[best], means.size(), counted(names, "problem"),
-      least_gap(means.size(), names));
-}
-
-std::vector<Real> of_optimizer(const std::map<std::string, std::vector<Real>>& ranks,
-                               std::size_t s) {
-  std::vector<Real> own;
-  for (const auto& [name, rank] : ranks) own.push_back(rank[s]);
-  return own;
-}
-
-Real mean_of(const std::vector<Real>& values) {
-  if (values.empty()) return kNever;
-  return std::accumulate(values.begin(), values.end(), 0.0) / Real(values.size());
-}
-
-TableCell rank_cell(Real mean) {
-  if (mean == kNever) return "";
-  return {fmt::format("{:.3g}", mean), {{"mean", mean}}};
-}
-
-TableCell interval_cell(const Interval& interval) {
-  return {fmt::format("{:.3g}–{:.3g}", interval.low, interval.high),
-          {{"low", interval.low}, {"high", interval.high}}};
-}
-
-}  // namespace
-
-Table rank_table(const Comparison& c) {
-  const auto ranks = ranks_by_name(c, c.yardstick.by), measured = ranks_by_name(c, Measure::cost);
-  Table table{
-      .id = "mean-rank",
-      .title = "Mean rank",
-      .reading = "",
-      .caption = fmt::format(
-          "Rank by median {} to {}, 1 the best, ties shared, unsolved ones last; settings of one "
-          "problem have one rank. Mean over the problems given to all ranked methods, with its {} "
-          "over problems. By cost: the same by {}. Failed: failed runs, of all.",
-          counted_name(c), tau_name(c), interval_name(ranks.size()), cost_unit(c)),
-      .columns = {"optimizer", "mean rank", "interval", "by cost", "n problems", "failed"},
-      .rows = {}};
-  std::vector<Real> means;
-  for (std::size_t s = 0; s < c.order.methods.size(); ++s) {
-    const std::vector<Real> own = of_optimizer(ranks, s);
-    means.push_back(mean_of(own));
-    if (s >= kMostTableRows) continue;
-    const Interval interval = bootstrap_mean(own, "ranks");
-    table.rows.push_back({optimizer_text(c, s), rank_cell(means.back()),
-                          own.size() < 2 ? TableCell("") : interval_cell(interval),
-                          rank_cell(mean_of(of_optimizer(measured, s))), count_cell(own.size()),
-                          failed_cell(c, s)});
-  }
-  rows_are_optimizers(table);
-  table.reading = rank_reading(c, means, ranks.size());
-  return table;
-}
+namespace {}  // namespace
 
 Table leader_table(const Comparison& c) {
   Table table{
@@ -116,44 +53,6 @@ Table leader_table(const Comparison& c) {
   return table;
 }
 
-Table signed_rank_table(const Comparison& c) {
-  const std::size_t k = shown_optimizers(c, kMostTablePairs);
-  Table table{
-      .id = "signed-rank",
-      .title = "Pairs of the best, by signed ranks",
-      .reading = "",
-      .caption = fmt::format(
-          "Wilcoxon’s signed ranks on the doublings of median {} to {}, one a problem, solving "
-          "against not solving counting as 6; p after Holm over all pairs shown. In the cell: p, "
-          "and on how many problems the row needs less, of n. The best are the most alike: the "
-          "leader against each of the others is told above.",
-          counted_name(c), tau_name(c)),
-      .columns = {"optimizer"},
-      .rows = {}};
-  for (std::size_t s = 0; s < k; ++s) {
-    table.columns.push_back(optimizer_text(c, s));
-    table.rows.push_back({optimizer_text(c, s)});
-    table.rows.back().resize(k + 1, "");
-    table.rows.back().push_back(failed_cell(c, s));
-  }
-  table.columns.push_back("failed");
-  rows_are_optimizers(table);
-  columns_are_optimizers(table, k);
-  const SignedRanks ranked = signed_ranks(c, k);
-  for (const RankedPair& pair : ranked.pairs)
-    table.rows[pair.a][pair.b + 1] = {
-        fmt::format("{:.2g} ({}/{})", pair.adjusted, pair.wins, pair.n),
-        {{"adjusted_p", pair.adjusted},
-         {"wins", Real(pair.wins)},
-         {"n", Real(pair.n)},
-         {"p", pair.p}}};
-  table.reading = fmt::format(
-      "Of {} pairs among the first {}, {} can be told apart at 0.05; the least adjusted p is {}.",
-      ranked.pairs.size(), k, ranked.told,
-      ranked.pairs.empty() ? "none" : fmt::format("{:.2g}", ranked.least));
-  return table;
-}
-
 std::vector<std::string> limits_of_evidence(const Comparison& c) {
   std::vector<std::string> all;
   const std::size_t k = c.order.methods.size(), names = names_of(c, c.order);
@@ -174,10 +73,6 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
         least * pairs > kSignificant ? ": no pair can be told apart after it, whatever the results"
                                      : ""));
   }
-  all.push_back(
-      fmt::format("Mean ranks of {} over {}: Nemenyi’s test of all pairs resolves no gap below "
-                  "{:.3g} at 0.05.",
-                  counted(k, "method"), counted(names, "problem"), least_gap(k, names)));
   if (c.seeds.size() < kFewestForInterval)
     all.push_back(
         fmt::format("With {} no interval over seeds reaches 95 %: ranges are shown instead.",

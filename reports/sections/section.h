@@ -61,7 +61,7 @@ struct Table {
 };
 
 // The part of one optimizer, or of one quantity. Steps: y(x) from each x on, with a band. Dots: x
-// with its interval in the row y. Bars: y in the row x. Matrix: y of the row in the column x.
+// with its interval in the row y. Bars: y in the row x.
 // Lines: y(x) from point to point, with a band.
 struct PlotSeries {
   std::optional<std::size_t> optimizer;
@@ -75,7 +75,7 @@ struct PlotRow {
 };
 
 struct Plot {
-  enum class Kind { steps, dots, bars, matrix, lines };
+  enum class Kind { steps, dots, bars, lines };
   Kind kind = Kind::steps;
   std::string id, title;
   std::string reading;  // a sentence on this very data

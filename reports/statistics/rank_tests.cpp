@@ -46,16 +46,6 @@ std::vector<Real> rank_sum_distribution(const std::vector<std::size_t>& ranks, s
   return chance[n];
 }
 
-// P(sum of the ranks with a fair coin's sign + = s).
-std::vector<Real> signed_sum_distribution(const std::vector<std::size_t>& ranks) {
-  std::vector<Real> chance(sum_of(ranks) + 1, 0);
-  chance[0] = 1;
-  for (const std::size_t rank : ranks)
-    for (std::size_t s = chance.size(); s-- > 0;)
-      chance[s] = (chance[s] + (s >= rank ? chance[s - rank] : 0)) / 2;
-  return chance;
-}
-
 Real two_sided(const std::vector<Real>& chance, std::size_t sum) {
   const auto at = chance.begin() + static_cast<std::ptrdiff_t>(sum);
   const Real below = std::accumulate(chance.begin(), at + 1, 0.0);
@@ -111,30 +101,12 @@ std::vector<Real> adjusted(const std::vector<Real>& p, bool from_above, Factor f
   return out;
 }
 
-// q at 0.05 over √2 for k optimizers: scipy.stats.studentized_range.ppf(0.95, k, inf) / 2**0.5.
-Real nemenyi_quantile(std::size_t k) {
-  constexpr std::array<Real, 13> kSmall = {0,     0,     1.960, 2.344, 2.569, 2.728, 2.850,
-                                           2.948, 3.031, 3.102, 3.164, 3.219, 3.268};
-  constexpr std::array<std::pair<std::size_t, Real>, 7> kLarge = {
-      {{15, 3.391}, {20, 3.544}, {30, 3.749}, {40, 3.888}, {60, 4.076}, {100, 4.302}, {400, 4.7}}};
-  if (k < kSmall.size()) return kSmall[k];
-  for (const auto& [size, quantile] : kLarge)
-    if (k <= size)
-      return quantile;  // of the next larger size: no gap is called resolvable that is not
-  return kLarge.back().second;
-}
-
 }  // namespace
 
 std::vector<Real> mid_ranks(const std::vector<Real>& values) {
   std::vector<Real> ranks;
   for (const std::size_t doubled : doubled_ranks(values)) ranks.push_back(Real(doubled) / 2);
   return ranks;
-}
-
-Real least_gap(std::size_t optimizers, std::size_t problems) {
-  const Real k = Real(optimizers);
-  return nemenyi_quantile(optimizers) * std::sqrt(k * (k + 1) / (6 * Real(problems)));
 }
 
 Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b) {
@@ -149,21 +121,6 @@ Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b) {
   const Real mean = Real(sum_of(ranks)) / total;
   const Real spread = sum_of_squares(ranks) / total - mean * mean;
   return two_sided_normal(Real(sum), n * mean, spread * n * m / (total - 1));
-}
-
-Real signed_rank_p(const std::vector<Real>& differences) {
-  std::vector<Real> sizes;
-  std::vector<bool> is_positive;
-  for (const Real difference : differences) {
-    if (difference == 0 || std::isnan(difference)) continue;
-    sizes.push_back(std::abs(difference));
-    is_positive.push_back(difference > 0);
-  }
-  const std::vector<std::size_t> ranks = doubled_ranks(sizes);
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < ranks.size(); ++i) sum += is_positive[i] ? ranks[i] : 0;
-  if (ranks.size() <= kExact) return two_sided(signed_sum_distribution(ranks), sum);
-  return two_sided_normal(Real(sum), Real(sum_of(ranks)) / 2, sum_of_squares(ranks) / 4);
 }
 
 RatioEstimate ratio_estimate(const std::vector<Real>& a, const std::vector<Real>& b) {

@@ -14,10 +14,6 @@ std::vector<Real> mid_ranks(const std::vector<Real>& values);
 // exact up to kExact values in all, by the normal approximation with continuity and ties beyond.
 Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b);
 
-// The two-sided p of Wilcoxon's signed ranks (1945); zeros are left out, ties share their ranks,
-// infinite differences rank above all others. 1 where nothing is left.
-Real signed_rank_p(const std::vector<Real>& differences);
-
 // What b takes as a multiple of what a takes: the median of all b_j / a_i, in logarithms, and the
 // interval that inverts the test of Mann and Whitney. Hodges, Lehmann (1963). Values above 0.
 struct RatioEstimate {
@@ -38,9 +34,6 @@ MedianInterval median_interval(std::vector<Real> values);
 // (Benjamini, Hochberg 1995); the chance of any false one below q is at most q (Holm 1979).
 std::vector<Real> benjamini_hochberg(const std::vector<Real>& p);
 std::vector<Real> holm(const std::vector<Real>& p);
-
-// The gap of mean ranks that Nemenyi's test (1963) resolves at 0.05.
-Real least_gap(std::size_t optimizers, std::size_t problems);
 
 inline constexpr std::size_t kExact = 100;  // values up to which distributions are counted out
 

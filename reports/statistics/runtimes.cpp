@@ -56,11 +56,4 @@ Real area_over_curve(const std::vector<Real>& work, const std::vector<Real>& gap
   return budget > 0 ? area / budget : 0;
 }
 
-Real accuracy(Real loss, Real minimum, Real scale, Real target) {
-  constexpr Real kMost = 16;  // digits of double precision
-  const Real most = target > 0 ? std::min(kMost, -std::log10(target)) : kMost;
-  if (!std::isfinite(loss) || !std::isfinite(scale)) return -kNever;
-  return loss <= minimum ? most : std::min(most, -std::log10((loss - minimum) / scale));
-}
-
 }  // namespace isoline::reports

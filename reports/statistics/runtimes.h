@@ -28,9 +28,4 @@ std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const
 Real area_over_curve(const std::vector<Real>& work, const std::vector<Real>& gap, Real budget,
                      Real digits);
 
-// Digits, γ = min(−log10 τ, −log10((f − f_L) / s)), the most where f ≤ f_L. τ is the target at
-// which the run is stopped: what lies beyond it is overshoot of the last step. 16, those of double
-// precision, where τ is 0. −∞ where f or s is not finite. Beiranvand, Hare, Lucet (2017).
-Real accuracy(Real loss, Real minimum, Real scale, Real target);
-
 }  // namespace isoline::reports

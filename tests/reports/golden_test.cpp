@@ -67,34 +67,6 @@ TEST(Golden, MeanRanksAreThoseOfSciPy) {
   EXPECT_NEAR(ours.high, high, 5 * (high - low) / 70);
 }
 
-TEST(Golden, SignedRanksAreThePermutationTestOfSciPy) {
-  const Costs costs = golden_costs();
-  std::vector<Real> p;
-  for (std::size_t a = 0; a < costs[0].size(); ++a)
-    for (std::size_t b = a + 1; b < costs[0].size(); ++b) {
-      std::vector<Real> ratios;
-      for (const auto& row : costs)
-        ratios.push_back(*row[a] == *row[b] ? 0 : std::log(*row[a]) - std::log(*row[b]));
-      p.push_back(signed_rank_p(ratios));
-    }
-  const std::vector<Real> adjusted = holm(p);
-  ASSERT_EQ(p.size(), golden().at("signed_rank_p").size());
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    EXPECT_NEAR(p[i], golden()["signed_rank_p"][i].get<Real>(), kRounding) << "pair " << i;
-    EXPECT_NEAR(adjusted[i], golden().at("holm")[i].get<Real>(), 1e-11) << "pair " << i;
-  }
-}
-
-// With 6 n = k (k + 1) the gap is the quantile itself; ours are rounded to three digits.
-TEST(Golden, GapsOfMeanRanksAreThoseOfTheStudentizedRange) {
-  for (std::size_t k = 2; k <= 12; ++k) {
-    const Real quantile = golden().at("nemenyi")[k - 2];
-    constexpr std::size_t kProblems = 10;
-    const Real expected = quantile * std::sqrt(Real(k * (k + 1)) / (6 * Real(kProblems)));
-    EXPECT_NEAR(least_gap(k, kProblems), expected, 1e-3 * expected) << k;
-  }
-}
-
 TEST(Golden, AreaOverTheCurveIsTheMeanOverEveryEvaluation) {
   const std::vector<Real> work = golden().at("work"), gap = golden().at("gap");
   EXPECT_NEAR(area_over_curve(work, gap, golden().at("budget"), 8), golden().at("aocc").get<Real>(),

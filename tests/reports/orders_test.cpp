@@ -234,12 +234,5 @@ TEST(Orders, SeedsAreComparedInPairs) {
   EXPECT_FALSE(has(text, "overlapping")) << text;
 }
 
-TEST(Orders, OfFewProblemsTheRangeIsShown) {
-  Study study = three_methods();
-  const Table table = rank_table(compare_optimizers(study));
-  EXPECT_TRUE(has(table.caption, "range of 4")) << table.caption;
-  EXPECT_FALSE(has(table.caption, "95 %")) << table.caption;
-}
-
 }  // namespace
 }  // namespace isoline::reports

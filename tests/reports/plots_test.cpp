@@ -63,14 +63,6 @@ TEST(Plots, BandsAreThoseOfProblemsDrawnAnew) {
   EXPECT_EQ(plot.series[0].high[0], 1);
 }
 
-TEST(Plots, PairsAreTheLeaderAgainstEachRivalAlone) {
-  const Plots plots = pairwise_plots(compare_optimizers(four_problems()));
-  ASSERT_EQ(plots.size(), 1U);
-  EXPECT_NE(plots[0].reading.find("a needs less on 3 of 4 problems, b on 1; 0 ties."),
-            std::string::npos)
-      << plots[0].reading;
-}
-
 // log2 of 1/16, 1/4, 1/2 and, where a never gets there, the end of the scale.
 TEST(Plots, RatiosAreSortedDoublings) {
   const Plots plots = log_ratio_plot(compare_optimizers(four_problems()));
@@ -89,15 +81,6 @@ TEST(Plots, DataProfilesCountForwardSolves) {
   const Plot plot = data_profile_plot(compare_optimizers(four_problems())).at(0);
   EXPECT_EQ(height(plot.series[0], 10), 0);
   EXPECT_EQ(height(plot.series[0], 100), 0.75);
-}
-
-// 10 digits on three problems, 9/5 of a digit on s: after 10 hits the loss is 10^(−0.2 · 9).
-TEST(Plots, AccuracyProfilesFallWithTheDigits) {
-  const Plot plot = accuracy_plot(compare_optimizers(four_problems())).at(0);
-  EXPECT_EQ(height(plot.series[0], 1.75), 1);
-  EXPECT_EQ(height(plot.series[0], 2), 0.75);
-  EXPECT_EQ(height(plot.series[0], 9.75), 0.75);
-  EXPECT_EQ(height(plot.series[0], 10.25), 0);
 }
 
 // Of two seeds one meets target j at 2 j, the other the first ten of 51 alone, and stops after 20.

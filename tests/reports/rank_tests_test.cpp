@@ -63,30 +63,6 @@ TEST(MannWhitney, CrossesToTheApproximationWithoutAStep) {
 }
 
 // scipy.stats.wilcoxon(d, mode="exact").pvalue
-TEST(SignedRank, AgreesWithSciPy) {
-  EXPECT_NEAR(signed_rank_p({1.631, 0.658, 0.548, 0.447, 0.538, 1.305, 1.053, 0.716, -0.543, 1.011,
-                             -0.184, 1.594}),
-              0.0048828125, kRounding);
-  EXPECT_NEAR(signed_rank_p({1, -2, 3, 4, 5, 6}), 0.09375, kRounding);
-  EXPECT_NEAR(
-      signed_rank_p({-0.971, 0.162, 0.293, -1.025, 2.022, 1.76,  -0.164, 1.072, 0.679, -2.314,
-                     0.55,   0.239, 0.383, -0.777, 0.031, 0.122, 1.488,  0.634, 0.294, 1.829}),
-      0.1230926513671875, kRounding);
-}
-
-// By enumeration of all signs in Python, zeros left out, ties sharing ranks.
-TEST(SignedRank, LeavesOutZerosAndSharesRanks) {
-  EXPECT_NEAR(signed_rank_p({0, 1, 1, -1, 2, 2, 3, -4, 5}), 0.25, kRounding);
-  EXPECT_NEAR(signed_rank_p({1, 1, 1, 1, 1}), 0.0625, kRounding);
-  EXPECT_EQ(signed_rank_p({0, 0, 1}), 1);
-  EXPECT_EQ(signed_rank_p({}), 1);
-}
-
-// A failure against a success is the largest difference there is: +∞ has rank 3 of 1, 2, 3.
-TEST(SignedRank, RanksFailuresAboveAll) {
-  EXPECT_EQ(signed_rank_p({-1, -2, kNever}), signed_rank_p({-1, -2, 1e9}));
-}
-
 // The median and the order statistics of all ratios in NumPy; the order from the null distribution
 // of U, counted by its recurrence in whole numbers.
 TEST(RatioEstimate, AgreesWithAnIndependentCount) {

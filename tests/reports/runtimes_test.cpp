@@ -69,28 +69,6 @@ TEST(MidRanks, ShareTiesAndPutTheUnsolvedLast) {
   EXPECT_EQ(mid_ranks({5, kNever, 3, 5, kNever}), (std::vector<Real>{2.5, 4.5, 1, 2.5, 4.5}));
 }
 
-// Negative losses: from −1 towards −5, at −4.96: 0.04 / 4 = 1e-2 is left.
-TEST(Accuracy, CountsDigitsOfTheDescentAlsoBelowZero) {
-  EXPECT_NEAR(accuracy(-4.96, -5, 4, 0), 2, 1e-12);
-  EXPECT_EQ(accuracy(-5, -5, 4, 0), 16);
-  EXPECT_EQ(accuracy(-6, -5, 4, 0), 16);
-  EXPECT_EQ(accuracy(1, 0, 1, 0), 0);
-  EXPECT_EQ(accuracy(std::nan(""), 0, 1, 0), -kNever);
-}
-
-// A last step that lands at 1e-14 where 1e-10 was asked for is luck, not accuracy.
-TEST(Accuracy, DigitsBeyondTheTargetAreOvershoot) {
-  EXPECT_EQ(accuracy(1e-14, 0, 1, 1e-10), 10);
-  EXPECT_EQ(accuracy(0, 0, 1, 1e-10), 10);
-  EXPECT_NEAR(accuracy(1e-4, 0, 1, 1e-10), 4, 1e-12);
-}
-
-// All of an infinite descent is behind whoever ends at a finite loss: it says nothing.
-TEST(Accuracy, OfAStartAtInfinityIsNotSixteenDigits) {
-  EXPECT_EQ(accuracy(1, 0, kNever, 0), -kNever);
-  EXPECT_EQ(accuracy(1e91, 0.062, 1, 1e-10), -std::log10(1e91 - 0.062));
-}
-
 TEST(Quantile, IsTheNearestRank) {
   EXPECT_EQ(quantile({1, 2, 3, 4}, 0.5), 2);
   EXPECT_EQ(quantile({1, 2, 3, 4}, 0.025), 1);
