@@ -1,4 +1,4 @@
-// In what two subjects differ: status and figures.
+// Differences of two subjects in status and figures, and of results that hang on the last bit.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "reports/compare/subject.h"
-
 namespace isoline::reports {
 
 enum class Change { worse, better, changed };
@@ -33,5 +32,19 @@ Real movement(const Subject& before, const Subject& after);
 // what is smaller solves the problem to the strictest target of the tables.
 std::vector<Difference> quantity_differences(const Subject& before, const Subject& after,
                                              const std::optional<Real>& tolerance);
+
+// Results that hang on the last bit of their start: rounding, and so another processor or library,
+// moves them as it likes. What of them can still be judged is how they end and what they reach.
+
+// What the runs from perturbed starts did that are held to one from the given start.
+Perturbed perturbed_of(const Subject& unperturbed, const std::vector<Subject>& perturbed);
+
+// Its figures moved by more than a tenth of the tolerance when the start was perturbed. Without a
+// tolerance figures must be the same bit for bit, which chaotic cells of one build are too.
+bool is_chaotic(const Subject& subject, const std::optional<Real>& tolerance);
+
+// A status that no run of BASE ended with, a coarse target that all of them reached and NEW does
+// not, or that none of them reached and NEW does. What only some reached is no difference.
+std::vector<Difference> coarse_differences(const Subject& before, const Subject& after);
 
 }  // namespace isoline::reports

@@ -1,18 +1,14 @@
 // What changed from one set of results to another: the gate of continuous integration.
 //
-//   subject, folder_subjects   the two sides in one form
-//   pairing       which of NEW answers which of BASE
-//   changes       options and parts of the build that differ
-//   differences   figures, exactly or within a tolerance
-//   chaos         what can be judged of results that hang on the last bit
-//   timing        times, by statistics
-//   allowed       what NEW may lack
-//   gate          the verdict
-//   causes        what differs, by what explains it
-//   groups        differences by cause and optimizer
-//   sides         reads both: result folders, or a baseline and a folder
-//   baseline      what of results stands in a repository
-//   gate_words, gate_section, gate_json
+//   subject      the two sides in one form: cells of a result folder or of a baseline
+//   pairing      which cell of NEW answers which of BASE, and what was asked or built otherwise
+//   differences  status and figures, exactly or within a tolerance
+//   timing       times, by statistics
+//   allowed      what NEW may lack
+//   gate         the verdict
+//   causes       what differs, by what explains it
+//   baseline     what of results stands in a repository
+//   gate_text    the comparison in words
 #pragma once
 
 #include <filesystem>
@@ -25,9 +21,7 @@
 #include "core/threads.h"
 #include "reports/compare/allowed.h"
 #include "reports/compare/causes.h"
-#include "reports/compare/groups.h"
 #include "reports/compare/timing.h"
-
 namespace isoline::reports {
 
 struct GateOptions {
@@ -74,5 +68,10 @@ std::string gate_markdown(const GateResult& result);
 std::string gate_json(const GateResult& result);  // schema isoline.comparison/1
 
 inline constexpr const char* kComparisonSchema = "isoline.comparison/1";
+
+// The sentence and the exit code that a comparison ends with.
+
+// Fills both in, once all else is there.
+void conclude(GateResult& result, const GateOptions& options);
 
 }  // namespace isoline::reports

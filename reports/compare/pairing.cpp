@@ -1,10 +1,17 @@
 // Pairs subjects, by what identifies them best first.
 #include "reports/compare/pairing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
+#include "core/spec.h"
+#include "reports/sections/words.h"
 namespace isoline::reports {
 namespace {
 
@@ -73,6 +80,150 @@ Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& aft
   std::ranges::copy_if(now, std::back_inserter(pairs.only_after),
                        [](const Subject* subject) { return subject != nullptr; });
   return pairs;
+}
+
+// Holds the options and the builds of paired subjects to each other.
+
+namespace {
+
+// "1e-4", "1e4", "0.9": the shorter of two ways.
+std::string option_text(const OptionValue& value) {
+  const Real* const number = std::get_if<Real>(&value);
+  std::string plain = text_of(value);
+  if (number == nullptr || !std::isfinite(*number) || *number == 0) return plain;
+  const int exponent = static_cast<int>(std::floor(std::log10(std::abs(*number))));
+  const std::string scientific = fmt::format(
+      "{}e{}", std::stod(fmt::format("{:.15g}", *number * std::pow(10, -exponent))), exponent);
+  return scientific.size() < plain.size() ? scientific : plain;
+}
+
+bool is_set_in(const std::string& spec, const std::string& option) {
+  const Spec parsed = parse_spec(spec);
+  return std::ranges::find(parsed.options, option, &std::pair<std::string, std::string>::first) !=
+         parsed.options.end();
+}
+
+// An option of no text says what one that there was not yet said.
+bool says_nothing(const OptionValue* option) {
+  return option == nullptr || text_of(*option).empty();
+}
+
+// Paired by what was asked, two differ in an option only by a default or by a table of rates.
+std::string change_text(const Given& a, const Given& b, const std::string& option) {
+  const OptionValue* const old = a.options->find(option);
+  const OptionValue* const now = b.options->find(option);
+  if (old == nullptr) return fmt::format("new option {} {}", option, option_text(*now));
+  if (now == nullptr) return fmt::format("option {} is gone, it was {}", option, option_text(*old));
+  if (is_set_in(a.spec, option) && is_set_in(b.spec, option))
+    return fmt::format("tabled {} {} → {}", option, option_text(*old), option_text(*now));
+  return fmt::format("default of {} {} → {}", option, option_text(*old), option_text(*now));
+}
+
+void count_changes(const Given& a, const Given& b, std::map<std::string, std::size_t>& changes) {
+  if (a.options == b.options) return;
+  std::set<std::string> options;
+  for (const OptionValues* values : {&*a.options, &*b.options})
+    for (const NamedOption& each : *values) options.insert(each.name);
+  for (const std::string& option : options) {
+    const OptionValue* const old = a.options->find(option);
+    const OptionValue* const now = b.options->find(option);
+    if (old != nullptr && now != nullptr && *old == *now) continue;
+    if (says_nothing(old) && says_nothing(now)) continue;
+    ++changes[a.name + ": " + change_text(a, b, option)];
+  }
+}
+
+// A part of a build, and how its change is told: of many cells, of one.
+struct Part {
+  const char *name, *text, *cause;
+};
+constexpr std::array<Part, 5> kParts = {
+    {{"platform", "another platform (compiler, flags, libraries or kernel)", "another platform"},
+     {"harness", "another harness (core, meter or run loop)", "another harness"},
+     {"problem", "another source of the problems", "another source of the problem"},
+     {"network", "another source of the networks of", "another source of the network"},
+     {"optimizer", "another source of the optimizers", "another source of the optimizer"}}};
+
+bool is_other(const Subject& a, const Subject& b, const Part& part) {
+  const auto old = a.parts->find(part.name), now = b.parts->find(part.name);
+  return old != a.parts->end() && now != b.parts->end() && old->second != now->second;
+}
+
+struct PartChange {
+  std::set<std::string> names;  // of problems or optimizers, where it is theirs
+  std::size_t cells = 0;
+};
+
+std::map<std::string, std::size_t> changes_between(const Subject& a, const Subject& b) {
+  std::map<std::string, std::size_t> changes;
+  if (a.terms.empty() || b.terms.empty()) return changes;  // a title tells no options
+  count_changes(a.problem, b.problem, changes);
+  count_changes(a.optimizer, b.optimizer, changes);
+  return changes;
+}
+
+void count_parts(const Subject& a, const Subject& b, std::map<std::string, PartChange>& changes) {
+  for (const Part& part : kParts) {
+    if (!is_other(a, b, part)) continue;
+    PartChange& change = changes[part.name];
+    ++change.cells;
+    const std::string name = part.name;
+    if (name == "optimizer") change.names.insert(b.optimizer.name);
+    if (name == "problem" || name == "network") change.names.insert(b.problem.name);
+  }
+}
+
+}  // namespace
+
+std::string cause_of(const Subject& before, const Subject& after) {
+  std::vector<std::string> causes;
+  for (const auto& [text, cells] : changes_between(before, after)) causes.push_back(text);
+  if (before.builds != after.builds) {
+    const std::size_t given = causes.size();
+    for (const Part& part : kParts)
+      if (is_other(before, after, part)) causes.emplace_back(part.cause);
+    if (causes.size() == given) causes.emplace_back("another build");
+  }
+  return causes.empty() ? "the same build and options" : joined(causes);
+}
+
+std::string names_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 12;
+  if (names.size() <= kMost) return joined(names);
+  return fmt::format("{} and {} more", joined({names.begin(), names.begin() + kMost}),
+                     names.size() - kMost);
+}
+
+std::vector<std::string> changed_settings(const Pairs& pairs) {
+  std::map<std::string, std::size_t> changes;
+  for (const auto& [a, b] : pairs.both)
+    for (const auto& [text, cells] : changes_between(*a, *b)) changes[text] += cells;
+  std::vector<std::string> lines;
+  for (const auto& [text, cells] : changes)
+    lines.push_back(fmt::format("{} ({})", text, counted(cells, "cell")));
+  return lines;
+}
+
+std::vector<std::string> changed_builds(const Pairs& pairs) {
+  std::map<std::string, PartChange> changes;
+  std::size_t silent = 0;
+  for (const auto& [a, b] : pairs.both) {
+    if (a->builds == b->builds) continue;
+    count_parts(*a, *b, changes);
+    silent += a->parts->empty() || b->parts->empty();
+  }
+  std::vector<std::string> lines;
+  for (const Part& part : kParts) {
+    const auto at = changes.find(part.name);
+    if (at == changes.end()) continue;
+    const auto& [names, cells] = at->second;
+    const std::string of = names.empty() ? "" : " " + names_text({names.begin(), names.end()});
+    lines.push_back(fmt::format("{}{}: {}", part.text, of, counted(cells, "cell")));
+  }
+  if (silent > 0)
+    lines.push_back(fmt::format("another build, whose parts a side does not tell: {}",
+                                counted(silent, "cell")));
+  return lines;
 }
 
 }  // namespace isoline::reports

@@ -1,11 +1,11 @@
-// Which subject of NEW answers which of BASE.
+// Which subject of NEW answers which of BASE, and which options and build parts differ.
 #pragma once
 
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "reports/compare/subject.h"
-
 namespace isoline::reports {
 
 struct Pairs {
@@ -18,5 +18,21 @@ struct Pairs {
 // tells no more. What two of a side have in common pairs neither. The subjects must outlive the
 // pairs.
 Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& after);
+
+// What differs between paired subjects before any figure does: what they were given, and which
+// parts of the program computed them.
+
+// "levenberg-marquardt: default of initial-damping 1e-4 → 1e4 (51 cells)", a line a change.
+std::vector<std::string> changed_settings(const Pairs& pairs);
+
+// "another optimizer: adam, gd (51 cells)", a line a part of the build, the widest first.
+std::vector<std::string> changed_builds(const Pairs& pairs);
+
+// Why the two of a pair may differ: "adam: default of epsilon 1e-8 → 0.01, another harness", or
+// that nothing of what was given or computed explains it.
+std::string cause_of(const Subject& before, const Subject& after);
+
+// The names, a dozen of them at most, and how many more there are.
+std::string names_text(const std::vector<std::string>& names);
 
 }  // namespace isoline::reports

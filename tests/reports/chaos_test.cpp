@@ -1,5 +1,5 @@
 // Rounding alone is not called worse, and a fault in a cell that hangs on rounding is still found.
-#include "reports/compare/chaos.h"
+#include "reports/compare/differences.h"
 
 #include <gtest/gtest.h>
 

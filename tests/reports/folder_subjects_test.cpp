@@ -1,5 +1,5 @@
 // A folder read record by record gives the subjects that its whole study would.
-#include "reports/compare/folder_subjects.h"
+#include "reports/compare/subject.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,10 +1,9 @@
-// The phrases of a comparison, the same in every format.
+// A comparison as text, Markdown and JSON.
 #pragma once
 
 #include <string>
 
 #include "reports/compare/gate.h"
-
 namespace isoline::reports {
 
 const char* name_of(Change change);
