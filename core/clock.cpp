@@ -1,10 +1,12 @@
 // Clocks: monotonic, processor time, and the time-stamp counter with its calibration.
 #include "core/clock.h"
 
+#include <fmt/format.h>
+
+#include <chrono>
 #include <ctime>
 
-#include "core/counted_process.h"
-
+#include "core/shell.h"
 namespace isoline {
 namespace {
 
@@ -57,5 +59,29 @@ void Stopwatch::set(double wall_seconds, double processor_seconds) {
 }
 
 double Stopwatch::seconds() const { return static_cast<double>(elapsed()) * seconds_per_tick(); }
+
+// Instants to text and back, whatever the time zone and the locale of the machine.
+
+std::string instant_text(std::int64_t seconds) {
+  const std::time_t time = seconds;
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1,
+                     parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
+}
+
+// What is written otherwise, as a 31st of February, is no instant: it would come back as another.
+std::optional<std::int64_t> instant_from(const std::string& text) {
+  std::tm parts{};
+  const char* end = strptime(text.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  if (end == nullptr || end != text.data() + text.size()) return std::nullopt;
+  const std::int64_t seconds = timegm(&parts);
+  if (instant_text(seconds) != text) return std::nullopt;
+  return seconds;
+}
+
+std::int64_t seconds_now() {
+  return std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+}
 
 }  // namespace isoline

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstdint>
-
+#include <optional>
+#include <string>
 namespace isoline {
 
 double seconds_per_tick();   // measured once, against the monotonic clock
@@ -33,5 +34,14 @@ class Stopwatch {
   std::uint64_t resumed_ = 0, elapsed_ = 0;
   double resumed_processor_ = 0, processor_ = 0;
 };
+
+// Instants as records and sheets write them: whole seconds of universal time,
+// "2026-01-31T12:00:00Z".
+
+// Of seconds since 1970.
+std::string instant_text(std::int64_t seconds);
+std::optional<std::int64_t> instant_from(const std::string& text);  // none where it is no such text
+
+std::int64_t seconds_now();
 
 }  // namespace isoline

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -19,7 +21,7 @@
 
 #include "core/digest.h"
 #include "core/errors.h"
-
+#include "core/text.h"
 namespace isoline {
 namespace {
 
@@ -225,6 +227,28 @@ void write_unflushed(const fs::path& path, std::string_view text) { write_new(pa
 void flush_all(const fs::path& folder) {
   const OpenFile file(folder, O_RDONLY | O_DIRECTORY, "open");
   if (::syncfs(file.descriptor()) != 0) fail("flush", folder);
+}
+
+// Folders by mkdtemp.
+
+HiddenFolder::HiddenFolder() {
+  std::error_code error;
+  const std::filesystem::path among = std::filesystem::temp_directory_path(error);
+  require(!error, [&] {
+    const char* named = std::getenv("TMPDIR");
+    return fmt::format("TMPDIR must name a folder for temporary files, got {}",
+                       printable(named != nullptr ? named : "none"));
+  });
+  std::string pattern = (among / "isoline-XXXXXX").string();
+  require(mkdtemp(pattern.data()) != nullptr, [&] {
+    return fmt::format("cannot make a folder {}: {}", pattern, std::strerror(errno));
+  });
+  path_ = pattern;
+}
+
+HiddenFolder::~HiddenFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace isoline

@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
 namespace isoline {
 
 inline constexpr std::size_t kMostBytes = std::size_t{2} << 30;  // of any file that is read whole
@@ -46,5 +45,20 @@ std::filesystem::path move_into(const std::filesystem::path& folder,
 // of them all comes before the folder gets its name. Both throw where the disk says no.
 void write_unflushed(const std::filesystem::path& path, std::string_view text);
 void flush_all(const std::filesystem::path& folder);
+
+// A folder of one's own among the temporary ones, which nobody finds by its name.
+
+// Goes with its scope, and all that is in it. UsageError where it cannot be made.
+class HiddenFolder {
+ public:
+  HiddenFolder();
+  ~HiddenFolder();
+  HiddenFolder(const HiddenFolder&) = delete;
+  HiddenFolder& operator=(const HiddenFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace isoline

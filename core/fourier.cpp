@@ -4,8 +4,6 @@
 #include <fftw3.h>
 
 #include "core/errors.h"
-#include "core/fourier_version.h"
-
 namespace isoline {
 namespace {
 

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/array.h"
-
 struct fftw_plan_s;  // FFTW's own name for a plan: its header stays inside fourier.cpp
 
 namespace isoline {
@@ -47,5 +47,9 @@ class SineTransform {
   Eigen::VectorXcd half_;  // (rows + 2) of its spectrum, which is −iX
   FourierPlan plan_;
 };
+
+// The version of FFTW, for who wants it without the arrays that transforms work on.
+
+std::string fourier_version();  // "3.3.10"
 
 }  // namespace isoline

@@ -1,14 +1,59 @@
-// Which x of a run are kept, where x is a field: some that are spread as the logarithm of their
-// iteration, whenever the run ends.
+// What x and y of a problem are, where each is a number a cell of one grid, or the first and last
+// of the states of a line: for pictures of them.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "core/array.h"
 #include "core/real.h"
 #include "core/trace.h"
-
 namespace isoline {
+
+struct Quantity {
+  std::string name;       // "temperature before"
+  std::string unit = {};  // empty: a pure number
+};
+
+// x and y (rows · columns, samples), the cells column by column. Where `time` is above 0 a row is a
+// state: x (columns, samples) the first one, at 0, and y the last, with evenly spread ones between.
+struct Field {
+  Index rows = 0, columns = 0;
+  Quantity x, y;
+  Real time = 0;
+
+  bool is_history() const { return time > 0; }
+};
+
+// What is shown of the first sample of a batch, one number a cell of a field.
+
+// The curl of a velocity on a periodic grid, ∂v/∂i − ∂u/∂j by central differences, in units of a
+// cell: u and v are the first and second half of `velocity`, column by column. (rows · columns)
+Vector curl(VectorRef velocity, Index rows, Index columns);
+
+// The states from x on, at even times, each a row of `states` (rows, columns).
+using History = std::function<void(VectorRef x, BatchOut states)>;
+
+// The sample itself, or its curl where it has two numbers a cell. Of a field that is a history all
+// that follows from x; of y, of which no history is given, the last row alone, with 0 elsewhere.
+// The batch outlives the picture.
+class Picture {
+ public:
+  Picture(const Matrix& batch, const std::optional<Field>& field, const History& history = {});
+  Picture(const Picture&) = delete;
+  Picture& operator=(const Picture&) = delete;
+  std::span<const Real> cells() const { return cells_; }  // empty where there is no sample
+
+ private:
+  Vector drawn_;  // where it is more than the sample
+  std::span<const Real> cells_;
+};
+
+// Which x of a run are kept, where x is a field: some that are spread as the logarithm of their
+// iteration, whenever the run ends.
 
 inline constexpr std::size_t kMostFrames = 6;  // that a record keeps
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/real.h"
-
 namespace isoline {
 
 inline constexpr int kRungs = 51;
@@ -26,5 +26,9 @@ inline Real x_goal(Real tau, Real x_scale, Real x_floor) {
   constexpr Real kAboveFloor = 1.1;
   return std::max(tau * x_scale, kAboveFloor * x_floor);
 }
+
+// Which iterations a curve keeps: 0 to 100, then 32 a decade.
+
+std::int64_t next_kept_after(std::int64_t iteration);
 
 }  // namespace isoline

@@ -8,6 +8,7 @@
 
 #include <initializer_list>
 #include <limits>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,7 +16,6 @@
 
 #include "core/errors.h"
 #include "core/real.h"
-
 namespace isoline {
 
 struct Range {
@@ -154,5 +154,17 @@ Options read_options(const OptionValues& complete) {
 
 struct NoOptions {};
 inline void fields(NoOptions&, auto&) {}
+
+// Options as JSON: what records hold of them, and what describes them.
+
+using Json = nlohmann::json;
+
+Json to_json(const OptionValues& options);  // an object; numbers survive
+OptionValues option_values_from(
+    const Json& json);  // UsageError where a value is of no type of ours
+// Without the options of no text. They alone name a cell, so a component that gains an option which
+// is empty by default keeps the names of its cells.
+OptionValues without_empty(const OptionValues& options);
+Json describe_options(const OptionTable& table);  // a list: name, type, default, law and meaning
 
 }  // namespace isoline

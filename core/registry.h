@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "core/suggest.h"
+#include "core/text.h"
 
 namespace isoline {
 

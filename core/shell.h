@@ -1,11 +1,12 @@
 // Words as a POSIX shell reads them back: what a record says was typed can be typed again.
 #pragma once
 
+#include <sys/types.h>
+
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
-
 namespace isoline {
 
 // The word itself where a shell takes it literally, else in single quotes: it's -> 'it'\''s'.
@@ -17,5 +18,22 @@ std::string shell_command(std::span<const char* const> words);
 // The words of a command, split and unquoted as a shell does it, and nothing expanded: no variable,
 // no pattern, no pipe. UsageError where a quote stays open or there is no word at all.
 std::vector<std::string> shell_words(std::string_view command);
+
+// Programs that compute for this process: their processor time is its own.
+
+// Counted while it stands, and what was counted stays. Of the process itself, not of those that it
+// starts.
+class CountedProcess {
+ public:
+  explicit CountedProcess(pid_t process);
+  ~CountedProcess();  // before the process is waited for
+  CountedProcess(const CountedProcess&) = delete;
+  CountedProcess& operator=(const CountedProcess&) = delete;
+
+ private:
+  pid_t process_;
+};
+
+double counted_processor_seconds();  // of all of them so far, user and system
 
 }  // namespace isoline

@@ -8,10 +8,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "core/count.h"
+#include "core/text.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/text.h"
 
 namespace isoline {
 namespace {

@@ -1,10 +1,11 @@
-// How a run ended.
+// How a run ends, what it may spend, what its problem aims at, and what the program returns.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
-
 namespace isoline {
 
 enum class Status {
@@ -40,5 +41,43 @@ inline bool is_failure(Status status) {
   return status == Status::failed || status == Status::crashed || status == Status::timeout ||
          status == Status::memory;
 }
+
+// What the user of a problem wants of a run: a small loss, or the x that was sought.
+
+enum class Aim {
+  loss,  // f − f_L ≤ τ s: the loss is reached, whatever x
+  x,     // the error in x is at most τ times the solution's norm: x is found
+};
+inline constexpr std::array<std::string_view, 2> kAimNames = {"loss", "x"};
+
+inline std::string_view name_of(Aim aim) { return kAimNames[static_cast<std::size_t>(aim)]; }
+
+inline std::optional<Aim> aim_of(std::string_view name) {
+  for (std::size_t i = 0; i < kAimNames.size(); ++i)
+    if (kAimNames[i] == name) return static_cast<Aim>(i);
+  return std::nullopt;
+}
+
+// What a run may spend, and the loss at which it is done.
+
+struct Budget {
+  std::int64_t iterations = 1000;
+  std::int64_t work = std::numeric_limits<std::int64_t>::max();  // declared prices, in forwards
+  double seconds = std::numeric_limits<double>::infinity();      // soft; hard is twice that
+  // τ of f ≤ f_L + τ s, or of the error in x where that is sought: f ≤ f_L + τ² s. 0 goes on to the
+  // end of the budget.
+  double target = 1e-10;
+};
+
+// What every verb tells the shell that called it.
+
+enum ExitCode {
+  kGood = 0,
+  kUsage = 1,          // the caller's mistake
+  kWorse = 2,          // than before; or cells failed
+  kBetterOnly = 3,     // than before, in something, and nowhere worse
+  kNotComparable = 4,  // at least in part
+  kInterrupted = 130   // what a shell expects after Ctrl-C
+};
 
 }  // namespace isoline

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <string_view>
-
+#include <vector>
 namespace isoline {
 
 // With U+FFFD for all that is no UTF-8; what is valid stays as it is, to the byte.
@@ -23,5 +25,30 @@ std::string printable(std::string_view text);
 // All that a user reads on standard output and standard error goes through here, printable. Throws
 // where it cannot be written.
 void say(std::FILE* out, std::string_view text);
+
+// Counts that are named before they are made: products and sums that stop at the largest number.
+
+inline constexpr std::uint64_t kUncountable = std::numeric_limits<std::uint64_t>::max();
+
+// Most iterations, and most work, that can be asked for: their sums and products still fit.
+inline constexpr std::int64_t kMostAmount = 1'000'000'000'000'000;
+
+inline std::uint64_t product_of(std::uint64_t a, std::uint64_t b) {
+  return b != 0 && a > kUncountable / b ? kUncountable : a * b;
+}
+inline std::uint64_t sum_of(std::uint64_t a, std::uint64_t b) {
+  return a > kUncountable - b ? kUncountable : a + b;
+}
+
+std::string count_text(std::uint64_t count);  // "50,000"; of kUncountable "more than 10^19"
+
+// "Did you mean": the known name nearest to a misspelt one.
+
+// Nearest by edit distance, if near enough to be meant; else empty.
+std::string nearest_name(std::string_view wrong, const std::vector<std::string>& known);
+
+// "unknown WHAT 'wrong'; did you mean 'right'?", or the list of what is known.
+std::string unknown_name(std::string_view what, std::string_view wrong,
+                         const std::vector<std::string>& known);
 
 }  // namespace isoline

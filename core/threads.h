@@ -1,15 +1,28 @@
-// How the libraries compute: on how many threads, with which kernels, for which caches. OpenBLAS
-// starts its threads and chooses its kernels before main() when merely linked, so the program sets
-// the environment and starts itself again, once, before anything else.
+// The processor as this process reads it, by its own CPUID instruction: under an emulator that is
+// the emulated one, where the system's files tell of the host.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/real.h"
-
 namespace isoline {
+
+struct Processor {
+  std::string brand;                  // "Intel(R) Xeon(R) Processor"
+  std::vector<std::string> features;  // vector instructions, named as Linux names them
+
+  bool has(const std::string& feature) const;
+};
+
+// Read once. A feature counts where the system keeps its registers too.
+const Processor& processor();
+
+// How the libraries compute: on how many threads, with which kernels, for which caches. OpenBLAS
+// starts its threads and chooses its kernels before main() when merely linked, so the program sets
+// the environment and starts itself again, once, before anything else.
 
 struct Processor;
 

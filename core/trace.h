@@ -11,10 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "core/aim.h"
+#include "core/status.h"
 #include "core/ladder.h"
 #include "core/oracle.h"
-#include "core/status.h"
 
 namespace isoline {
 

@@ -5,8 +5,7 @@
 
 #include "core/decompose.h"
 #include "core/frames.h"
-#include "core/kept_iterations.h"
-#include "core/picture.h"
+#include "core/ladder.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/archive.h"
-#include "core/budget.h"
+#include "core/status.h"
 #include "core/clock.h"
 #include "core/trace.h"
 #include "optimizers/running_mean.h"

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/foreign/introductions.h"
-#include "core/foreign/process_options.h"
+#include "core/foreign/handshake.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {

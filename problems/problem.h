@@ -7,12 +7,11 @@
 #include <memory>
 #include <optional>
 
-#include "core/aim.h"
-#include "core/field.h"
+#include "core/status.h"
+#include "core/frames.h"
 #include "core/foreign/foreign.h"
 #include "core/options.h"
 #include "core/oracle.h"
-#include "core/picture.h"
 #include "core/random.h"
 #include "core/records/panel.h"
 #include "core/registry.h"

@@ -4,8 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "core/foreign/introductions.h"
-#include "core/foreign/process_options.h"
+#include "core/foreign/handshake.h"
 #include "problems/physics/box.h"
 #include "problems/problem.h"
 

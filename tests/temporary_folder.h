@@ -1,7 +1,7 @@
 // A folder that a test owns and leaves no trace of.
 #pragma once
 
-#include "core/hidden_folder.h"
+#include "core/files.h"
 
 namespace isoline {
 

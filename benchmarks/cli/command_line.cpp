@@ -13,7 +13,6 @@
 #include "benchmarks/cli/verb_table.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
-#include "core/suggest.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {

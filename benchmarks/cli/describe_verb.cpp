@@ -8,7 +8,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/spec.h"
 #include "core/text.h"
 #include "networks/network.h"

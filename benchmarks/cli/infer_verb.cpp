@@ -6,7 +6,7 @@
 #include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/trained.h"
 #include "core/errors.h"
-#include "core/records/number_file.h"
+#include "core/records/npy.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 

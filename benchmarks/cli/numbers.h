@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "core/count.h"
+#include "core/text.h"
 #include "core/options.h"
 
 namespace isoline::benchmarks {

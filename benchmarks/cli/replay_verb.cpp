@@ -12,7 +12,7 @@
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/same_result.h"
 #include "core/errors.h"
-#include "core/hidden_folder.h"
+#include "core/files.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {

@@ -7,7 +7,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/shard/census.h"
-#include "core/records/instant.h"
+#include "core/clock.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 

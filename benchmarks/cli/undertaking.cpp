@@ -12,7 +12,6 @@
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/spec.h"
-#include "core/suggest.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/exit.h"
+#include "core/status.h"
 
 namespace isoline::benchmarks {
 

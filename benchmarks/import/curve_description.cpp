@@ -9,7 +9,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/oracle.h"
-#include "core/records/instant.h"
+#include "core/clock.h"
 #include "core/records/schema.h"
 
 namespace isoline::benchmarks {

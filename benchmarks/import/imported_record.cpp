@@ -8,7 +8,6 @@
 
 #include "core/digest.h"
 #include "core/errors.h"
-#include "core/kept_iterations.h"
 #include "core/ladder.h"
 #include "core/sha256.h"
 #include "core/spec.h"

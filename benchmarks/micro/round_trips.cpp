@@ -4,7 +4,7 @@
 
 #include "benchmarks/micro/pairs.h"
 #include "benchmarks/micro/trial.h"
-#include "core/foreign/introductions.h"
+#include "core/foreign/handshake.h"
 
 namespace isoline::benchmarks::micro {
 

@@ -8,7 +8,7 @@
 #include "benchmarks/plan/resources.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/records/schema.h"
 
 namespace isoline::benchmarks {

@@ -11,7 +11,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/records/schema.h"
-#include "core/suggest.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {

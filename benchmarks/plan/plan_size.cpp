@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "benchmarks/plan/filter.h"
-#include "core/count.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "benchmarks/run/process_group.h"
-#include "core/exit.h"
+#include "core/status.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -4,7 +4,7 @@
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/again.h"
 #include "core/errors.h"
-#include "core/hidden_folder.h"
+#include "core/files.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -15,7 +15,6 @@
 #include "benchmarks/run/prediction.h"
 #include "benchmarks/run/same_result.h"
 #include "core/clock.h"
-#include "core/records/instant.h"
 #include "core/records/provenance.h"
 #include "core/text.h"
 

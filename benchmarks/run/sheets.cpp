@@ -6,7 +6,7 @@
 
 #include "core/decompose.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 
 namespace isoline::benchmarks {
 

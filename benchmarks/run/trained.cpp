@@ -11,11 +11,11 @@
 #include <numeric>
 
 #include "benchmarks/plan/resources.h"
-#include "core/count.h"
+#include "core/text.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/records/schema.h"
 
 namespace isoline::benchmarks {

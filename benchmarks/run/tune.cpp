@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 
 namespace isoline::benchmarks {
 

@@ -5,7 +5,7 @@
 
 #include "core/files.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 
 namespace isoline::benchmarks {
 namespace {

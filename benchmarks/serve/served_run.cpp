@@ -8,7 +8,6 @@
 
 #include "benchmarks/run/execute.h"
 #include "core/clock.h"
-#include "core/records/instant.h"
 
 namespace isoline::benchmarks {
 

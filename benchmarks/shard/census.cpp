@@ -12,7 +12,7 @@
 #include "benchmarks/shard/split.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/instant.h"
+#include "core/clock.h"
 #include "core/records/plan.h"
 
 namespace isoline::benchmarks {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/counted_process.h"
+#include "core/shell.h"
 
 namespace isoline {
 

@@ -1,11 +1,11 @@
 // What another program's part in a build is known by.
 #include "core/foreign/foreign.h"
 
+#include <array>
 #include <filesystem>
 
 #include "core/digest.h"
 #include "core/files.h"
-
 namespace isoline {
 
 namespace fs = std::filesystem;
@@ -26,6 +26,21 @@ std::string digest_of(const Foreign& foreign) {
   for (const auto& [name, version] : foreign.packages)
     all.append(name).append(" ").append(version).append("\n");
   return digest(all);
+}
+
+// Clients, looked for beside the program.
+
+namespace fs = std::filesystem;
+
+fs::path client_folder(const std::string& language) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const std::array<fs::path, 3> candidates = {
+      program.parent_path().parent_path() / "share/isoline" / language,
+      fs::path(ISOLINE_CLIENTS) / language, fs::path(ISOLINE_INSTALLED_CLIENTS) / language};
+  for (const fs::path& folder : candidates)
+    if (fs::is_directory(folder, error)) return folder;
+  return candidates.back();
 }
 
 }  // namespace isoline

@@ -2,10 +2,10 @@
 // UM-Bridge, a shared library.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
-
 namespace isoline {
 
 struct Foreign {
@@ -26,5 +26,11 @@ std::string digest_of_files(std::span<const std::string> words);
 
 // Of all that may change what it computes: a part of `build`.
 std::string digest_of(const Foreign& foreign);
+
+// Where what outsiders use from their own language lies beside this program.
+
+// The folder of a language's client, as "python": of the prefix that the program is installed in,
+// else of the tree that it was built in, else of the prefix that it was configured for.
+std::filesystem::path client_folder(const std::string& language);
 
 }  // namespace isoline

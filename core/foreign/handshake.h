@@ -1,17 +1,62 @@
-// What another program says of itself before anything is computed, as JSON, held to its law.
+// What process[…] is given, be it a problem or an optimizer.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/aim.h"
 #include "core/foreign/foreign.h"
 #include "core/foreign/line.h"
+#include "core/options.h"
 #include "core/oracle.h"
-
+#include "core/status.h"
 namespace isoline {
+
+struct ProcessOptions {
+  std::string command;
+  std::string label;
+  Real startup = 30;
+};
+
+void fields(ProcessOptions& o, auto& field) {
+  field("command", o.command, {}, "what is started: words as of a shell, nothing expanded");
+  field("label", o.label, {}, "what tables call it; empty: what it calls itself");
+  field("startup", o.startup, above(0), "seconds in which it must have introduced itself");
+}
+
+// What programs said of themselves: each is started once for it, and not again while its command
+// and its files stay as they are.
+
+// How a command is started by the door of child processes: where it finds our clients.
+ChildProgram::Start door_to(const std::string& command);
+
+// The part of a component's Foreign that its command tells.
+Foreign foreign_of_command(const std::string& command);
+
+template <class Handshake>
+class Introductions {
+ public:
+  template <class Greet>
+  const Handshake& of(const std::string& command, const Greet& greet) {
+    const ChildProgram::Start start = door_to(command);
+    const Foreign own = foreign_of_command(command);
+    const std::string key = own.digest + " " + command;
+    if (const auto known = known_.find(key); known != known_.end()) return known->second;
+    Line line(start);
+    Handshake said = greet(line);
+    said.foreign.door = own.door;
+    said.foreign.command = own.command;
+    said.foreign.digest = own.digest;
+    return known_[key] = std::move(said);
+  }
+
+ private:
+  std::map<std::string, Handshake> known_;
+};
+
+// What another program says of itself before anything is computed, as JSON, held to its law.
 
 // What every program says: of Foreign its label, interpreter, packages, note and source.
 struct ProblemHandshake {

@@ -1,6 +1,5 @@
-// x of a run at some of its kept iterations, where x and y are numbers on one grid of cells. The
-// numbers stand beside the record, in CELL-BUILD.npy: float32 of the shape (planes, rows, columns),
-// which are y*, x* where it is known, and x by iteration.
+// What a learning run makes of its validation: some small samples, one a column. Older records have
+// instead one sample as N×N grids, in an array (3, N, N) of y*, x and x* in `.npy` beside them.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +8,20 @@
 #include <string>
 #include <vector>
 
+#include "core/grid.h"
 #include "core/real.h"
-#include "core/records/exhibit.h"
-
 namespace isoline {
+
+struct Exhibit {
+  Index grid = 0;         // N of older records, or 0
+  Grid target, x, truth;  // one sample a column
+
+  bool is_picture() const { return grid > 0; }
+};
+
+// x of a run at some of its kept iterations, where x and y are numbers on one grid of cells. The
+// numbers stand beside the record, in CELL-BUILD.npy: float32 of the shape (planes, rows, columns),
+// which are y*, x* where it is known, and x by iteration.
 
 struct FieldFrames {
   std::vector<std::int64_t> iterations = {};

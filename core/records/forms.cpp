@@ -4,7 +4,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "core/option_json.h"
+#include "core/options.h"
 
 namespace isoline {
 

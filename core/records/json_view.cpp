@@ -14,7 +14,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/outline.h"
+#include "core/records/schema.h"
 
 namespace isoline {
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/real.h"
-
 namespace isoline {
 
 // Numbers in the order of the file's bytes, which is that of C: the last index runs fastest.
@@ -29,5 +28,14 @@ std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>&
 
 // As float64; whole or not at all.
 void write_npy(const std::filesystem::path& path, const NumberArray& array);
+
+// Arrays of numbers in a file the user brings or takes away: `.npy`, or `.csv` with a row a line.
+
+// UsageError, naming file and line, where it cannot be read or holds what is no finite number. A
+// first line of a CSV file that holds no number at all is taken for its header.
+NumberArray read_numbers(const std::filesystem::path& path);
+
+// Whole or not at all. A CSV file has one line for each of the first index.
+void write_numbers(const std::filesystem::path& path, const NumberArray& array);
 
 }  // namespace isoline

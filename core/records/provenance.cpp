@@ -11,10 +11,9 @@
 #include <unordered_map>
 
 #include "core/digest.h"
-#include "core/fourier_version.h"
-#include "core/processor.h"
-#include "core/records/provenance_fields.h"
+#include "core/fourier.h"
 #include "core/threads.h"
+#include "core/records/provenance_fields.h"
 #include "isoline_build_flags.h"
 #include "isoline_build_info.h"
 

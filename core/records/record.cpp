@@ -11,7 +11,6 @@
 #include "core/ladder.h"
 #include "core/records/file_text.h"
 #include "core/records/record_fields.h"
-
 namespace isoline {
 namespace {
 

@@ -1,5 +1,4 @@
-// The record of one run, schema isoline.run/1: what was asked, what answered, what happened. One
-// JSON file each. Reports read nothing else of a run.
+// Where a record comes from that this program did not run: a curve of others, by their own claims.
 #pragma once
 
 #include <cstdint>
@@ -8,18 +7,24 @@
 #include <string>
 #include <vector>
 
-#include "core/aim.h"
 #include "core/foreign/foreign.h"
 #include "core/oracle.h"
 #include "core/real.h"
-#include "core/records/exhibit.h"
 #include "core/records/field_frames.h"
-#include "core/records/imported.h"
 #include "core/records/provenance.h"
 #include "core/records/request.h"
 #include "core/status.h"
-
 namespace isoline {
+
+struct Imported {
+  std::string source;   // who says so: a paper and its figure, a repository, a person
+  std::string program;  // what computed it, with its version
+  std::string curve;    // the file's name
+  std::string sha256;   // of that file
+};
+
+// The record of one run, schema isoline.run/1: what was asked, what answered, what happened. One
+// JSON file each. Reports read nothing else of a run.
 
 // The curve as columns of equal length.
 struct Curve {

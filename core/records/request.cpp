@@ -5,7 +5,7 @@
 
 #include "core/digest.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/records/request_fields.h"
 
 namespace isoline {

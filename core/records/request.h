@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/budget.h"
+#include "core/status.h"
 #include "core/foreign/foreign.h"
 #include "core/options.h"
 

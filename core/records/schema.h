@@ -5,7 +5,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
-
 namespace isoline {
 
 using Json = nlohmann::json;
@@ -25,5 +24,14 @@ class Schema {
 };
 
 std::vector<std::string> schema_violations(const Json& document, const Json& schema);
+
+// A JSON text as what its single values are held to laws by: a tree in which long columns are
+// short.
+
+// Of a long list of numbers and texts its least and greatest integer, its least and greatest other
+// number, and each of its texts once: laws on the kind, the bounds or the choices of an element
+// hold for these where they hold for all. Laws on a list's length or order need the whole tree.
+// UsageError names the origin where it is no JSON.
+nlohmann::json outline_of(const std::string& text, const std::string& origin);
 
 }  // namespace isoline

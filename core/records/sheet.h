@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "core/aim.h"
-#include "core/field.h"
+#include "core/status.h"
+#include "core/frames.h"
 #include "core/grid.h"
 #include "core/records/panel.h"
 

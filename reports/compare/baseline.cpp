@@ -11,7 +11,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/spec.h"
 #include "reports/compare/differences.h"
 namespace isoline::reports {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "core/exit.h"
+#include "core/status.h"
 #include "core/threads.h"
 #include "reports/compare/allowed.h"
 #include "reports/compare/causes.h"

@@ -12,7 +12,7 @@
 #include "core/digest.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/threads.h"
 #include "reports/read/newest.h"
 #include "reports/read/result_files.h"

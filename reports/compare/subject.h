@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/aim.h"
+#include "core/status.h"
 #include "core/options.h"
 #include "core/records/record.h"
 #include "core/threads.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/digest.h"
-#include "core/draws.h"
+#include "core/random.h"
 #include "reports/read/reached.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/measure_words.h"

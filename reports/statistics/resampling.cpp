@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/digest.h"
-#include "core/draws.h"
+#include "core/random.h"
 
 namespace isoline::reports {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/draws.h"
+#include "core/random.h"
 
 namespace isoline::reports {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "core/exit.h"
+#include "core/status.h"
 #include "tests/benchmarks/hostile_cells.h"
 
 namespace isoline::benchmarks {

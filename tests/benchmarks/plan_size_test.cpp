@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/count.h"
+#include "core/text.h"
 #include "core/errors.h"
 #include "core/spec.h"
 

@@ -11,7 +11,7 @@
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/tuning_grid.h"
 #include "core/json.h"
-#include "core/option_json.h"
+#include "core/options.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
 #include "tests/benchmarks/builtin.h"

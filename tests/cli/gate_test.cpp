@@ -5,7 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/exit.h"
+#include "core/status.h"
 #include "core/records/record.h"
 #include "tests/cli/shell.h"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
-#include "core/records/number_file.h"
+#include "core/records/npy.h"
 #include "tests/cli/shell.h"
 
 namespace isoline::benchmarks {

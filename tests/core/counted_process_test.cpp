@@ -1,5 +1,5 @@
 // The processor time of a program that computes for this one counts as this one's.
-#include "core/counted_process.h"
+#include "core/shell.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>

@@ -1,5 +1,5 @@
 // Instants are read as they are written.
-#include "core/records/instant.h"
+#include "core/clock.h"
 
 #include <gtest/gtest.h>
 

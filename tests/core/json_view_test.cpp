@@ -8,7 +8,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/outline.h"
+#include "core/records/schema.h"
 #include "core/records/record.h"
 
 namespace isoline {

@@ -10,7 +10,6 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/number_file.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {

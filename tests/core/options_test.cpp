@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/option_json.h"
 
 namespace isoline {
 namespace {

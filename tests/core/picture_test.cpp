@@ -1,5 +1,5 @@
 // What is shown of a sample: itself, the curl of a velocity, against its formula, or a history.
-#include "core/picture.h"
+#include "core/frames.h"
 
 #include <gtest/gtest.h>
 

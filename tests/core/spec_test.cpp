@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/count.h"
+#include "core/text.h"
 #include "core/errors.h"
 
 namespace isoline {

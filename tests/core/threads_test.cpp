@@ -14,7 +14,6 @@
 #include <thread>
 #include <vector>
 
-#include "core/processor.h"
 
 namespace isoline {
 namespace {

@@ -1,7 +1,7 @@
 // What is kept for pictures of a run.
 #include <gtest/gtest.h>
 
-#include "core/picture.h"
+#include "core/frames.h"
 #include "problems/burgers_flow.h"
 #include "run.h"
 

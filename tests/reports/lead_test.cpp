@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/draws.h"
+#include "core/random.h"
 
 namespace isoline::reports {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/draws.h"
+#include "core/random.h"
 #include "reports/statistics/friedman.h"
 
 namespace isoline::reports {

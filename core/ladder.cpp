@@ -1,10 +1,9 @@
 // The grid of kept iterations.
-#include "core/kept_iterations.h"
+#include "core/ladder.h"
 
 #include <cmath>
 
 #include "core/real.h"
-
 namespace isoline {
 
 std::int64_t next_kept_after(std::int64_t iteration) {
