@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "core/shell.h"
+
 namespace isoline {
 namespace {
 

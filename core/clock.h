@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+
 namespace isoline {
 
 double seconds_per_tick();   // measured once, against the monotonic clock

@@ -22,6 +22,7 @@
 #include "core/digest.h"
 #include "core/errors.h"
 #include "core/text.h"
+
 namespace isoline {
 namespace {
 

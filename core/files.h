@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
 namespace isoline {
 
 inline constexpr std::size_t kMostBytes = std::size_t{2} << 30;  // of any file that is read whole

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/array.h"
+
 struct fftw_plan_s;  // FFTW's own name for a plan: its header stays inside fourier.cpp
 
 namespace isoline {

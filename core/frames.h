@@ -11,6 +11,7 @@
 #include "core/array.h"
 #include "core/real.h"
 #include "core/trace.h"
+
 namespace isoline {
 
 struct Quantity {

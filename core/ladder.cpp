@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/real.h"
+
 namespace isoline {
 
 std::int64_t next_kept_after(std::int64_t iteration) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/real.h"
+
 namespace isoline {
 
 inline constexpr int kRungs = 51;

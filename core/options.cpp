@@ -12,6 +12,7 @@
 #include "core/json.h"
 #include "core/spec.h"
 #include "core/text.h"
+
 namespace isoline {
 namespace {
 

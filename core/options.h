@@ -16,6 +16,7 @@
 
 #include "core/errors.h"
 #include "core/real.h"
+
 namespace isoline {
 
 struct Range {

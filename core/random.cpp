@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/digest.h"
+
 namespace isoline {
 Draws::Draws(std::uint64_t seed, std::string_view component, std::string_view purpose,
              std::uint64_t index)

@@ -8,6 +8,7 @@
 
 #include "core/array.h"
 #include "core/real.h"
+
 namespace isoline {
 
 // One number after the other; core/random.h has arrays of them.

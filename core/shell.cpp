@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/errors.h"
+
 namespace isoline {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
 namespace isoline {
 
 // The word itself where a shell takes it literally, else in single quotes: it's -> 'it'\''s'.

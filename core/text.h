@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
 namespace isoline {
 
 // With U+FFFD for all that is no UTF-8; what is valid stays as it is, to the byte.

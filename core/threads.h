@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/real.h"
+
 namespace isoline {
 
 struct Processor {

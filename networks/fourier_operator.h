@@ -1,17 +1,50 @@
+// The lowest modes of real square grids, many at once, by products with dense matrices:
+//   S_kq = w_k Σ x_ij e^(−2πi (ik + j f_q)/P),  k = 0 … M−1,  f_q = 0 … M−1, −M … −1
+// Of the P = 73 that a 64-cell grid is padded to, FFTW needs all modes and, 73 being prime, many
+// times the work: twelve modes by products cost less than its half spectrum alone.
+#pragma once
+
+#include <vector>
+
+#include "core/product.h"
+#include "networks/activation.h"
+#include "networks/network.h"
+
+namespace isoline::networks {
+
+class TruncatedFourier {
+ public:
+  using Spectra = Gemm<Complex>::Array;  // (grids, 2M²), one grid a row, mode k + M q a column
+
+  // Transforms share room, which the caller owns.
+  struct Room {
+    Gemm<float>::Array half;  // (2M, P·grids), transformed along rows; complex numbers by pairs
+    Spectra modes;            // (2M², grids)
+  };
+
+  TruncatedFourier(Index size, Index modes);
+  Index size() const { return size_; }
+  Index modes() const { return 2 * modes_ * modes_; }
+
+  // `none` is w = 1; `inverse` makes synthesis the inverse real transform of a half spectrum whose
+  // other modes are 0: w_k = c_k/P², c₀ = 1 and else 2.
+  enum class Weights { none, inverse };
+
+  void analyze(Weights weights, Gemm<float>::In grids, Spectra& S, Room& room) const;
+  // x += Aᵀ S, the adjoint of analysis with equal weights. Grids are (P, P·grids).
+  void synthesize(Weights weights, const Spectra& S, Gemm<float>::Out grids, Room& room) const;
+
+ private:
+  Index size_, modes_;
+  Gemm<float>::Array plain_, weighted_;  // (2M, P), rows w cos and −w sin by turns
+  Gemm<Complex>::Array along_columns_;   // (P, 2M)
+};
+
 // A Fourier neural operator on square grids, Li, Kovachki, Azizzadenesheli et al. (2021):
 //   lift 3 -> C | pad | four layers z = K a + W a + b, a' = gelu(z) but for the last | crop |
 //   C -> 128, gelu | 128 -> 1;   K a = F⁻¹ R F a on the lowest modes, R (C, C) for each
 // A batch is a matrix (cells·B, C), one channel a column: pointwise layers are products with [W b]ᵀ
 // and a column of ones, as in the perceptron, and all grids stand side by side for the transform.
-#pragma once
-
-#include <vector>
-
-#include "networks/activation.h"
-#include "networks/network.h"
-#include "networks/truncated_fourier.h"
-
-namespace isoline::networks {
 
 // Columns with one of ones behind them, in whole vector registers.
 class Field {

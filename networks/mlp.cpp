@@ -2,12 +2,211 @@
 // second derivatives, the batch Jacobian and the factors of each layer.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 
-#include "networks/perceptron.h"
+#include "core/pieces.h"
+#include "core/product.h"
+#include "networks/activation.h"
+#include "networks/network.h"
 
 namespace isoline::networks {
+
+template <class Scalar>
+class Perceptron final : public Network {
+ public:
+  enum class Init { torch, glorot };
+
+  // widths: i, the hidden layers', k
+  Perceptron(std::vector<Index> widths, Activation activation, Init init)
+      : widths_(std::move(widths)), activation_(activation), init_(init) {}
+
+  Index parameters() const override { return offset(layers()); }
+  Index inputs() const override { return widths_.front(); }
+  Index outputs() const override { return widths_.back(); }
+  bool is_single_precision() const override { return std::is_same_v<Scalar, float>; }
+  bool has_kinks() const override { return activation_ == Activation::relu; }
+  bool has_curvature() const override { return true; }
+  bool has_layer_factors() const override { return true; }
+
+  std::vector<Block> layout() const override;
+  Vector start(RandomStream& stream) const override;
+  void forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const override;
+  void pushforward(VectorRef v, BatchOut Jv, Workspace& w) const override;
+  void pullback(BatchRef u, VectorOut JTu, Workspace& w) const override;
+  void curvature(VectorRef v, BatchRef u, BatchRef du, VectorOut out, Workspace& w) const override;
+  void jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) const override;
+  void layer_factors(BatchRef u, std::vector<LayerFactor>& out, Workspace& w) const override;
+
+ private:
+  using Array = typename Gemm<Scalar>::Array;
+  using Parameters = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+
+  // What layer l sees and makes, (B, ·), its rows padded to whole registers as if by samples of
+  // zeros, which no sum over samples reads.
+  struct Layer {
+    Array a, z;                     // (B, w_{l−1} + 1) inputs and ones, (B, w_l)
+    Array da, dz;                   // their change along the last v
+    Array g, dg;                    // cotangent of z and its change
+    Array room;                     // as z
+    Array row_a, row_g, row_slope;  // (m·B, ·) what belongs to each row of the Jacobian
+  };
+  struct Passes final : Scratch, Pieces {
+    void add_choices(PieceDigest& digest) override;
+
+    Activation activation;
+    Index samples = -1;  // B that the arrays have room for
+    std::vector<Layer> layers;
+    Parameters theta, v, gradient;
+  };
+
+  Index layers() const { return static_cast<Index>(widths_.size()) - 1; }
+  Index width(Index l) const { return widths_[static_cast<std::size_t>(l)]; }
+  Index offset(Index layer) const {  // of W in θ
+    Index sum = 0;
+    for (Index l = 0; l < layer; ++l) sum += width(l + 1) * (width(l) + 1);
+    return sum;
+  }
+  // [W b] of layer l, (w_{l+1}, w_l + 1), in θ or in what is shaped like it; W alone.
+  auto with_bias(Parameters& theta, Index l) const {
+    return Eigen::Map<Array>(theta.data() + offset(l), width(l + 1), width(l) + 1);
+  }
+  auto weights(Parameters& theta, Index l) const {
+    return Eigen::Map<Array>(theta.data() + offset(l), width(l + 1), width(l));
+  }
+  // The first columns of an array, padding included, as one run of numbers.
+  static auto flat(Array& array, Index columns) {
+    return Eigen::Map<Flat<Scalar>, Eigen::AlignedMax>(array.data(), array.rows() * columns);
+  }
+  void slope(Layer& at, Array& next_a, Array& g, Array& room) const {
+    const Index k = g.cols();
+    multiply_by_slope<Scalar>(activation_, flat(at.z, k), flat(next_a, k), flat(g, k),
+                              flat(room, k));
+  }
+
+  Passes& sized(Workspace& w, Index samples) const;
+  void backward(BatchRef u, Passes& own) const;
+
+  std::vector<Index> widths_;
+  Activation activation_;
+  Init init_;
+};
+
+template <class Scalar>
+std::vector<Block> Perceptron<Scalar>::layout() const {
+  std::vector<Block> blocks;
+  for (Index l = 0; l < layers(); ++l) {
+    const Index weights = width(l + 1) * width(l);
+    blocks.push_back({offset(l), width(l + 1), width(l), Block::Kind::weight});
+    blocks.push_back({offset(l) + weights, width(l + 1), 1, Block::Kind::bias});
+  }
+  return blocks;
+}
+
+// PyTorch's: W and b ~ U(±1/√w_{l−1}). Glorot, Bengio (2010), as Keras has it:
+// W ~ U(±√(6/(w_{l−1} + w_l))), b = 0.
+template <class Scalar>
+Vector Perceptron<Scalar>::start(RandomStream& stream) const {
+  Vector theta = Vector::Zero(parameters());
+  for (Index l = 0; l < layers(); ++l) {
+    const Index in = width(l), out = width(l + 1);
+    const bool is_torch = init_ == Init::torch;
+    const Real bound = std::sqrt(is_torch ? 1 / Real(in) : 6 / Real(in + out));
+    const Index drawn = is_torch ? out * (in + 1) : out * in;
+    theta.segment(offset(l), drawn) = stream.uniform_vector(drawn, -bound, bound);
+  }
+  return theta;
+}
+
+template <class Scalar>
+typename Perceptron<Scalar>::Passes& Perceptron<Scalar>::sized(Workspace& w, Index samples) const {
+  auto& own = w.as<Passes>();
+  if (own.samples == samples) return own;
+  own.activation = activation_;
+  own.samples = samples;
+  own.layers.resize(widths_.size() - 1);
+  own.gradient.resize(parameters());
+  const Index rows = whole_registers<Scalar>(samples);
+  for (Index l = 0; l < layers(); ++l) {
+    Layer& at = own.layers[static_cast<std::size_t>(l)];
+    at.a.setZero(rows, width(l) + 1);
+    at.a.rightCols(1).setOnes();
+    at.da.setZero(rows, width(l));
+    for (Array* array : {&at.z, &at.dz, &at.g, &at.dg, &at.room})
+      array->setZero(rows, width(l + 1));
+  }
+  return own;
+}
+
+template <class Scalar>
+void Perceptron<Scalar>::forward(VectorRef theta, BatchRef in, BatchOut x, Workspace& w) const {
+  Passes& own = sized(w, in.cols());
+  const Index B = own.samples;
+  own.theta = theta.cast<Scalar>();
+  own.layers[0].a.topLeftCorner(B, inputs()) = in.transpose().template cast<Scalar>();
+  for (Index l = 0; l < layers(); ++l) {
+    Layer* at = &own.layers[static_cast<std::size_t>(l)];
+    product_by_rows(Form::A_BH, at->a, with_bias(own.theta, l), at->z);
+    const Index k = width(l + 1);
+    if (l + 1 < layers()) activate<Scalar>(activation_, flat(at->z, k), flat(at[1].a, k));
+  }
+  x = own.layers.back().z.topRows(B).transpose().template cast<Real>();
+}
+
+// On which side of its kink each neuron of the hidden layers is.
+template <class Scalar>
+void Perceptron<Scalar>::Passes::add_choices(PieceDigest& digest) {
+  if (activation != Activation::relu) return;
+  for (std::size_t l = 0; l + 1 < layers.size(); ++l)
+    for (Index j = 0; j < layers[l].z.cols(); ++j)
+      for (Index b = 0; b < samples; ++b) digest.add(layers[l].z(b, j) > 0);
+}
+
+// ż_l = Ẇ_l a_{l−1} + ḃ_l + W_l ȧ_{l−1},  ȧ_l = s'(z_l) ż_l
+template <class Scalar>
+void Perceptron<Scalar>::pushforward(VectorRef v, BatchOut Jv, Workspace& w) const {
+  auto& own = w.as<Passes>();
+  const Index B = own.samples;
+  own.v = v.cast<Scalar>();
+  for (Index l = 0; l < layers(); ++l) {
+    Layer* at = &own.layers[static_cast<std::size_t>(l)];
+    product_by_rows(Form::A_BH, at->a, with_bias(own.v, l), at->dz);
+    if (l > 0) product_by_rows(Form::A_BH, at->da, weights(own.theta, l), at->dz, 1);
+    if (l + 1 == layers()) break;
+    at[1].da = at->dz;
+    slope(*at, at[1].a, at[1].da, at->room);
+  }
+  Jv = own.layers.back().dz.topRows(B).transpose().template cast<Real>();
+}
+
+// g_L = u,  g_{l−1} = s'(z_{l−1}) W_lᵀ g_l
+template <class Scalar>
+void Perceptron<Scalar>::backward(BatchRef u, Passes& own) const {
+  const Index B = own.samples;
+  own.layers.back().g.topRows(B) = u.transpose().template cast<Scalar>();
+  for (Index l = layers() - 1; l > 0; --l) {
+    Layer* at = &own.layers[static_cast<std::size_t>(l)];
+    product_by_rows(Form::A_B, at->g, weights(own.theta, l), at[-1].g);
+    slope(at[-1], at->a, at[-1].g, at[-1].room);
+  }
+}
+
+// [∂W_l ∂b_l] = Σ_b g_l [a_{l−1} 1]ᵀ
+template <class Scalar>
+void Perceptron<Scalar>::pullback(BatchRef u, VectorOut JTu, Workspace& w) const {
+  auto& own = w.as<Passes>();
+  const Index B = own.samples;
+  backward(u, own);
+  for (Index l = 0; l < layers(); ++l) {
+    Layer& at = own.layers[static_cast<std::size_t>(l)];
+    product(Form::AH_B, at.g.topRows(B), at.a.topRows(B), with_bias(own.gradient, l));
+  }
+  JTu = own.gradient.template cast<Real>();
+}
+
+// The multilayer perceptron by name, and the products that methods beyond the gradient ask of it:
+// second derivatives, the batch Jacobian and the factors of each layer.
 
 // Forward over reverse (Pearlmutter, 1994): with h = W_lᵀ g_l,
 //   ġ_{l−1} = s'(z) (Ẇ_lᵀ g_l + W_lᵀ ġ_l) + s''(z) ż h,  (∂W_l)˙ = Σ_b ġ_l aᵀ + g_l ȧᵀ

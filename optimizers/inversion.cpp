@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "core/decompose.h"
-#include "optimizers/lbfgs.h"
-#include "optimizers/saddle_free.h"
 
 namespace isoline::optimizers {
 namespace {

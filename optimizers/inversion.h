@@ -2,14 +2,57 @@
 // nearer to y*, sample by sample. What scale-invariant physics training chooses between.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "core/array.h"
 #include "core/options.h"
 #include "optimizers/meter.h"
 
 namespace isoline::optimizers {
+
+// Between the extremes of |S| also after rounding, so that equal curvatures are never above it.
+template <class Curvatures>
+Real geometric_mean(const Curvatures& S) {
+  if (S.size() == 2) return std::sqrt(std::abs(S[0] * S[1]));
+  const Real mean = std::exp(S.array().abs().log().mean());  // 0 if any S is
+  return std::clamp(mean, Real(S.cwiseAbs().minCoeff()), Real(S.cwiseAbs().maxCoeff()));
+}
+
+// The way against the gradient is this, with the sign of the slope g̃ᵢ; no curvature, no step.
+inline Real saddle_free_length(Real slope, Real curvature, Real mean, Real max_loss_change) {
+  if (slope == 0 || curvature == 0) return 0;
+  const Real size = std::abs(curvature);
+  const bool is_within = slope * slope <= max_loss_change * size;  // |g̃/S| ≤ Δ/|g̃|
+  return curvature > mean || is_within ? slope / size : max_loss_change / slope;
+}
+
+// Limited-memory BFGS (Nocedal 1980) for the methods that minimize a misfit f ≥ 0 inside a step,
+// such as inverting a physics numerically. Luksan's code, by way of NLopt.
+
+// f and its gradient at x, both (n).
+using ValueAndGradient = std::function<Real(VectorRef x, VectorOut gradient)>;
+
+struct LbfgsLimits {
+  Index evaluations = 200;
+  Real enough = 0;                          // stop at f ≤ enough
+  std::function<bool()> is_over = nullptr;  // asked before each evaluation
+};
+
+struct LbfgsResult {
+  Real value;         // f at the x returned
+  Index evaluations;  // spent
+};
+
+// Moves x to the best point found.
+LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x);
+
+// One step of inverting the physics alone: from where it was linearized to an x̃ that brings y
+// nearer to y*, sample by sample. What scale-invariant physics training chooses between.
 
 class Inversion {
  public:

@@ -16,11 +16,86 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optimizers/kronecker_block.h"
+#include "core/decompose.h"
 #include "optimizers/matrix_blocks.h"
+#include "optimizers/meter.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
+
+class KroneckerBlock {
+ public:
+  Matrix A, G;  // (columns + 1)² and (rows)² of [W b], lower halves
+
+  // Shrinks the running means by `kept`, to which are then added: of a dense layer, its inputs a,
+  // (columns, B), as ā āᵀ, or outer products made elsewhere.
+  void fade(Real kept, Index inputs, Index outputs) {
+    if (A.size() == 0) {
+      A.setZero(inputs, inputs);
+      G.setZero(outputs, outputs);
+    }
+    A *= kept;
+    G *= kept;
+  }
+  void add_inputs(const Matrix& a, Real share) {
+    a_.setOnes(a.rows() + 1, a.cols());
+    a_.topRows(a.rows()) = a;
+    A.selfadjointView<Eigen::Lower>().rankUpdate(a_, share);
+  }
+
+  // ∇L of the layer's two blocks through the inverse; false where a factor is not positive
+  // definite.
+  bool precondition(const Block& W, const Block& b, Vector& gradient, Real damping) {
+    step_.resize(b.rows, A.rows());
+    step_ << kernel(W, b, gradient), gradient.segment(b.offset, b.rows);
+    const Real mean_A = A.diagonal().mean(), mean_G = G.diagonal().mean();
+    const Real pi = mean_A > 0 && mean_G > 0 ? std::sqrt(mean_A / mean_G) : 1;
+    damped_A_ = A;
+    damped_A_.diagonal().array() += pi * std::sqrt(damping);
+    damped_G_ = G;
+    damped_G_.diagonal().array() += std::sqrt(damping) / pi;
+    if (!solve_positive_definite(damped_G_, step_)) return false;
+    turned_ = step_.transpose();
+    return solve_positive_definite(damped_A_, turned_);
+  }
+  void step(const Block& W, const Block& b, Real rate, Vector& theta) const {
+    kernel(W, b, theta) -= rate * turned_.topRows(turned_.rows() - 1).transpose();
+    theta.segment(b.offset, b.rows) -= rate * turned_.bottomRows(1).transpose();
+  }
+
+ private:
+  using Stride = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
+  using Kernel = Eigen::Map<Matrix, Eigen::Unaligned, Stride>;
+
+  // W, one row for each output. A dense layer's lies in θ column by column, and a convolution's row
+  // by row.
+  static Kernel kernel(const Block& W, const Block& b, Vector& theta) {
+    const Index columns = W.rows * W.columns / b.rows;
+    const bool is_dense = W.kind == Block::Kind::weight;
+    const Stride stride = is_dense ? Stride(b.rows, 1) : Stride(1, columns);
+    return {theta.data() + W.offset, b.rows, columns, stride};
+  }
+
+  Matrix a_;       // ā, (columns + 1, B)
+  Matrix step_;    // (rows, columns + 1), of [W b]
+  Matrix turned_;  // (columns + 1, rows), its transpose
+  Matrix damped_A_, damped_G_;
+};
+
+// Kronecker-factored curvature, Martens, Grosse (2015): with ā = (a, 1) the input of a dense layer
+// and g the cotangent of its output, the layer's block of the Gauss-Newton matrix is taken as A ⊗ G
+// with A = ⟨ā āᵀ⟩ and G = ⟨g gᵀ⟩, so that [W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹ with π²
+// = (tr A/dim A)/(tr G/dim G). Of a convolution, Grosse, Martens (2016): A = ⟨Σ_t ā āᵀ⟩ over the
+// patches ā at all places t, G = ⟨g gᵀ⟩ over samples and places, as if the cotangents of different
+// places were uncorrelated and alike; where the physics correlates them the curvature is larger, by
+// up to the number of places, and the rate must be smaller. g is that of √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a
+// sample's loss, for each output i in turn, so that G is exact; of a convolution, or of more than
+// 64 outputs, that of all outputs at once with random signs, one draw a step. Of the loss's
+// curvature the diagonal is used, which for ½‖y − y*‖² is all of it. Batch norm's γ and β have no
+// such form: each steps along its gradient, over λ and the mean of its curvature's diagonal under
+// the same draw. Running means as the paper's; its rescaling by the exact Gauss-Newton matrix,
+// momentum and adaptive λ are left out.
+
 namespace {
 
 constexpr Index kMostExact = 64;  // outputs, each of which costs a pullback

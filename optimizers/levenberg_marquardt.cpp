@@ -4,12 +4,119 @@
 // samples at every step J and r are those of the step's own. With damping=fixed, the rule of
 // mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean
 // diagonal of K, and every step is taken.
-#include "optimizers/damped_least_squares.h"
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/archive.h"
+#include "core/array.h"
+#include "core/decompose.h"
+#include "core/product.h"
 #include "optimizers/nielsen_damping.h"
 #include "optimizers/optimizer.h"
 #include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
+
+struct DampedLeastSquares {
+  enum class Way { automatic, orthogonal, cholesky };
+
+  void set(const Matrix& J, const Vector& minus_r, const Vector& D);
+  // d and J d; false where they are not finite.
+  bool solve(Real mu, Way way, Vector& d, Vector& Jd);
+  Real misfit() const { return 0.5 * right.squaredNorm(); }  // ½‖r‖²
+  void persist(Archive& archive) { archive(augmented, right, scale, rows); }
+
+  Index rows = 0;    // m·B
+  Matrix augmented;  // (m·B + n, n) with J on top, or (m·B, n + m·B) with JD⁻¹ left
+  Vector right;      // −r, with n zeros below where J is not wide
+  Vector scale;      // (n) D
+
+ private:
+  bool is_wide() const { return rows < scale.size(); }
+  bool may_square(Real mu) const;
+  bool by_cholesky(Real mu);
+
+  Matrix gram_, damped_, column_;  // (m·B, m·B) twice, (m·B, 1)
+  bool has_gram_ = false;
+  Vector solved_;  // (z, w) or d
+};
+
+// Least squares under a diagonal damping, by orthogonal factorization or by Cholesky.
+
+namespace {
+
+constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+
+}  // namespace
+
+// A parameter that has done nothing yet has no scale, and no step.
+void DampedLeastSquares::set(const Matrix& J, const Vector& minus_r, const Vector& D) {
+  const Index n = J.cols();
+  rows = J.rows();
+  scale = D;
+  has_gram_ = false;
+  if (is_wide() && augmented.rows() != rows)
+    augmented.setZero(rows, n + rows);
+  else if (!is_wide() && augmented.rows() != rows + n)
+    augmented.setZero(rows + n, n);
+  if (is_wide()) {
+    for (Index j = 0; j < n; ++j) augmented.col(j) = J.col(j) / (scale[j] > 0 ? scale[j] : 1);
+  } else {
+    augmented.topRows(rows) = J;
+  }
+  if (right.size() != augmented.rows()) right.setZero(augmented.rows());
+  right.head(rows) = minus_r;
+}
+
+bool DampedLeastSquares::solve(Real mu, Way way, Vector& d, Vector& Jd) {
+  const Index n = scale.size();
+  const Real root = std::sqrt(mu);
+  const bool squares =
+      is_wide() && (way == Way::cholesky || (way == Way::automatic && may_square(mu)));
+  if (!is_wide()) {
+    augmented.bottomRows(n).diagonal() = root * scale;
+    if (!least_squares(augmented, right, kEpsilon, d)) return false;
+    Jd.noalias() = augmented.topRows(rows) * d;
+    return true;
+  }
+  augmented.rightCols(rows).diagonal().setConstant(root);
+  if (!(squares ? by_cholesky(mu) : least_squares(augmented, right, kEpsilon, solved_)))
+    return false;
+  d = (scale.array() > 0).select(solved_.head(n).cwiseQuotient(scale), 0);
+  Jd.noalias() = augmented.leftCols(n) * solved_.head(n);
+  return true;
+}
+
+// Large enough to be worth it, and μ at least 1e-10 of a bound on the largest σ².
+bool DampedLeastSquares::may_square(Real mu) const {
+  constexpr Index kLeastRows = 64;
+  constexpr Real kLeastShare = 1e-10;
+  return rows >= kLeastRows && mu >= kLeastShare * augmented.leftCols(scale.size()).squaredNorm();
+}
+
+bool DampedLeastSquares::by_cholesky(Real mu) {
+  const Eigen::Ref<const Matrix> A = augmented.leftCols(scale.size());
+  if (!has_gram_) {
+    gram_.resize(rows, rows);
+    product(Form::A_BH, A, A, gram_);
+    has_gram_ = true;
+  }
+  damped_ = gram_;
+  damped_.diagonal().array() += mu;
+  column_ = right;
+  if (!solve_positive_definite(damped_, column_)) return false;
+  solved_.noalias() = A.transpose() * column_.col(0);
+  return true;
+}
+
+// Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978) and the gain-ratio
+// rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
+// column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. On fresh
+// samples at every step J and r are those of the step's own. With damping=fixed, the rule of
+// mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean
+// diagonal of K, and every step is taken.
+
 namespace {
 
 struct LevenbergMarquardt {

@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-#include "optimizers/lbfgs.h"
+#include "optimizers/inversion.h"
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {

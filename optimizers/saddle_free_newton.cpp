@@ -3,7 +3,7 @@
 // transposed V is corrected.
 #include "core/decompose.h"
 #include "optimizers/optimizer.h"
-#include "optimizers/saddle_free.h"
+#include "optimizers/inversion.h"
 
 namespace isoline::optimizers {
 namespace {

@@ -1,14 +1,156 @@
-// One spectral step by each of its ways.
+// Ways by name, and their needs.
 #include "optimizers/spectral_step.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/product.h"
 
 namespace isoline::optimizers {
+namespace {
+
+struct WayRow {
+  Way way;
+  std::string_view name, words;
+};
+constexpr WayRow kWays[] = {
+    {Way::automatic, "auto", ""},
+    {Way::svd, "svd", "the thin SVD of J"},
+    {Way::qr, "qr", "QR and the SVD of R"},
+    {Way::gram, "gram", "the Gram matrix of J"},
+    {Way::layers, "layers", "the Gram matrix layer by layer"},
+    {Way::split, "split", "the Gram matrix layer by layer, split in two"},
+    {Way::cholesky, "cholesky", "Cholesky of the Gram matrix"},
+    {Way::orthogonal, "orthogonal", "a complete orthogonal factorization"},
+    {Way::lanczos, "lanczos", "Lanczos"},
+};
+
+}  // namespace
+
+Way way_named(std::string_view name) {
+  for (const WayRow& row : kWays)
+    if (row.name == name) return row.way;
+  throw UsageError(fmt::format("there is no way '{}' of a spectral step", name));
+}
+
+std::string_view words_of(Way way) { return kWays[static_cast<std::size_t>(way)].words; }
+
+bool is_tikhonov(const SpectralFilter& filter) {
+  return filter.kappa == 1 && filter.damping > 0 && filter.unit == SpectralFilter::Unit::mean;
+}
+
+// A damping in units of the mean is judged when it is known.
+bool never_by_gram(const SpectralFilter& filter) {
+  const bool is_relative = filter.unit == SpectralFilter::Unit::largest;
+  return filter.clamps ||
+         (is_relative && std::max(filter.cutoff, std::sqrt(filter.damping)) < kLeastCutoffByGram);
+}
+
+OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem) {
+  const OracleSet by_matrix{Oracle::forward, Oracle::jacobian};
+  const OracleSet by_layers{Oracle::forward, Oracle::layer_factors, Oracle::pullback};
+  const bool has_layers =
+      problem.residuals() < problem.unknowns() && problem.offers().contains(Oracle::layer_factors);
+  const bool has_jacobian = problem.offers().contains(Oracle::jacobian);
+  switch (way) {
+    case Way::lanczos:
+      return {Oracle::forward, Oracle::pullback, Oracle::pushforward};
+    case Way::layers:
+    case Way::split:
+      return by_layers;
+    case Way::cholesky:
+      return has_layers ? by_layers : by_matrix;
+    case Way::automatic: {
+      if (!has_layers) return by_matrix;
+      if (has_jacobian && never_by_gram(filter)) return by_matrix;
+      OracleSet both = by_layers;
+      if (has_jacobian) both.add(Oracle::jacobian);
+      return both;
+    }
+    default:
+      return by_matrix;
+  }
+}
+
+std::string objection_to(Way way, const Problem& problem) {
+  const bool forms_K = way == Way::layers || way == Way::split;
+  if (forms_K && problem.residuals() >= problem.unknowns())
+    return fmt::format("way={} forms JJᵀ, and J is not wide: {} residuals, {} unknowns",
+                       kWays[static_cast<std::size_t>(way)].name, problem.residuals(),
+                       problem.unknowns());
+  return "";
+}
+
+// The eigenvalues of JJᵀ in two parts, and the step by both.
+
+namespace {
+
+// Of the cut-off: σ that can't be kept, however they are rounded. They are left out of S where what
+// is of second order in ε σ₁²/σ², which turns them into those kept, is nothing.
+constexpr Real kFarBelow = 0.01, kLeastCutoff = 3e-6;
+
+}  // namespace
+
+bool SplitGram::solve(LayeredJacobian& J, const SymmetricEigen& eigen, const SpectralFilter& filter,
+                      const Spectrum& spectrum, const Vector& w, Vector& out) {
+  const Index r = w.size();
+  if (spectrum.largest == 0) {
+    for (Vector* zero : {&sigma_, &along_, &out}) zero->setZero(r);
+    return true;
+  }
+  const auto count_below = [&](Real share) {
+    const Real bound = share * spectrum.largest, *lambda = eigen.lambda.data();
+    return std::lower_bound(lambda, lambda + r, bound * bound) - lambda;
+  };
+  const Index n3 = filter.cutoff >= kLeastCutoff ? count_below(kFarBelow * filter.cutoff) : 0;
+  const Index n2 = std::max(count_below(kSplit), n3) - n3, n1 = r - n3 - n2;
+  const Eigen::Ref<const Matrix> V3 = eigen.V.leftCols(n3), V1 = eigen.V.rightCols(n1);
+  V2_ = eigen.V.middleCols(n3, n2);
+  J.pullback(V2_, Z_);
+  small_.V.resize(n2, n2);
+  lower_gram(Z_, small_.V);
+  if (n2 > 0 && !symmetric_eigen(Matrix(small_.V), small_)) return false;
+  sigma_ = eigen.lambda.cwiseMax(0).cwiseSqrt();
+  if (n2 > 0) sigma_.segment(n3, n2) = small_.lambda.cwiseMax(0).cwiseSqrt();
+
+  // a = Vᵀ w, and what first order adds to a₂.
+  const Vector a = eigen.V.transpose() * w;
+  const Vector lambda1 = eigen.lambda.tail(n1);
+  pair_.resize(r, 2);
+  pair_.col(0).noalias() = V1 * a.tail(n1).cwiseQuotient(lambda1);
+  pair_.col(1).noalias() = V3 * a.head(n3);
+  J.pullback(pair_, z_);
+  Vector b = small_.V.transpose() * (a.segment(n3, n2) - Z_.transpose() * z_.col(0));
+  Vector shift = small_.V.transpose() * (Z_.transpose() * z_.col(1));
+  for (Index i = 0; i < n2; ++i) {
+    const Real sigma = sigma_[n3 + i], h = filter.over_sigma(sigma, spectrum);
+    const Real inverse = n3 > 0 && h > 0 ? 1 / (sigma * sigma) : 0;
+    b[i] = h * (b[i] + inverse * shift[i]);
+    shift[i] = inverse * b[i];
+  }
+  along_.setZero(r);
+  along_.segment(n3, n2) = b.cwiseProduct(sigma_.segment(n3, n2));
+
+  // And what it adds to a₁ and to V.
+  const Vector of_small = small_.V * b;
+  triple_.resize(Z_.rows(), 3);
+  triple_.col(0).noalias() = Z_ * a.segment(n3, n2) + z_.col(1);
+  triple_.col(1).noalias() = Z_ * of_small;
+  triple_.col(2).noalias() = Z_ * (small_.V * shift);
+  J.pushforward(triple_, Y_);
+  Vector c = a.tail(n1) + (V1.transpose() * Y_.col(0)).cwiseQuotient(lambda1);
+  for (Index i = 0; i < n1; ++i) c[i] *= filter.over_sigma(sigma_[r - n1 + i], spectrum);
+  along_.tail(n1) = c.cwiseProduct(sigma_.tail(n1));
+  c -= (V1.transpose() * Y_.col(1)).cwiseQuotient(lambda1);
+  out.noalias() = V1 * c + V2_ * of_small + V3 * (V3.transpose() * Y_.col(2));
+  return true;
+}
+
+// One spectral step by each of its ways.
+
 namespace {
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();

@@ -2,16 +2,83 @@
 // compute it.
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "core/archive.h"
 #include "core/decompose.h"
 #include "optimizers/lanczos_step.h"
 #include "optimizers/layered_jacobian.h"
 #include "optimizers/meter.h"
 #include "optimizers/spectral_filter.h"
-#include "optimizers/split_gram.h"
-#include "optimizers/way.h"
 
 namespace isoline::optimizers {
+
+enum class Way {
+  automatic,
+  svd,       // thin SVD of J, the reference
+  qr,        // Jᵀ = QR, or J = QR where it is tall, and the SVD of R, without forming U and V
+  gram,      // eigenvalues of the smaller Gram matrix, from J
+  layers,    // eigenvalues of K = JJᵀ formed layer by layer, and one pullback
+  split,     // the same, the small ones again from the part of J that belongs to them
+  cholesky,  // of Tikhonov alone: (K + μ)⁻¹ or (JᵀJ + μ)⁻¹, which need no spectrum
+  orthogonal,  // of 1/σ alone: J⁺ by a complete orthogonal factorization, the cut-off on its pivots
+  lanczos,     // products with J and Jᵀ alone
+};
+Way way_named(std::string_view name);  // "auto", and each as it is called here
+
+// What was done, in words: "the thin SVD of J".
+std::string_view words_of(Way way);
+
+// Of `automatic`. A Gram matrix squares the condition number: it is used where the estimated
+// relative error of the step is at most 2e-9 by it, and the least σ that matters 1e-5 of the
+// largest, or 1e-7 where it is split in two; and is not tried where the cut-off is too near its
+// rounding for that to be seen.
+inline constexpr Real kMostErrorByGram = 2e-9, kLeastShareByGram = 1e-5, kLeastShareBySplit = 1e-7;
+inline constexpr Real kLeastCutoffByGram = 1e-7;
+
+// Of `automatic`: whether no spectrum would let a Gram matrix be used.
+bool never_by_gram(const SpectralFilter& filter);
+// Whether one number is enough of a spectrum: Tikhonov's filter with μ in units of the mean.
+bool is_tikhonov(const SpectralFilter& filter);
+
+// What a method with a SpectralStep asks of a problem, by its way.
+OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem);
+// Why it can't treat a problem, in words; empty if it can.
+std::string objection_to(Way way, const Problem& problem);
+
+// A spectral step by JJᵀ where its least singular values would be lost in it: K = JJᵀ is rounded by
+// ε σ₁², and so are its eigenvalues. Its eigenvectors V₂ of small ones still span what they belong
+// to, and Z₂ = Jᵀ V₂ is small: S = Z₂ᵀ Z₂ gives these eigenvalues again, rounded by ε (s σ₁)² where
+// all of them have σ < s σ₁.
+//
+// V = (V₁ V₂ V₃), σ falling, V₃ being discarded and far below the cut-off, is off by what K was
+// rounded by. The blocks Eᵢⱼ = Vᵢᵀ K Vⱼ, i ≠ j, which should be 0, tell by how much, and to first
+// order, where eigenvalues lie far apart,
+//   V₁ ← V₁ + (V₂ E₂₁ + V₃ E₃₁) Λ₁⁻¹,   V₂ ← V₂ − V₁ Λ₁⁻¹ E₁₂ + V₃ E₃₂ S⁻¹,
+// of which only products with a vector are needed, by J and Jᵀ. What is left is of second order.
+
+// s, a share of σ₁: large ones are off by ε/s² where small ones are off by ε s² σ₁²/σ².
+inline constexpr Real kSplit = 4e-4;
+
+class SplitGram {
+ public:
+  // out (m·B) with Jᵀ out = V f(σ) Uᵀ w. `eigen`: of the K of J, as it was rounded. False: no
+  // convergence.
+  bool solve(LayeredJacobian& J, const SymmetricEigen& eigen, const SpectralFilter& filter,
+             const Spectrum& spectrum, const Vector& w, Vector& out);
+  const Vector& sigma() const { return sigma_; }  // (m·B), ascending
+  const Vector& along() const { return along_; }  // f(σ) Uᵀ w, (m·B)
+
+ private:
+  Matrix V2_, Z_;                 // (m·B, p), and Z₂ (n, p)
+  SymmetricEigen small_;          // of S
+  Matrix pair_, z_, triple_, Y_;  // a few columns of the space of y or θ
+  Vector sigma_, along_;
+};
+
+// V f(σ) Uᵀ w over the stacked Jacobian J = U diag(σ) Vᵀ of a batch: one step, and several ways to
+// compute it.
 
 class SpectralStep {
  public:

@@ -11,7 +11,6 @@
 
 #include "problems/dense_physics.h"
 #include "problems/learning.h"
-#include "problems/watches.h"
 
 namespace isoline::problems {
 namespace {

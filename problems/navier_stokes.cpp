@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 
 #include "problems/learning.h"
-#include "problems/physics/amplitudes.h"
 #include "problems/physics/flow_physics.h"
-#include "problems/physics/flow_samples.h"
 
 namespace isoline::problems {
 namespace {

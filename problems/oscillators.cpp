@@ -2,7 +2,7 @@
 #include "problems/oscillators.h"
 
 #include "problems/sample_lanes.h"
-#include "problems/watches.h"
+#include "problems/learning.h"
 
 namespace isoline::problems {
 namespace {

@@ -1,13 +1,79 @@
-// A differentiable process P : x (k, B) -> y (m, B), given a context c (p, B), empty for most. One
-// sample a column. Const: what a forward pass leaves behind lives in the caller's Workspace, and
-// the products are taken at the x of the last forward, which the caller has put into w.x.
+// The loss L(y, y*) and its derivatives in y.
 #pragma once
+
+#include <functional>
 
 #include "core/array.h"
 #include "core/errors.h"
+#include "core/random.h"
 #include "core/workspace.h"
 
 namespace isoline::problems {
+
+class Loss {
+ public:
+  virtual ~Loss() = default;
+  // Whether it is a multiple of ‖y − y*‖², which methods of least squares descend.
+  virtual bool is_least_squares() const { return true; }
+  virtual Real value(BatchRef y, BatchRef target) const = 0;
+  virtual void cotangent(BatchRef y, BatchRef target, BatchOut g) const = 0;  // ∂L/∂y, (m, B)
+  // ∂²L/∂y² dy, (m, B) -> (m, B)
+  virtual void curvature(BatchRef y, BatchRef target, BatchRef dy, BatchOut dg) const = 0;
+};
+
+// L = weight/B Σ ½‖y − y*‖²
+class HalfSquared final : public Loss {
+ public:
+  explicit HalfSquared(Real weight = 1) : weight_(weight) {}
+  Real value(BatchRef y, BatchRef target) const override {
+    return 0.5 * scale(y) * (y - target).squaredNorm();
+  }
+  void cotangent(BatchRef y, BatchRef target, BatchOut g) const override {
+    g = scale(y) * (y - target);
+  }
+  void curvature(BatchRef y, BatchRef, BatchRef dy, BatchOut dg) const override {
+    dg = scale(y) * dy;
+  }
+
+ private:
+  Real scale(BatchRef y) const { return weight_ / static_cast<Real>(y.cols()); }
+  Real weight_;
+};
+
+// The samples of one evaluation, and where those of a learning problem come from.
+
+// One sample a column.
+struct Batch {
+  Matrix input;    // what the network sees, (i, B)
+  Matrix context;  // c, (p, B), empty for most
+  Matrix target;   // y*, (m, B)
+  Matrix truth;    // the x* that made y*, (k, B), empty where there is none
+
+  Index samples() const { return target.cols(); }
+  void resize(Index inputs, Index contexts, Index outputs, Index truths, Index samples) {
+    input.resize(inputs, samples);
+    context.resize(contexts, contexts > 0 ? samples : 0);
+    target.resize(outputs, samples);
+    truth.resize(truths, truths > 0 ? samples : 0);
+  }
+};
+
+// The distribution that a learning problem is posed over.
+struct Samples {
+  Index batch = 0;          // B, drawn anew each step; 0: a direct problem
+  Index data = 0;           // N: the same N samples at every step instead
+  Index epoch = 0;          // N: batches are consecutive slices of the same N, a multiple of B
+  Index validation = 1024;  // samples that the curves are measured on
+  Index contexts = 0;       // p
+  bool has_truth = true;    // whether `draw` fills Batch::truth
+  std::function<RandomStream(std::string_view purpose)> stream = {};
+  // Fills column b of every array of the batch from the sample's own stream.
+  std::function<void(RandomStream& stream, Index b, Batch& batch)> draw = {};
+};
+
+// A differentiable process P : x (k, B) -> y (m, B), given a context c (p, B), empty for most. One
+// sample a column. Const: what a forward pass leaves behind lives in the caller's Workspace, and
+// the products are taken at the x of the last forward, which the caller has put into w.x.
 
 // How far a local inverse can be trusted.
 enum class Inverse {

@@ -7,7 +7,6 @@
 #include "problems/laplacian.h"
 #include "problems/learning.h"
 #include "problems/random_fields.h"
-#include "problems/watches.h"
 
 namespace isoline::problems {
 namespace {

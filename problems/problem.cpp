@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/product.h"
-#include "networks/identity.h"
+#include "networks/network.h"
 
 namespace isoline::problems {
 

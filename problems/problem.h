@@ -16,8 +16,6 @@
 #include "core/records/panel.h"
 #include "core/registry.h"
 #include "networks/network.h"
-#include "problems/batch.h"
-#include "problems/loss.h"
 #include "problems/physics.h"
 
 namespace isoline::problems {

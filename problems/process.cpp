@@ -4,11 +4,31 @@
 #include <array>
 #include <limits>
 
+#include "core/array.h"
 #include "core/foreign/handshake.h"
-#include "problems/physics/box.h"
 #include "problems/problem.h"
 
 namespace isoline::problems {
+
+struct Box {
+  Vector lower, upper;  // (k) each, or empty where x may be anything
+
+  bool is_everything() const { return lower.size() == 0; }
+  bool holds(VectorRef x) const {
+    return is_everything() || ((x.array() >= lower.array()) && (x.array() <= upper.array())).all();
+  }
+  // What is no number is moved to a lower bound.
+  Vector nearest(VectorRef x) const {
+    if (is_everything()) return x;
+    const Vector above = (x.array() > lower.array()).select(x, lower);
+    return (above.array() < upper.array()).select(above, upper);
+  }
+};
+
+// A problem that another program computes, over frames on a private socket (docs/wire-format.md):
+// process[command="python3 mine.py"]. Each problem that is made has a program of its own, which
+// ends with it. A forward is asked for once a point; products there come from what it left behind.
+
 namespace {
 
 Inverse inverse_of(const std::string& kind) {

@@ -4,7 +4,6 @@
 
 #include "problems/learning.h"
 #include "problems/particle_in_a_box.h"
-#include "problems/watches.h"
 
 namespace isoline::problems {
 namespace {

@@ -3,7 +3,7 @@
 #include "benchmarks/micro/pairs.h"
 #include "core/fourier.h"
 #include "core/random.h"
-#include "problems/physics/flow_samples.h"
+#include "problems/physics/flow_physics.h"
 #include "problems/physics/simulation.h"
 
 namespace isoline::benchmarks::micro {

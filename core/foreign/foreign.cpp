@@ -6,6 +6,7 @@
 
 #include "core/digest.h"
 #include "core/files.h"
+
 namespace isoline {
 
 namespace fs = std::filesystem;

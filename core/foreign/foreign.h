@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string>
+
 namespace isoline {
 
 struct Foreign {

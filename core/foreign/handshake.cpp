@@ -14,6 +14,7 @@
 #include "core/foreign/foreign.h"
 #include "core/json.h"
 #include "core/shell.h"
+
 namespace isoline {
 
 ChildProgram::Start door_to(const std::string& command) {

@@ -12,6 +12,7 @@
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/status.h"
+
 namespace isoline {
 
 struct ProcessOptions {

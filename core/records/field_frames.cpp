@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/npy.h"
+
 namespace isoline {
 
 void require_sound(const FieldFrames& frames) {

@@ -10,6 +10,7 @@
 
 #include "core/grid.h"
 #include "core/real.h"
+
 namespace isoline {
 
 struct Exhibit {

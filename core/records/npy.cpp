@@ -15,6 +15,7 @@
 
 #include "core/errors.h"
 #include "core/files.h"
+
 namespace isoline {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/real.h"
+
 namespace isoline {
 
 // Numbers in the order of the file's bytes, which is that of C: the last index runs fastest.

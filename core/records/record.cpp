@@ -11,6 +11,7 @@
 #include "core/ladder.h"
 #include "core/records/file_text.h"
 #include "core/records/record_fields.h"
+
 namespace isoline {
 namespace {
 

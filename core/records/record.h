@@ -14,6 +14,7 @@
 #include "core/records/provenance.h"
 #include "core/records/request.h"
 #include "core/status.h"
+
 namespace isoline {
 
 struct Imported {

@@ -13,6 +13,7 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
+
 namespace isoline {
 
 using Adapter = valijson::adapters::NlohmannJsonAdapter;

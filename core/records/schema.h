@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
 namespace isoline {
 
 using Json = nlohmann::json;

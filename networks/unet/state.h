@@ -1,14 +1,308 @@
+// The arrays of a U-net: vectors of samples, grids with margins, where each parameter stands, and
+// all that one pass keeps for the next.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/convolution.h"
+#include "networks/network.h"
+
+namespace isoline::networks {
+
+using Lane = float __attribute__((vector_size(4 * kChannels)));
+using Wide = double __attribute__((vector_size(8 * kChannels)));  // long sums of lanes
+using Mask = int __attribute__((vector_size(4 * kChannels)));
+
+// What arrays of pixels are made of, for its alignment.
+struct alignas(4 * kChannels) Pixel {
+  float channel[kChannels];
+};
+
+template <class T>
+struct Dual {
+  T value{}, tangent{};
+
+  friend Dual operator+(const Dual& a, const Dual& b) {
+    return {a.value + b.value, a.tangent + b.tangent};
+  }
+  friend Dual operator-(const Dual& a, const Dual& b) {
+    return {a.value - b.value, a.tangent - b.tangent};
+  }
+  friend Dual operator-(const Dual& a) { return {-a.value, -a.tangent}; }
+  friend Dual operator*(const Dual& a, const Dual& b) {
+    return {a.value * b.value, a.value * b.tangent + a.tangent * b.value};
+  }
+  friend Dual operator*(float c, const Dual& a) { return {c * a.value, c * a.tangent}; }
+};
+using DualLane = Dual<Lane>;
+
+template <class T>
+inline constexpr bool kIsDual = false;
+template <class T>
+inline constexpr bool kIsDual<Dual<T>> = true;
+
+inline const Lane& value_of(const Lane& x) { return x; }
+inline const Lane& value_of(const DualLane& x) { return x.value; }
+
+// What a pullback is asked for: the value, or with duals the derivative of it.
+inline const Lane& asked_of(const Lane& x) { return x; }
+inline const Lane& asked_of(const DualLane& x) { return x.tangent; }
+
+inline Lane choose(const Mask& mask, const Lane& a, const Lane& b) { return mask ? a : b; }
+inline DualLane choose(const Mask& mask, const DualLane& a, const DualLane& b) {
+  return {mask ? a.value : b.value, mask ? a.tangent : b.tangent};
+}
+template <class T>
+T keep(const Mask& mask, const T& x) {  // 0 elsewhere; a kink has derivative 0
+  return choose(mask, x, T{});
+}
+template <class T>
+Mask is_positive(const T& x) {
+  return value_of(x) > 0;
+}
+
+inline void accumulate(const Lane& x, Wide& sum) { sum += __builtin_convertvector(x, Wide); }
+
+// An array of pixels and, where there are any, their tangents.
+struct Place {
+  float* value = nullptr;
+  float* tangent = nullptr;
+
+  Place operator+(Index pixels) const {
+    const Index offset = pixels * kChannels;
+    return {value + offset, tangent ? tangent + offset : nullptr};
+  }
+};
+
+inline auto& lane(float* array, Index pixel) {
+  using LaneOfFloats = float __attribute__((vector_size(4 * kChannels), may_alias));
+  return *reinterpret_cast<LaneOfFloats*>(array + pixel * kChannels);
+}
+
+template <class T>
+T load(const Place& place, Index pixel) {
+  if constexpr (kIsDual<T>)
+    return T{lane(place.value, pixel), lane(place.tangent, pixel)};
+  else
+    return T(lane(place.value, pixel));
+}
+
+template <class T>
+void store(const Place& place, Index pixel, const T& x) {
+  lane(place.value, pixel) = value_of(x);
+  if constexpr (kIsDual<T>) lane(place.tangent, pixel) = x.tangent;
+}
+
+// What a U-net does on one N×N grid of pixels besides convolving: halos, pooling, upsampling, and
+// their transposes. A grid is [column][row], and lies within a halo of one where `halo` says so.
+
+struct Grid {
+  Index N, halo = 0;
+
+  Index width() const { return N + 2 * halo; }
+  Index pixels() const { return width() * width(); }
+  Index at(Index column, Index row) const { return (column + halo) * width() + row + halo; }
+};
+
+// Rows first, then whole columns: the corners come along.
+template <class Element>
+void fill_halo(Element* image, Index N, bool is_circular) {
+  const Index width = N + 2;
+  const auto copy = [&](Index to, Index from, Index count) {
+    if (is_circular)
+      std::copy_n(image + from, count, image + to);
+    else
+      std::fill_n(image + to, count, Element{});
+  };
+  for (Index column = 1; column <= N; ++column) {
+    copy(column * width, column * width + N, 1);
+    copy(column * width + N + 1, column * width + 1, 1);
+  }
+  copy(0, N * width, width);
+  copy((N + 1) * width, width, width);
+}
+
+// relu(scale z + shift): the pixels of z after batch norm and rectifier.
+template <class T>
+struct Activated {
+  Place z;
+  T scale, shift;
+
+  T normalized(Index pixel) const { return scale * load<T>(z, pixel) + shift; }
+  T operator()(Index pixel) const {
+    const T y = normalized(pixel);
+    return keep(is_positive(y), y);
+  }
+};
+
+template <class T>
+void activate(const Activated<T>& a, const Place& out, const Grid& grid) {
+  for (Index column = 0; column < grid.N; ++column)
+    for (Index row = 0; row < grid.N; ++row)
+      store(out, grid.at(column, row), a(column * grid.N + row));
+}
+
+// The four pixels of a grid twice as fine.
+inline std::array<Index, 4> finer(Index N, Index column, Index row) {
+  const Index first = 2 * column * 2 * N + 2 * row, next = first + 2 * N;
+  return {first, first + 1, next, next + 1};
+}
+
+// The largest of each four; of equals the first.
+template <class T>
+void pool(const Activated<T>& a, const Place& out, const Grid& grid) {
+  for (Index column = 0; column < grid.N; ++column)
+    for (Index row = 0; row < grid.N; ++row) {
+      const auto four = finer(grid.N, column, row);
+      T best = a(four[0]);
+      for (int k = 1; k < 4; ++k) {
+        const T x = a(four[k]);
+        best = choose(value_of(x) > value_of(best), x, best);
+      }
+      store(out, grid.at(column, row), best);
+    }
+}
+
+// The transpose of pool: fine pixel ← coarse cotangent where it was the largest, else 0.
+template <class T>
+void unpool(const Activated<T>& a, const Place& coarse, const Place& fine, Index N) {
+  for (Index column = 0; column < N; ++column)
+    for (Index row = 0; row < N; ++row) {
+      const auto four = finer(N, column, row);
+      Lane y[4], best = {};
+      for (int k = 0; k < 4; ++k) {
+        y[k] = value_of(a(four[k]));
+        best = choose(y[k] > best, y[k], best);
+      }
+      const T cotangent = load<T>(coarse, column * N + row);
+      Mask is_free = best == best;
+      for (int k = 0; k < 4; ++k) {
+        const Mask is_largest = is_free & (y[k] == best);
+        store(fine, four[k], keep(is_largest, cotangent));
+        is_free &= ~is_largest;
+      }
+    }
+}
+
+// Twice as fine, bilinear between pixel centres (align_corners = false), clamped at the border:
+// ¾ of the nearest and ¼ of the next. `grid` is the fine one.
+template <class T>
+void upsample(const Place& coarse, const Place& out, const Grid& grid) {
+  const Index N = grid.N / 2;
+  const auto next = [N](Index i) {
+    return std::clamp(i % 2 ? i / 2 + 1 : i / 2 - 1, Index{0}, N - 1);
+  };
+  for (Index column = 0; column < grid.N; ++column) {
+    const Place near = coarse + column / 2 * N, far = coarse + next(column) * N;
+    for (Index row = 0; row < grid.N; ++row) {
+      const T close = 0.75F * load<T>(near, row / 2) + 0.25F * load<T>(near, next(row));
+      const T distant = 0.75F * load<T>(far, row / 2) + 0.25F * load<T>(far, next(row));
+      store(out, grid.at(column, row), 0.75F * close + 0.25F * distant);
+    }
+  }
+}
+
+// The transpose of upsample, from 2N×2N to N×N: each coarse pixel gathers from four fine columns
+// and rows; beyond the border stands the border itself.
+template <class T>
+void downsample(const Place& fine, const Place& coarse, Index N) {
+  constexpr float kWeights[4] = {0.25F, 0.75F, 0.75F, 0.25F};
+  const auto clamped = [N](Index i) { return std::clamp(i, Index{0}, 2 * N - 1); };
+  for (Index column = 0; column < N; ++column)
+    for (Index row = 0; row < N; ++row) {
+      T sum{};
+      for (Index i = 0; i < 4; ++i) {
+        const Place from = fine + clamped(2 * column - 1 + i) * 2 * N;
+        T along{};
+        for (Index j = 0; j < 4; ++j)
+          along = along + kWeights[j] * load<T>(from, clamped(2 * row - 1 + j));
+        sum = sum + kWeights[i] * along;
+      }
+      store(coarse, column * N + row, sum);
+    }
+}
+
+// What a U-net consists of: its units in order, and where each finds its parameters in θ.
+
+struct UnetOptions {
+  Index levels = 4, filters = 16;
+  std::string padding = "circular";
+};
+
+void fields(UnetOptions& o, auto& field) {
+  field("levels", o.levels, between(1, 10), "resolutions, each half as fine as the one before");
+  field("filters", o.filters, between(1, 1024), "channels of every level");
+  field("padding", o.padding, {"circular", "zero"}, "what lies beyond the border of a grid");
+}
+
+// One 3×3 convolution, batch norm and rectifier. Its input is the network's; or the activation of
+// unit `from`; or that, pooled; or that of unit `skip` beside that of `from`, upsampled.
+struct Unit {
+  enum class Source { input, activation, pooled, joined };
+  Source source;
+  Index from, skip, level;
+  Index in;      // channels
+  Index offset;  // in θ, as PyTorch lists it: kernel (out, in, 3, 3), biases, γ, β
+};
+
+// Channels in memory come in whole blocks; those beyond the network's own are zero throughout.
+struct UnetPlan {
+  Index N, input_channels, output_channels, levels, filters;
+  bool is_circular;
+  std::vector<Unit> units;
+  Index parameters;
+
+  UnetPlan(const UnetOptions& options, const NetworkShape& shape);
+
+  Index blocks() const { return (filters + kChannels - 1) / kChannels; }  // a unit's output
+  Index channels() const { return blocks() * kChannels; }
+  Index channels_in(const Unit& unit) const;  // in memory
+  Index kernel_size(const Unit& unit) const { return channels() * channels_in(unit) * 9; }
+  Index size(Index level) const { return N >> level; }
+
+  Index biases(const Unit& unit) const { return unit.offset + filters * unit.in * 9; }
+  Index norm(const Unit& unit) const { return biases(unit) + filters; }  // γ, then β
+  Index output_biases() const { return parameters - output_channels; }
+  Index output() const { return parameters - output_channels * (filters + 1); }
+
+  std::vector<Block> layout() const;
+  Vector start(RandomStream& stream) const;
+
+  // Where channel i of a unit's input lies: each half of two that are joined has its own blocks.
+  Index in_memory(const Unit& unit, Index i) const {
+    const bool is_second = unit.source == Unit::Source::joined && i >= filters;
+    return is_second ? channels() + i - filters : i;
+  }
+
+  // Calls visit(in θ, in the kernel, in the kernel of the transpose) for every weight of a unit.
+  template <class Visit>
+  void for_each_weight(const Unit& unit, Visit visit) const {
+    const bool is_plain = unit.source == Unit::Source::input;
+    const Index in = channels_in(unit), width = is_plain ? in : kChannels;
+    for (Index o = 0; o < filters; ++o)
+      for (Index i = 0; i < unit.in; ++i) {
+        const Index c = in_memory(unit, i);
+        for (Index tap = 0; tap < 9; ++tap)
+          visit(unit.offset + (o * unit.in + i) * 9 + tap, position(o, c, tap, in, width),
+                position(c, o, 8 - tap, channels(), kChannels));
+      }
+  }
+
+ private:
+  // Of a weight in the layout of core/convolution.h, by blocks of `width` channels in.
+  static Index position(Index out, Index in, Index tap, Index all_in, Index width) {
+    const Index block = out / kChannels * (all_in / width) + in / width;
+    return ((block * 9 + tap) * width + in % width) * kChannels + out % kChannels;
+  }
+};
+
 // What a U-net keeps in its workspace: the convolutions' outputs z, everything else being computed
 // anew from them while it is in cache; kernels in their layout; the batch norms; and for each
 // thread the arrays and convolutions it works with. Tangents are kept once asked for.
-#pragma once
-
-#include <optional>
-
-#include "networks/unet/grids.h"
-#include "networks/unet/layout.h"
-
-namespace isoline::networks {
 
 // Pixels, and their tangents once there are any.
 struct Pixels {

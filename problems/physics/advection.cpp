@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "problems/physics/lattice_nodes.h"
+#include "problems/physics/lattice.h"
 
 namespace isoline::problems {
 namespace {

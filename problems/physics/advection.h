@@ -12,8 +12,7 @@
 
 #include "core/array.h"
 #include "core/pieces.h"
-#include "problems/physics/lattice_margin.h"
-#include "problems/physics/lattice_nodes.h"
+#include "problems/physics/lattice.h"
 
 namespace isoline::problems {
 

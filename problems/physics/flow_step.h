@@ -1,3 +1,66 @@
+// Explicit viscosity of one component, v' = v + r ∇²v by the five-point difference on the periodic
+// grid, r = ν Δt / Δx² ≤ ¼ for stability. Symmetric: its own pushforward and pullback.
+#pragma once
+
+#include "core/array.h"
+#include "core/fourier.h"
+#include "problems/physics/advection.h"
+#include "problems/physics/lattice.h"
+
+namespace isoline::problems {
+
+constexpr Real kMostViscous = 0.25;  // r
+
+// In place, through `scratch` (N²).
+inline void diffuse(Index N, Real r, VectorOut v, Vector& scratch) {
+  scratch = v;
+  v *= 1 - 4 * r;
+  for (const Side side : {Side::left, Side::right, Side::below, Side::above})
+    add_weighed(N, 0, r, side, scratch, v);
+}
+
+// The projection of a periodic velocity onto those without divergence, v − ∇ (∇·∇)⁻¹ ∇·v, exact for
+// the differences of its arrangement: one spectral solve of the discrete Poisson equation, with
+//
+//   staggered    ∇·v between faces,   symbol −4 (sin² ½kₓ + sin² ½k_y)
+//   collocated   central differences, symbol −(sin² kₓ + sin² k_y), which has four null modes
+//
+// in units of a cell. Null modes are left as they are. The gradient is minus the transpose of the
+// divergence, so that the projection is symmetric: it is its own pushforward and pullback.
+
+enum class Arrangement { staggered, collocated };
+
+// Owns its work space: one a thread.
+class Projection {
+ public:
+  Projection(Index N, Arrangement arrangement);
+
+  void divergence(VectorRef u, VectorRef v, VectorOut out) const;  // (N²), per cell width
+  void apply(VectorOut u, VectorOut v);                            // in place
+
+ private:
+  Index N_;
+  Arrangement arrangement_;
+  RealFourier2d fourier_;
+  Matrix inverse_;   // one over the symbol and a round trip, (N/2 + 1, N); 0 for null modes
+  Vector pressure_;  // (N²)
+};
+
+// One component of the velocity brought back to the energy it had before advection and projection,
+// v' = v √(Σ v₀² / Σ v²): by this the published solver keeps the energy of each component. The
+// velocity is then free of divergence no longer, for the components have factors of their own.
+
+// 0 where there is no energy to scale, with derivatives 0.
+struct Rescaling {
+  Real before, after, factor;  // Σ v₀², Σ v², √(Σ v₀² / Σ v²)
+
+  Rescaling(VectorRef v0, VectorRef v);
+  // v' along (t₀, t), t in place.
+  void pushforward(VectorRef v0, VectorRef v, VectorRef t0, VectorOut t) const;
+  // The cotangent u of v' becomes that of v in place; that of v₀ is added to u0.
+  void pullback(VectorRef v0, VectorRef v, VectorOut u, VectorOut u0) const;
+};
+
 // One step of the incompressible flow and its passive marker, as published by Holl, Koltun, Thuerey
 // (2022), scripts of the fluid experiment:
 //
@@ -7,12 +70,6 @@
 // Staggered, u lies on the left faces of the cells and v on the lower ones: each is advected on its
 // own lattice with the mean of the four faces around of the other, the marker with means of two.
 // Collocated, all lie at the centres. Viscosity follows the rescaling, which would undo it.
-#pragma once
-
-#include "problems/physics/advection.h"
-#include "problems/physics/projection.h"
-
-namespace isoline::problems {
 
 struct FlowOptions {
   Index N = 64;

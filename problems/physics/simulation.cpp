@@ -2,7 +2,7 @@
 #include "problems/physics/simulation.h"
 
 #include "core/errors.h"
-#include "problems/physics/neighbours.h"
+#include "problems/physics/lattice.h"
 
 namespace isoline::problems {
 

@@ -14,6 +14,7 @@
 #include "core/options.h"
 #include "core/spec.h"
 #include "reports/compare/differences.h"
+
 namespace isoline::reports {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "reports/compare/subject.h"
+
 namespace isoline::reports {
 
 inline constexpr const char* kBaselineSchema = "isoline.baseline/1";

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "reports/sections/words.h"
+
 namespace isoline::reports {
 
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reports/compare/differences.h"
+
 namespace isoline::reports {
 
 // The cells of one optimizer, or of it on one problem, that changed in one direction for one

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "reports/sections/words.h"
+
 namespace isoline::reports {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reports/compare/subject.h"
+
 namespace isoline::reports {
 
 enum class Change { worse, better, changed };

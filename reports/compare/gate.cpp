@@ -17,6 +17,7 @@
 #include "reports/compare/gate_text.h"
 #include "reports/compare/subject.h"
 #include "reports/sections/words.h"
+
 namespace isoline::reports {
 namespace {
 

@@ -22,6 +22,7 @@
 #include "reports/compare/allowed.h"
 #include "reports/compare/causes.h"
 #include "reports/compare/timing.h"
+
 namespace isoline::reports {
 
 struct GateOptions {

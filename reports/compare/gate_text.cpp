@@ -15,6 +15,7 @@
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
+
 namespace isoline::reports {
 namespace {
 

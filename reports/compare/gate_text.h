@@ -4,6 +4,7 @@
 #include <string>
 
 #include "reports/compare/gate.h"
+
 namespace isoline::reports {
 
 const char* name_of(Change change);

@@ -12,6 +12,7 @@
 
 #include "core/spec.h"
 #include "reports/sections/words.h"
+
 namespace isoline::reports {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reports/compare/subject.h"
+
 namespace isoline::reports {
 
 struct Pairs {

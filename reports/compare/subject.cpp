@@ -17,6 +17,7 @@
 #include "reports/read/newest.h"
 #include "reports/read/result_files.h"
 #include "reports/sections/words.h"
+
 namespace isoline::reports {
 namespace {
 

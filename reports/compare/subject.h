@@ -20,6 +20,7 @@
 #include "core/records/record.h"
 #include "core/threads.h"
 #include "reports/read/reached.h"
+
 namespace isoline::reports {
 
 // What tells two values apart.

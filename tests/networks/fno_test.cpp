@@ -3,7 +3,7 @@
 
 #include "core/fourier.h"
 #include "networks/network.h"
-#include "networks/truncated_fourier.h"
+#include "networks/fourier_operator.h"
 
 namespace isoline::networks {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "problems/physics/neighbours.h"
+#include "problems/physics/lattice.h"
 
 namespace isoline::problems {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "problems/physics/neighbours.h"
+#include "problems/physics/lattice.h"
 #include "problems/physics/simulation.h"
 
 namespace isoline::problems {

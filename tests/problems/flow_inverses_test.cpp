@@ -5,7 +5,6 @@
 
 #include "make.h"
 #include "problems/physics/flow_physics.h"
-#include "problems/physics/flow_samples.h"
 
 namespace isoline::problems {
 namespace {

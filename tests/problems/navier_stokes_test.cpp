@@ -8,9 +8,7 @@
 
 #include "core/threads.h"
 #include "make.h"
-#include "problems/physics/amplitudes.h"
 #include "problems/physics/flow_physics.h"
-#include "problems/physics/flow_samples.h"
 
 namespace isoline::problems {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "make.h"
-#include "problems/watches.h"
+#include "problems/learning.h"
 
 namespace isoline::problems {
 namespace {

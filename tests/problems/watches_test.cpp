@@ -1,5 +1,5 @@
 // The series of learning problems, against closed forms and finite differences.
-#include "problems/watches.h"
+#include "problems/learning.h"
 
 #include <gtest/gtest.h>
 

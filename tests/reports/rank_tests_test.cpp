@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+
 namespace isoline::reports {
 namespace {
 

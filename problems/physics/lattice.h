@@ -1,5 +1,4 @@
-// Values between the nodes of a lattice, for one point or for four of a row side by side in vector
-// registers: an algorithm written for T is that of either.
+// The staggered lattice of the flow: where its nodes are, which are neighbours, and its margin.
 #pragma once
 
 #include "core/array.h"
@@ -130,5 +129,66 @@ inline void put_ways(const Four& ways, int* to) {
   using LooseWays = int __attribute__((vector_size(16), aligned(4), may_alias));
   *reinterpret_cast<LooseWays*>(to) = __builtin_convertvector(ways, LooseWays);
 }
+
+// Sums of two neighbours on a periodic N×N grid, (N²) with x running fastest: of them are made the
+// means between faces and centres, the differences of projection and viscosity, and their adjoints,
+// for the transpose of a sum with one neighbour is the sum with the opposite one.
+
+enum class Side { left, right, below, above };
+constexpr Side opposite(Side side) {
+  constexpr Side kOpposite[] = {Side::right, Side::left, Side::above, Side::below};
+  return kOpposite[static_cast<int>(side)];
+}
+
+// out = a q + b (q of the neighbour on that side), or out += that. `out` is never q.
+void weigh(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out);
+void add_weighed(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out);
+
+// out += a times the sum of the four in the square that lies towards a side across, left or right,
+// and one along, below or above.
+void add_square(Index N, Real a, Side across, Side along, VectorRef q, VectorOut out);
+
+// A periodic N×N lattice with a margin around it, for no neighbour that is near to need a modulus.
+
+class LatticeMargin {
+ public:
+  static constexpr Index kWidth = 8, kReach = kWidth - 1;  // of what lies between nodes, in cells
+
+  explicit LatticeMargin(Index N) : N_(N), stride_(N + 2 * kWidth) {}
+  Index stride() const { return stride_; }
+  Index size() const { return stride_ * stride_; }
+  Index own(Index i, Index j) const { return stride_ * (j + kWidth) + i + kWidth; }
+
+  void pad(VectorRef q, Vector& padded) const;
+  void wrap(Vector& padded) const;                // fills the margin
+  void unpad(Vector& padded, VectorOut q) const;  // the transpose of pad, added to q
+  void fold(Vector& padded) const;                // the transpose of wrap
+  // Adds to each node what `pairs` (2 stride²) has for it: its n-th pair is of the n-th node and
+  // the one to the right. Leaves them 0.
+  void settle(Vector& pairs, Vector& padded) const;
+
+  // visit(i, p): four points of a row from its i-th on, the p-th of all. Where four do not go into
+  // a row its last four are visited at its end.
+  template <class Visit>
+  void by_fours_of_row(Index j, const Visit& visit) const {
+    const Index N = N_, p = N * j;
+    for (Index i = 0; i + 4 <= N; i += 4) visit(i, p + i);
+    if (N % 4 != 0) visit(N - 4, p + N - 4);
+  }
+  // visit(p, here, seen): of all rows, the first of the four at `here` in the padded lattice. So
+  // many of them have been seen before.
+  template <class Visit>
+  void by_fours(const Visit& visit) const {
+    const Index N = N_;
+    for (Index j = 0; j < N; ++j) {
+      const Index p = N * j, here = own(0, j);
+      for (Index i = 0; i + 4 <= N; i += 4) visit(p + i, here + i, Index{0});
+      if (N % 4 != 0) visit(p + N - 4, here + N - 4, 4 - N % 4);
+    }
+  }
+
+ private:
+  Index N_, stride_;
+};
 
 }  // namespace isoline::problems
