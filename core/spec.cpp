@@ -8,9 +8,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "core/text.h"
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/text.h"
 
 namespace isoline {
 namespace {

@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "core/status.h"
 #include "core/ladder.h"
 #include "core/oracle.h"
+#include "core/status.h"
 
 namespace isoline {
 

@@ -2,8 +2,8 @@
 // problem, as saddle_free.h has it: θ ← θ − η V d, H = V diag(S) Vᵀ. The published script's
 // transposed V is corrected.
 #include "core/decompose.h"
-#include "optimizers/optimizer.h"
 #include "optimizers/inversion.h"
+#include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
 namespace {

@@ -1,8 +1,8 @@
 // The oscillators' steps, their derivatives, and the data.
 #include "problems/oscillators.h"
 
-#include "problems/sample_lanes.h"
 #include "problems/learning.h"
+#include "problems/sample_lanes.h"
 
 namespace isoline::problems {
 namespace {

@@ -18,7 +18,6 @@
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/read/study.h"
-#include "reports/sections/document.h"
 #include "reports/sections/sections.h"
 
 namespace isoline::reports {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "benchmarks/run/outcome.h"
+#include "benchmarks/run/runner.h"
 
 namespace isoline::benchmarks {
 

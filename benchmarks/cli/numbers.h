@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "core/text.h"
 #include "core/options.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 

@@ -10,9 +10,9 @@
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
-#include "core/status.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
+#include "core/status.h"
 #include "core/text.h"
 #include "core/threads.h"
 

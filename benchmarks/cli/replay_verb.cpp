@@ -8,7 +8,7 @@
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/build_parts.h"
-#include "benchmarks/run/again.h"
+#include "benchmarks/run/perturbed_runs.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/same_result.h"
 #include "core/errors.h"

@@ -12,7 +12,7 @@
 #include "benchmarks/cli/verbs.h"
 #include "core/errors.h"
 #include "core/text.h"
-#include "reports/read/yardstick.h"
+#include "reports/read/metrics.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {

@@ -3,7 +3,7 @@
 
 #include "benchmarks/cli/session.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/run/soundness.h"
+#include "benchmarks/run/certificate.h"
 #include "benchmarks/shard/split.h"
 
 namespace isoline::benchmarks {

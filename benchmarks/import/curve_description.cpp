@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/resources.h"
+#include "core/clock.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/oracle.h"
-#include "core/clock.h"
 #include "core/records/schema.h"
 
 namespace isoline::benchmarks {

@@ -1,7 +1,6 @@
 // What a call over HTTP costs: one Evaluate of a small model, from text to text and back, over the
 // same numbers computed here.
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/micro/trial.h"
 #include "benchmarks/serve/bridge_service.h"
 #include "problems/physics/bridged_model.h"
 

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/micro/trial.h"
 #include "benchmarks/run/execute.h"
 
 namespace isoline::benchmarks::micro {

@@ -1,6 +1,5 @@
 // What counting and tracing add to an evaluation of a tiny problem.
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/micro/trial.h"
 
 namespace isoline::benchmarks::micro {
 

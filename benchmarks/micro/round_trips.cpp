@@ -3,7 +3,6 @@
 #include <cstdlib>
 
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/micro/trial.h"
 #include "core/foreign/handshake.h"
 
 namespace isoline::benchmarks::micro {

@@ -7,7 +7,6 @@
 #include <lapacke.h>
 
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/micro/trial.h"
 
 namespace isoline::benchmarks::micro {
 namespace {

@@ -4,7 +4,6 @@
 #include <lapacke.h>
 
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/micro/trial.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::benchmarks::micro {

@@ -8,7 +8,6 @@
 #include <complex>
 
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/micro/trial.h"
 
 namespace isoline::benchmarks::micro {
 namespace {

@@ -12,10 +12,10 @@
 #include "benchmarks/plan/filter.h"
 #include "benchmarks/plan/plan_size.h"
 #include "benchmarks/plan/resources.h"
-#include "core/text.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -1,6 +1,5 @@
-// What another program computes is certified before it is run, as the tests certify the problems of
-// this tree: its products by Taylor's slopes, the adjoint identity and its Jacobian, its inverse by
-// the way back, and that the same call gives the same bits.
+// Checks of components before they run: that specs and networks fit, and that what another program
+// computes passes the tests of this tree.
 #pragma once
 
 #include <vector>
@@ -9,6 +8,14 @@
 #include "benchmarks/run/store.h"
 
 namespace isoline::benchmarks {
+
+// UsageError with the first component's complaint, before anything is written. Each is made in a
+// process of its own: what crashes there is left to its cells to report.
+void require_sound(const Catalog& catalog, const std::vector<Request>& requests);
+
+// What another program computes is certified before it is run, as the tests certify the problems of
+// this tree: its products by Taylor's slopes, the adjoint identity and its Jacobian, its inverse by
+// the way back, and that the same call gives the same bits.
 
 // UsageError with the first law that a problem of these requests breaks, and the measured figure.
 // Only what the store has no record of is looked at, each problem at the first of its seeds, in a

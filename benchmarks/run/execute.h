@@ -3,10 +3,18 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/checkpoint.h"
+#include "core/array.h"
 #include "core/records/record.h"
 #include "core/trace.h"
 
 namespace isoline::benchmarks {
+
+// θ₀ with each component moved by one unit in its last place, up or down by the stream
+// (seed, problem, "last bit", number). A zero has none of its own: it takes that of the largest
+// component, or of 1 where all are zero.
+Vector perturbed_start(Vector start, const Request& request, int number);
+
+// One run, in this process: the loop that every method runs in.
 
 // Starts, steps and judges the method until it is done, or asked to stop; the meter writes the
 // trace. Returns the last θ.

@@ -1,19 +1,104 @@
 // One run in a process of its own: whatever it does to itself, this process goes on.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <initializer_list>
+#include <new>
 #include <optional>
 #include <string>
 
-#include "benchmarks/run/captured_output.h"
 #include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/limits.h"
 #include "benchmarks/run/process_group.h"
-#include "benchmarks/run/returned.h"
-#include "benchmarks/run/shared_memory.h"
+#include "core/array.h"
 #include "core/trace.h"
 
 namespace isoline::benchmarks {
+
+// Pages that are never written take no memory.
+class SharedMemory {
+ public:
+  explicit SharedMemory(std::size_t bytes);
+  ~SharedMemory();
+  SharedMemory(const SharedMemory&) = delete;
+  SharedMemory& operator=(const SharedMemory&) = delete;
+
+  void* address() const { return address_; }
+  void release_pages();  // they are zero after that
+
+  // In a child: gives back all but these.
+  static void keep_only(std::initializer_list<const SharedMemory*> kept);
+
+ private:
+  void* address_;
+  std::size_t bytes_;
+};
+
+// One object in memory of its own.
+template <class T>
+class Shared {
+ public:
+  Shared() : memory_(sizeof(T)) { renew(); }
+  void renew() { object_ = new (memory_.address()) T; }
+  T* operator->() const { return object_; }
+  T& operator*() const { return *object_; }
+  SharedMemory& memory() { return memory_; }
+
+ private:
+  SharedMemory memory_;
+  T* object_;
+};
+
+// The θ that a cell returns, in memory shared with whoever judges it. Pages that are never written
+// take no memory.
+
+struct Returned {
+  static constexpr std::int64_t kMost = std::int64_t{1} << 23;
+
+  std::atomic<std::int64_t> size{0};  // 0: nothing was returned, or more than there is room for
+  double theta[kMost];                // (n)
+
+  void keep(VectorRef value) {
+    if (value.size() > kMost) return;
+    Eigen::Map<Vector>(theta, value.size()) = value;
+    size = value.size();
+  }
+};
+
+// What a child process writes to its standard output and standard error: caught, so that no
+// terminal gets it, and kept as far as it is not too much.
+
+class CapturedOutput {
+ public:
+  static constexpr std::size_t kMost = std::size_t{64} << 10;  // bytes kept, from the first on
+
+  CapturedOutput() = default;
+  ~CapturedOutput() { close(); }
+  CapturedOutput(const CapturedOutput&) = delete;
+  CapturedOutput& operator=(const CapturedOutput&) = delete;
+
+  void open();             // before the child is forked
+  void redirect() const;   // in the child
+  void close_child_end();  // in the parent, once the child is forked
+  void drain();            // takes what has come; what stays in the pipe holds the writer up
+  void close();
+
+  std::string text() const;        // valid UTF-8; says how much was left out
+  std::string last_words() const;  // the last line that says something, cut to some 200 bytes
+
+ private:
+  void take(const char* bytes, std::size_t count);
+
+  int read_end_ = -1, write_end_ = -1;
+  bool is_widened_ = false;
+  std::string kept_, tail_;
+  std::int64_t left_out_ = 0;  // bytes
+};
+
+// One run in a process of its own: whatever it does to itself, this process goes on.
 
 // Its trace lives in shared memory and outlives the child. Until the child has ended it may hold
 // anything; then it is checked whole, and what is read of it is sound.

@@ -15,10 +15,9 @@
 #include <string_view>
 #include <utility>
 
-#include "benchmarks/run/captured_output.h"
 #include "benchmarks/run/child_process.h"
+#include "benchmarks/run/isolate.h"
 #include "benchmarks/run/process_group.h"
-#include "benchmarks/run/shared_memory.h"
 #include "core/clock.h"
 #include "core/text.h"
 

@@ -1,12 +1,27 @@
-// Asks again for what records asked for, and runs it hidden from everybody else.
+// Requests made anew.
 #include "benchmarks/run/perturbed_runs.h"
 
+#include <fmt/format.h>
+
 #include "benchmarks/plan/build_parts.h"
-#include "benchmarks/run/again.h"
 #include "core/errors.h"
 #include "core/files.h"
 
 namespace isoline::benchmarks {
+
+Request request_again(const Catalog& catalog, const Record& record, double hard_seconds) {
+  Request request = record.request;
+  const Component &problem = record.request.problem, &optimizer = record.request.optimizer;
+  request.problem = complete_problem(catalog, problem.name, problem.options);
+  request.optimizer = complete_optimizer(catalog, optimizer.name, optimizer.options);
+  request.problem.asked = problem.asked;
+  request.optimizer.asked = optimizer.asked;
+  request.hard_seconds = hard_seconds;
+  return named(std::move(request));
+}
+
+// Asks again for what records asked for, and runs it hidden from everybody else.
+
 namespace {
 
 // What the record asked for, as this program asks for it.

@@ -7,9 +7,17 @@
 
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/run/runner.h"
+#include "benchmarks/run/store.h"
 #include "core/records/plan.h"
 
 namespace isoline::benchmarks {
+
+// FOLDER/rates.json, schema isoline.rates/1: a row for each problem and optimizer as they were run,
+// with the name of its table. The rows of earlier plans stay; none, no file. A
+// damaged file is set aside.
+void write_used_rates(const Rates& rates, const std::vector<Request>& requests, Store& store);
+
+// A plan from its first file to its last record: what `run`, `claims` and `tune` have in common.
 
 // UsageError, and nothing written, where a component of the plan cannot be made. Else the plan is
 // stored in the folder before anything runs, so that a part never passes for the whole; then the

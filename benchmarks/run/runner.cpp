@@ -1,4 +1,4 @@
-// The run of a whole plan: workers filled, watched, collected and stored.
+// Records counted, failures in words.
 #include "benchmarks/run/runner.h"
 
 #include <fmt/format.h>
@@ -6,6 +6,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 
 #include "benchmarks/run/execute.h"
@@ -17,8 +18,27 @@
 #include "core/clock.h"
 #include "core/records/provenance.h"
 #include "core/text.h"
+#include "core/threads.h"
 
 namespace isoline::benchmarks {
+
+void Outcome::count(const Record& record) {
+  ++statuses[record.status];
+  if (is_failure(record.status))
+    failures.push_back(fmt::format("{}: {}: {}", title_of(record.request), name_of(record.status),
+                                   record.message));
+  if (record.status == Status::crashed && !crash)
+    crash = Crash{record.request, fmt::format("runs/{}-{}.json", record.cell, record.build)};
+  if (record.status == Status::interrupted) ++interrupted;
+}
+
+std::string title_of(const Request& request) {
+  return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
+                     request.seed);
+}
+
+// The run of a whole plan: workers filled, watched, collected and stored.
+
 namespace {
 
 constexpr double kJudgeSeconds = 300;  // that a point may take, its problem made afresh
@@ -236,6 +256,18 @@ Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, St
     if (!store.has(request) && !(earlier && earlier->find(request)))
       outcome.missing.push_back(title_of(request));
   return outcome;
+}
+
+// The run loop without anything around it.
+
+void run_in_process(const Catalog& catalog, const std::vector<Request>& requests,
+                    const std::function<void(const Request&, const Trace&)>& ended) {
+  for (const Request& request : requests) {
+    set_library_threads(request.threads);
+    const auto trace = std::make_unique<Trace>();  // too large for a stack
+    execute(catalog, request, *trace);
+    ended(request, *trace);
+  }
 }
 
 }  // namespace isoline::benchmarks

@@ -1,17 +1,47 @@
 // Runs requests in worker processes, several at once, and stores a record of each as it ends.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/isolate.h"
-#include "benchmarks/run/outcome.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/store.h"
+#include "core/records/record.h"
+#include "core/trace.h"
 
 namespace isoline::benchmarks {
+
+struct Crash {
+  Request request;
+  std::string record;  // below the result folder
+};
+
+struct Outcome {
+  std::int64_t planned = 0, reused = 0, run = 0;
+  std::map<Status, std::int64_t> statuses;  // of all planned cells that have a record
+  std::vector<std::string> failures;        // "problem × optimizer, seed 0: crashed: …"
+  std::optional<Crash> crash;               // the first of them
+  std::vector<std::string> conflicts;       // cells whose repetition gave another result
+  std::vector<std::string> remarks;         // damaged files, sheets that could not be made
+  std::vector<std::string> missing;         // cells that were done and whose record is gone
+  std::int64_t reused_from_other_builds = 0;
+  std::int64_t interrupted = 0;  // cells that somebody killed: the same run runs them again
+  bool is_interrupted = false;   // asked to end
+  double seconds = 0;            // that the run took
+
+  void count(const Record& record);
+};
+
+std::string title_of(const Request& request);  // "problem × optimizer, seed 0"
+
+// Runs requests in worker processes, several at once, and stores a record of each as it ends.
 
 struct RunOptions {
   int jobs = 1;
@@ -47,5 +77,13 @@ Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, St
                 const RunOptions& options);
 
 int one_a_core();  // how many cells at a time a machine is meant for
+
+// Cells run in this very process, one after another, for a debugger: nothing stands between a
+// mistake and whoever looks for it.
+
+// Each is told when it has ended. No isolation, no limit but the soft budgets, no judge, no record:
+// a crash ends this process, and leaves a core file where the shell allows one.
+void run_in_process(const Catalog& catalog, const std::vector<Request>& requests,
+                    const std::function<void(const Request&, const Trace&)>& ended);
 
 }  // namespace isoline::benchmarks

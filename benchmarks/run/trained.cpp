@@ -11,12 +11,12 @@
 #include <numeric>
 
 #include "benchmarks/plan/resources.h"
-#include "core/text.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/schema.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 

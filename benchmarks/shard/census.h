@@ -7,9 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "core/records/request.h"
 #include "core/threads.h"
 
 namespace isoline::benchmarks {
+
+// Copies into the folder of a shard the records of its requests, by this build, that stand in the
+// folder of the whole or in that of another shard; none that it has itself. How many.
+std::size_t adopt_records(const std::vector<Request>& requests, const std::filesystem::path& whole,
+                          const std::filesystem::path& shard);
+
+// How far a plan is, told from what stands in its result folders, while runs go on in them or not.
 
 struct Census {
   std::size_t planned = 0;

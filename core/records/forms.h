@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/status.h"
 #include "core/grid.h"
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/records/fields.h"
+#include "core/status.h"
 
 namespace isoline {
 

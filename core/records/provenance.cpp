@@ -12,8 +12,8 @@
 
 #include "core/digest.h"
 #include "core/fourier.h"
-#include "core/threads.h"
 #include "core/records/provenance_fields.h"
+#include "core/threads.h"
 #include "isoline_build_flags.h"
 #include "isoline_build_info.h"
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "core/status.h"
 #include "core/foreign/foreign.h"
 #include "core/options.h"
+#include "core/status.h"
 
 namespace isoline {
 

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "core/status.h"
 #include "core/frames.h"
 #include "core/grid.h"
 #include "core/records/panel.h"
+#include "core/status.h"
 
 namespace isoline {
 

@@ -12,9 +12,9 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/compare/baseline.h"
-#include "reports/compare/pairing.h"
 #include "reports/compare/differences.h"
 #include "reports/compare/gate_text.h"
+#include "reports/compare/pairing.h"
 #include "reports/compare/subject.h"
 #include "reports/sections/words.h"
 

@@ -14,8 +14,7 @@
 #include "core/json.h"
 #include "core/options.h"
 #include "core/threads.h"
-#include "reports/read/newest.h"
-#include "reports/read/result_files.h"
+#include "reports/read/study.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

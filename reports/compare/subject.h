@@ -1,5 +1,5 @@
-// A cell of a result folder or of a baseline, in the one form in which two results are compared, and
-// the values that many cells share.
+// A cell of a result folder or of a baseline, in the one form in which two results are compared,
+// and the values that many cells share.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/status.h"
 #include "core/options.h"
 #include "core/records/record.h"
+#include "core/status.h"
 #include "core/threads.h"
 #include "reports/read/reached.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/statistics/rank_tests.h"
+#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 

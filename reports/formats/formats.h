@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/sections/document.h"
+#include "reports/sections/sections.h"
 
 namespace isoline::reports {
 

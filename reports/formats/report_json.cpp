@@ -8,7 +8,7 @@
 #include "core/digest.h"
 #include "core/json.h"
 #include "reports/formats/formats.h"
-#include "reports/sections/method_pairs.h"
+#include "reports/sections/leading.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

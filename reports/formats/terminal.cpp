@@ -8,7 +8,7 @@
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
 #include "reports/formats/text_plot.h"
-#include "reports/sections/measure_words.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

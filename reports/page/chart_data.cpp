@@ -12,8 +12,7 @@
 #include "reports/page/page.h"
 #include "reports/page/target_codes.h"
 #include "reports/read/curves.h"
-#include "reports/read/equal_work.h"
-#include "reports/read/grounds.h"
+#include "reports/read/ranking.h"
 #include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "reports/read/found_fields.h"
-#include "reports/read/ladders.h"
+#include "reports/read/ranking.h"
 
 namespace isoline::reports {
 

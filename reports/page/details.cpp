@@ -6,7 +6,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
-#include "reports/sections/measure_words.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 

@@ -8,8 +8,8 @@
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/leading.h"
-#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

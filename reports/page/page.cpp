@@ -12,8 +12,8 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
-#include "reports/read/grounds.h"
-#include "reports/sections/measure_words.h"
+#include "reports/read/ranking.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "reports/read/found_fields.h"
-#include "reports/sections/document.h"
-#include "reports/sections/scores.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/standings.h"
 
 namespace isoline::reports {
 

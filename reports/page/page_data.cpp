@@ -12,7 +12,7 @@
 #include "reports/page/compact_json.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
-#include "reports/sections/measure_words.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

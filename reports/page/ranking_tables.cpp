@@ -10,9 +10,8 @@
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
-#include "reports/read/equal_work.h"
-#include "reports/read/grounds.h"
-#include "reports/sections/measure_words.h"
+#include "reports/read/ranking.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/real.h"
-#include "reports/read/yardstick.h"
+#include "reports/read/metrics.h"
 
 namespace isoline::reports {
 

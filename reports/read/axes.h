@@ -10,6 +10,14 @@
 
 namespace isoline::reports {
 
+// Of long labels the options alone that tell them from others of their method: those that all of
+// the method share are left out, in "sip[inverse=newton,network-optimizer=adam[rate=1e-3]]" beside
+// "sip[inverse=analytic,network-optimizer=adam[rate=1e-3]]" the network's optimizer. No two become
+// the same.
+std::vector<std::string> brief_labels(const std::vector<std::string>& labels);
+
+// The rows and columns of a study: which problems and optimizers it holds, and under which names.
+
 // Names of optimizers. A file of rates gives one method other options on every problem; the method
 // then keeps one row under its name, unless some problem has two of that name. A method with tuned
 // rates stands beside itself, as "adam, tuned". A method that sees what others do not on some

@@ -9,9 +9,7 @@
 #include <unordered_set>
 
 #include "reports/read/axes.h"
-#include "reports/read/brief.h"
-#include "reports/read/equal_work.h"
-#include "reports/read/leaders.h"
+#include "reports/read/ranking.h"
 #include "reports/read/reached.h"
 
 namespace isoline::reports {

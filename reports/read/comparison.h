@@ -9,10 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/read/costs.h"
 #include "reports/read/lead.h"
+#include "reports/read/metrics.h"
 #include "reports/read/study.h"
-#include "reports/read/yardstick.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {

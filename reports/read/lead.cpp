@@ -5,9 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/statistics/rank_tests.h"
 #include "reports/statistics/resampling.h"
-#include "reports/statistics/sign_flips.h"
+#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 namespace {

@@ -1,5 +1,4 @@
-// Reads result folders. Records come by the ten thousand, and parsing them is nearly all the time a
-// report takes, so threads share the files.
+// Reads rows of tables of rates.
 #include "reports/read/study.h"
 
 #include <fmt/format.h>
@@ -8,14 +7,72 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
+#include <unordered_map>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "reports/read/newest.h"
-#include "reports/read/result_files.h"
+#include "core/records/json_view.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+namespace {
+
+std::string text_at(const JsonView& row, const char* key) {
+  return row.contains(key) ? row.at(key).get<std::string>() : "";
+}
+
+void read_grid(const JsonView& source, TunedRate& rate) {
+  const auto options = source.at("grid").items();
+  if (options.empty()) return;
+  rate.option = options.front().first;
+  rate.values = reals_of(options.front().second);
+  if (source.contains("score"))
+    for (const JsonView& score : source.at("score").values())
+      rate.work.push_back(real_of(score.values().at(0)));
+  require(rate.work.empty() || rate.work.size() == rate.values.size(),
+          "a grid of rates lacks the score of a value");
+}
+
+TunedRate rate_from(const JsonView& row) {
+  TunedRate rate{.problem = row.at("problem"),
+                 .optimizer = row.at("optimizer"),
+                 .file = text_at(row, "file"),
+                 .paper = {},
+                 .option = {},
+                 .values = {},
+                 .work = {}};
+  const JsonView source = row.at("source");
+  rate.paper = text_at(source, "paper");
+  if (source.contains("grid")) read_grid(source, rate);
+  if (source.contains("edge")) source.at("edge").get_to(rate.is_at_edge);
+  return rate;
+}
+
+}  // namespace
+
+bool TunedRate::is_ever_solved() const {
+  return std::ranges::any_of(work, [](Real each) { return each < kNever; });
+}
+
+std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin) {
+  JsonReader reader;
+  std::vector<TunedRate> rates;
+  for (const JsonView& row : reader.parse(text, origin).at("rows").values())
+    rates.push_back(rate_from(row));
+  return rates;
+}
+
+std::vector<TunedRate> read_rates(const std::string& folder) {
+  const std::filesystem::path file = std::filesystem::path(folder) / "rates.json";
+  if (!is_there(file)) return {};
+  return rates_from_text(read_text(file), file.string());
+}
+
+// Reads result folders. Records come by the ten thousand, and parsing them is nearly all the time a
+// report takes, so threads share the files.
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,6 +190,80 @@ Study read_study(const std::vector<std::string>& folders, const Listener& listen
   std::ranges::sort(study.audits, {}, &AuditedOptimizer::name);
   read_runs(study, folders, listener);
   return study;
+}
+
+// Chooses among the records of each cell.
+
+namespace {
+
+// ISO times sort as text; the file name decides where they are absent or equal.
+bool is_newer(const RunMark& a, const RunMark& b) {
+  return std::pair(a.started, record_file_name(a.cell, a.build)) >
+         std::pair(b.started, record_file_name(b.cell, b.build));
+}
+
+// What no clock decides is the same in all records of one build.
+bool should_agree(const RunMark& a, const RunMark& b) {
+  return a.build == b.build && !a.is_nondeterministic && !b.is_nondeterministic;
+}
+
+}  // namespace
+
+RunMark mark_of(const Record& record) {
+  return {.cell = record.cell,
+          .build = record.build,
+          .started = record.provenance.run.started,
+          .problem = record.request.problem.spec,
+          .optimizer = record.request.optimizer.spec,
+          .seed = record.request.seed,
+          .is_nondeterministic = record.is_nondeterministic};
+}
+
+Newest newest_of(const std::vector<RunMark>& marks,
+                 const std::function<bool(std::size_t, std::size_t)>& are_at_odds) {
+  Newest newest;
+  std::unordered_map<std::string_view, std::size_t> known;  // by cell, its newest so far
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (marks[i].cell.empty()) continue;
+    const auto [at, is_first] = known.emplace(marks[i].cell, i);
+    if (is_first) continue;
+    ++newest.superseded;
+    if (should_agree(marks[i], marks[at->second]) && are_at_odds(i, at->second))
+      newest.disputed.insert(marks[i].cell);
+    if (is_newer(marks[i], marks[at->second])) at->second = i;
+  }
+  for (const auto& [cell, i] : known) newest.kept.push_back(i);
+  std::ranges::sort(newest.kept, {}, [&](std::size_t i) {
+    return std::tie(marks[i].problem, marks[i].optimizer, marks[i].seed, marks[i].cell);
+  });
+  return newest;
+}
+
+bool are_at_odds(const Record& a, const Record& b) {
+  return result_of(to_json(a)) != result_of(to_json(b));
+}
+
+// Lists result folders.
+
+std::vector<std::string> json_files(const std::filesystem::path& folder,
+                                    std::vector<Unreadable>& unreadable) {
+  std::vector<std::string> files;
+  try {
+    for (const std::string& name : names_in(folder))
+      if (name.ends_with(".json")) files.push_back((folder / name).string());
+  } catch (const UsageError& error) {
+    unreadable.push_back({folder.string(), error.what()});
+  }
+  return files;
+}
+
+std::vector<std::string> record_files(const std::vector<std::string>& folders,
+                                      std::vector<Unreadable>& unreadable) {
+  std::vector<std::string> all;
+  for (const std::filesystem::path folder : folders)
+    for (std::string& file : json_files(folder / "runs", unreadable))
+      all.push_back(std::move(file));
+  return all;
 }
 
 }  // namespace isoline::reports

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/sections/claim_words.h"
+#include "reports/sections/claim_terms.h"
 
 namespace isoline::reports {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/sections/claim_evidence.h"
+#include "reports/sections/evidence.h"
 #include "reports/sections/section.h"
 
 namespace isoline::reports {

@@ -3,14 +3,45 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "core/real.h"
+#include "reports/read/comparison.h"
 #include "reports/sections/quantities.h"
 #include "reports/sections/run_figures.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+
+std::string tau_name(const Comparison& comparison);  // "1e-6", the headline's
+
+// "declared work", "cost at measured prices", "iterations", "wall time".
+std::string_view counted_name(Measure by);
+std::string_view counted_name(const Comparison& comparison);
+std::string_view unit_name(Measure by);  // "forward solves", …, "ms"
+std::string_view unit_name(const Comparison& comparison);
+
+// "declared work to 1e-6, in forward solves", "iterations to 1e-6".
+std::string counted_to_tau(const Comparison& comparison);
+
+// An amount as tables write it, ✗ where infinite: times are given in seconds and told in ms.
+std::string amount(Measure by, Real value);
+std::string amount(const Comparison& comparison, Real value);
+// "≈" where it is a time that was taken while other runs shared the machine.
+std::string_view time_mark(const Comparison& comparison, const Cell& cell);
+
+// A row of a study is a setting where some problem has several: "problem" or "setting".
+std::string_view setting_noun(const Comparison& comparison);
+std::string_view common_noun(const Comparison& comparison);  // of the settings of the common order
+std::string n_column(const Comparison& comparison);  // "n settings", the heading of their number
+std::string counted_settings(const Comparison& comparison, std::size_t count);  // "22 settings"
+
+// What success means at this yardstick, a sentence; in a study of one aim, of that alone.
+std::string success_text(const Comparison& comparison);
+
+// The runs that stand for the terms of a claim: which they are, and what is read off them.
 
 using ByCell = std::unordered_map<std::string, const Record*>;
 
@@ -42,5 +73,15 @@ std::vector<Real> equal_seconds(const nlohmann::json& cells, const ByCell& runs,
 // Whether terms of one problem are of several optimizers, in the claim or in what it is held
 // against: else none can be taken for another.
 bool has_rivals(const nlohmann::json& claim);
+
+// A claim in words: what it measures, what was published with which error, and where.
+
+// Of a claim, or of its contrast.
+std::string quantity_text(
+    const nlohmann::json& claim);  // "ratio of the loss, at the end: adam / sip"
+std::string published_text(const nlohmann::json& claim);  // "≥ 3 (±5 % from text)"
+Real published_value(const nlohmann::json& published);
+
+std::string source_text(const nlohmann::json& source);  // of a claim alone
 
 }  // namespace isoline::reports

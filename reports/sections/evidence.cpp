@@ -4,10 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "core/json.h"
 #include "core/threads.h"
-#include "reports/sections/measure_words.h"
+#include "reports/read/curves.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -208,6 +214,294 @@ Section statistics_section(const Comparison& c) {
   for (Plots& some : plots)
     for (Plot& plot : some) section.plots.push_back(std::move(plot));
   return section;
+}
+
+// Collects what decides a claim: figures run by run, and curves that are read as the figures are.
+
+using Json = nlohmann::json;
+namespace {
+
+constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
+
+// What is drawn of a column: itself, what it is the shape of, or nothing where it is of a whole
+// run.
+std::string curve_of(const std::string& column) {
+  constexpr std::array<const char*, 3> kWhole = {"milliseconds", "alignment", "turn"};
+  if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
+  return column == "slowdown" ? "x_error" : column;
+}
+
+using Runs = std::vector<const Record*>;
+
+Runs runs_of(const Json& alternative, const ByCell& runs) {
+  Runs all;
+  for (const Json& cell : alternative.at("cells")) all.push_back(runs.at(cell.get<std::string>()));
+  return all;
+}
+
+// Kept points of a run, close at the start and close at the end, and that which is read.
+std::vector<std::size_t> points_of(const Curve& curve, const Place& place) {
+  std::vector<std::size_t> points = thinned(curve.iteration.size(), kPoints);
+  const std::size_t stride = curve.iteration.size() / kPoints + 1;
+  for (std::size_t i = 0; i < curve.iteration.size(); i += stride) points.push_back(i);
+  if (place.iteration) points.push_back(index_at(curve, place));
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+// A run that has ended keeps its last figure.
+void add_curve(EvidenceTerm& term, const Runs& runs, Place place, bool is_over_time) {
+  const Curve& longest = (*std::ranges::max_element(runs, {}, [](const Record* run) {
+                           return run->curve.iteration.size();
+                         }))->curve;
+  place.seconds.reset();
+  for (const std::size_t i : points_of(longest, place)) {
+    place.iteration = longest.iteration[i];
+    std::vector<Real> values;
+    for (const Record* run : runs) values.push_back(term.scale * figure_of(*run, place));
+    if (std::ranges::any_of(values, [](Real value) { return std::isnan(value); })) continue;
+    const auto [low, high] = std::ranges::minmax(values);
+    term.x.push_back(is_over_time ? longest.processor_seconds.at(i)
+                                  : static_cast<Real>(longest.iteration[i]));
+    term.low.push_back(low);
+    term.high.push_back(high);
+    term.y.push_back(median_of(std::move(values)));
+  }
+}
+
+// The option of the problems, or of the optimizers, that has the terms' abscissas as its values.
+std::string abscissa_of(const std::vector<Term>& terms, const Json& cells, const ByCell& runs) {
+  if (terms.size() < 2 || terms[0].at == terms[1].at) return "";
+  for (const auto part : {&Request::problem, &Request::optimizer}) {
+    const auto options = [&](std::size_t i) -> const OptionValues& {
+      return (runs_of(cells.at(i).at(0), runs).at(0)->request.*part).options;
+    };
+    for (const NamedOption& option : options(0)) {
+      bool is_own = true;
+      for (std::size_t i = 0; i < terms.size() && is_own; ++i)
+        is_own = options(i).number(option.name, kNever) == terms[i].at;
+      if (is_own) return option.name;
+    }
+  }
+  return "";
+}
+
+EvidenceTerm evidence_of_term(const Term& term, const Chosen& chosen, const Runs& all,
+                              const Json& asked, const Place& place) {
+  const Request& request = all.at(0)->request;
+  const Json& optimizer = asked.at("optimizer");
+  EvidenceTerm out{.problem = request.problem.spec,
+                   .optimizer = optimizer.is_array() ? optimizer.at(chosen.alternative) : optimizer,
+                   .method = request.optimizer.name,
+                   .at = term.at,
+                   .scale = term.scale,
+                   .iteration = place.iteration,
+                   .level = chosen.level};
+  const std::vector<Real>& figures = term.figures.at(chosen.alternative);
+  for (std::size_t seed = 0; seed < all.size(); ++seed)
+    out.runs.push_back({all[seed]->cell, all[seed]->file_name(), all[seed]->request.seed,
+                        term.scale * figures[seed], all[seed]->status});
+  return out;
+}
+
+}  // namespace
+
+Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
+                     std::int64_t iterations) {
+  const Json& quantity = claim.at("quantity");
+  Evidence out{.kind = quantity.at("kind"),
+               .column = quantity.at("column"),
+               .curve = curve_of(quantity.at("column")),
+               .published = published_value(claim.at("published")),
+               .band = agreement_of(claim),
+               .is_over_time = quantity.value("clock", "") == "seconds"};
+  const std::vector<Term> terms = terms_of(claim, cells, runs, iterations);
+  out.abscissa = abscissa_of(terms, cells, runs);
+  const Real seconds =
+      out.is_over_time ? median_of(equal_seconds(cells, runs, iterations)) : kNever;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const Json& asked = quantity.at("terms").at(i);
+    Place place = place_of(claim, asked);
+    const Chosen chosen = chosen_of(terms[i]);
+    const Runs all = runs_of(cells.at(i).at(chosen.alternative), runs);
+    EvidenceTerm& term =
+        out.terms.emplace_back(evidence_of_term(terms[i], chosen, all, asked, place));
+    if (i == 0 && !place.table.empty()) out.printed = printed_rows(*all.at(0), place);
+    place.column = curve_of(place.column);
+    if (!place.column.empty()) add_curve(term, all, place, out.is_over_time);
+    if (term.x.empty()) continue;
+    const Real end = term.x.back();
+    term.read_at = place.iteration ? std::min(static_cast<Real>(*place.iteration), end)
+                                   : std::min(seconds, end);
+  }
+  return out;
+}
+
+std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
+  std::vector<CellSet> sets;
+  bool is_decided = false;
+  for (const Json& set : claim.value("cells", Json::array())) {
+    const std::vector<std::string> all = cells_of(set);
+    const std::set<std::string> cells(all.begin(), all.end());
+    CellSet& out = sets.emplace_back(CellSet{.iterations = set.at("iterations"),
+                                             .planned = cells.size(),
+                                             .is_long = set.value("long", false)});
+    out.here = static_cast<std::size_t>(
+        std::ranges::count_if(cells, [&](const auto& cell) { return runs.contains(cell); }));
+    out.is_deciding = !is_decided && out.here == out.planned;
+    is_decided = is_decided || out.is_deciding;
+  }
+  return sets;
+}
+
+std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
+  if (sets.empty()) return "";
+  const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
+  const bool is_long =
+      deciding != sets.end() ? deciding->is_long : std::ranges::all_of(sets, &CellSet::is_long);
+  return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
+}
+
+// Finds the runs of each claim, measures what it speaks of, and compares with what was published.
+
+using Json = nlohmann::json;
+namespace {
+
+// A claim by one set of its cells.
+struct Measured {
+  const Json& claim;
+  const Json& set;
+  const ByCell& runs;
+  Null null = Null::none;
+
+  std::int64_t iterations() const { return set.at("iterations").get<std::int64_t>(); }
+  Measurement of(const Json& asked, const char* list) const {
+    const std::vector<Term> terms = terms_of(asked, set.at(list), runs, iterations(), null);
+    return measure(asked.at("quantity").at("kind"), terms, claim.at("id"));
+  }
+  Evidence evidence(const Json& asked, const char* list) const {
+    return evidence_of(asked, set.at(list), runs, iterations());
+  }
+};
+
+// The weaker of what is said of the quantity and of what it is held against.
+Verdict weaker_verdict(const Judgement& judged, const Json& claim) {
+  const Verdict verdict = verdict_of(*judged.measured, claim, judged.is_drawn);
+  if (!judged.contrast) return verdict;
+  return std::max(verdict,
+                  verdict_of(*judged.contrast->measured, claim.at("contrast"), judged.is_drawn));
+}
+
+// The measurements, of the claim and of what it is held against. Whether both are numbers.
+bool take(Judgement& out, const Measured& from) {
+  out.measured = from.of(from.claim, "terms");
+  bool is_known = !std::isnan(out.measured->value);
+  if (!out.contrast) return is_known;
+  out.contrast->measured = from.of(from.claim.at("contrast"), "contrast_terms");
+  return is_known && !std::isnan(out.contrast->measured->value);
+}
+
+// What else would have come to the same verdict: then the data cannot turn it.
+void name_survived_nulls(Judgement& out, Measured from) {
+  const auto is_survived = [&](Null null) {
+    Judgement planted = out;
+    from.null = null;
+    return take(planted, from) && weaker_verdict(planted, from.claim) <= out.verdict;
+  };
+  if (is_survived(Null::untrained)) out.survives.emplace_back("networks that were never trained");
+  if (has_rivals(from.claim) && is_survived(Null::twins))
+    out.survives.emplace_back("one method under all its names");
+}
+
+// The length that the claim speaks of.
+std::int64_t needed_iterations(const Json& claim) {
+  if (claim.contains("length")) return claim["length"].at("iterations").get<std::int64_t>();
+  std::int64_t needed = 0;
+  const auto look = [&](const Json& from) {
+    needed = std::max(needed, from.value("iteration", std::int64_t{0}));
+  };
+  look(claim.at("quantity"));
+  for (const Json& term : claim.at("quantity").at("terms")) look(term);
+  return needed;
+}
+
+void measure_in(Judgement& out, const Measured& from) {
+  const Json &claim = from.claim, &set = from.set;
+  out.is_covered = true;
+  out.is_drawn = set.contains("seeds");
+  out.cells = cells_of(set);
+  const bool is_known = take(out, from);
+  if (set.contains("deviation"))
+    out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
+  if (claim.contains("not_comparable")) {
+    out.why = claim["not_comparable"];
+  } else if (from.iterations() < out.needs) {
+    out.verdict = Verdict::too_short;
+    out.why =
+        fmt::format("{} of the {} iterations that it speaks of", from.iterations(), out.needs);
+  } else if (!is_known) {
+    out.why = "the runs have no such figure";
+  } else {
+    out.verdict = weaker_verdict(out, claim);
+    if (out.verdict <= Verdict::consistent) name_survived_nulls(out, from);
+  }
+  out.evidence = from.evidence(claim, "terms");
+  if (out.contrast) out.contrast->evidence = from.evidence(claim.at("contrast"), "contrast_terms");
+}
+
+Judgement judge_one(const Json& claim, const ByCell& runs) {
+  Judgement out;
+  claim.at("id").get_to(out.id);
+  claim.at("sentence").get_to(out.sentence);
+  out.fact = claim.value("fact", out.id);
+  out.source = source_text(claim.at("source"));
+  out.caveat = claim.value("caveat", "");
+  out.published = published_text(claim);
+  if (claim.contains("quantity")) {
+    out.quantity = quantity_text(claim);
+    out.band = agreement_of(claim);
+    out.needs = needed_iterations(claim);
+  }
+  if (claim.contains("contrast"))
+    out.contrast =
+        Contrast{quantity_text(claim["contrast"]), published_text(claim["contrast"]), {}, {}};
+  out.sets = cell_sets(claim, runs);
+  std::vector<std::string> missing;
+  for (const Json& set : claim.value("cells", Json::array())) {
+    missing = missing_cells(set, runs);
+    if (missing.empty()) {
+      measure_in(out, {claim, set, runs});
+      return out;
+    }
+  }
+  out.why = claim.value("not_comparable", "");
+  if (out.why.empty() || !missing.empty()) out.why = fmt::format("no runs of {}", joined(missing));
+  return out;
+}
+
+}  // namespace
+
+std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs) {
+  ByCell by_cell;
+  for (const Record& record : runs) by_cell.emplace(record.cell, &record);
+  std::vector<Judgement> judgements;
+  for (const Json& claim : claims) judgements.push_back(judge_one(claim, by_cell));
+  return judgements;
+}
+
+std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements) {
+  std::map<std::string, Verdict> facts;
+  for (const Judgement& judgement : judgements) {
+    const auto [known, is_first] = facts.emplace(judgement.fact, judgement.verdict);
+    if (is_first) continue;
+    Verdict& fact = known->second;
+    const bool both = is_decided(fact) == is_decided(judgement.verdict);
+    fact = both ? std::max(fact, judgement.verdict) : std::min(fact, judgement.verdict);
+  }
+  std::vector<Verdict> verdicts;
+  for (const auto& [fact, verdict] : facts) verdicts.push_back(verdict);
+  return verdicts;
 }
 
 }  // namespace isoline::reports

@@ -4,10 +4,14 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reports/read/comparison.h"
+#include "reports/sections/agreement.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/section.h"
 #include "reports/statistics/resampling.h"
 
@@ -117,5 +121,91 @@ Band band_over_names(const Comparison& comparison, const Column& measure, const 
   }
   return bootstrap_ratio(groups, key);
 }
+
+// What decides a claim, to be looked at: each term of its quantity as it was read, run by run, with
+// the curve it was read off.
+
+struct EvidenceRun {
+  std::string cell, file;  // the digest of what was asked; the name of the record
+  std::uint64_t seed = 0;
+  Real figure = 0;  // scaled
+  Status status = Status::running;
+};
+
+// Of several alternatives the one that counts.
+struct EvidenceTerm {
+  std::string problem, optimizer;         // the optimizer as the claim writes it
+  std::string method;                     // the optimizer's name alone
+  Real at = 1, scale = 1;                 // its abscissa, and a factor of its figures
+  std::optional<std::int64_t> iteration;  // where it is read; none: at the end
+  Real read_at = 0;                       // the same on the axis of its curve
+  Real level = 0;                         // the median of its figures
+  std::vector<EvidenceRun> runs;
+  // Its figure over iterations, or over seconds: the median over seeds with the least and the
+  // greatest. Empty where it is of a whole run.
+  std::vector<Real> x, y, low, high;
+};
+
+struct Evidence {
+  std::string kind, column;   // of the quantity
+  std::string curve;          // the column of the curves
+  Real published = 0;         // of a table: no distance from it
+  Agreement band;             // what agrees with that
+  std::string abscissa;       // the option of the problem that is each term's, where there is one
+  bool is_over_time = false;  // curves are over seconds of processor time
+  std::vector<EvidenceTerm> terms;
+  std::vector<PrintedRow> printed;  // of an equality: the figures, and those of the first run
+};
+
+// Of a claim, or of its contrast. `cells` and `iterations` are those of the set that decides it.
+Evidence evidence_of(const nlohmann::json& claim, const nlohmann::json& cells, const ByCell& runs,
+                     std::int64_t iterations);
+
+// One of the lengths at which a claim can be decided.
+struct CellSet {
+  std::int64_t iterations = 0;
+  std::size_t planned = 0, here = 0;  // cells, each once
+  bool is_long = false;               // hours: run only when asked for
+  bool is_deciding = false;
+};
+std::vector<CellSet> cell_sets(const nlohmann::json& claim, const ByCell& runs);
+
+// Runs all that decides the claim anew, in a folder of its own.
+std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets);
+
+// Claims of papers judged by records. A claim is JSON, form isoline.claims/1, in which each set of
+// cells also has what makes it findable among records: "iterations" and, for each term of the
+// quantity and of its contrast, its alternatives as {"title", "cells"}: a digest a seed.
+
+// What a claim is held against, so that it can be refuted: a bound that every method keeps says
+// nothing of the one that is named.
+struct Contrast {
+  std::string quantity, published;
+  std::optional<Measurement> measured;
+  Evidence evidence;
+};
+
+struct Judgement {
+  std::string id, sentence, source, quantity, published, caveat;
+  std::string fact;  // the claim whose fact this one restates, or itself
+  Verdict verdict = Verdict::not_comparable;
+  std::string why;  // it is too short, or not comparable
+  std::optional<Measurement> measured;
+  std::optional<Agreement> band;
+  Evidence evidence;          // none where nothing decides it
+  std::vector<CellSet> sets;  // the longest first
+  std::optional<Contrast> contrast;
+  std::vector<std::string> cells;     // that decide it, of those there are
+  std::vector<std::string> survives;  // nulls under which it would come out no worse, in words
+  std::int64_t needs = 0;             // iterations
+  bool is_drawn = false;              // its runs are of seeds, of which others could be drawn
+  bool is_covered = false;            // all cells of one of its lengths are among the records
+};
+
+// In the order of the claims. The first set of cells that is complete counts: the longest.
+std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs);
+
+// The verdict on each fact: the weakest of the claims that restate it, of those that are decided.
+std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements);
 
 }  // namespace isoline::reports

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "reports/read/comparison.h"
-#include "reports/sections/verdicts.h"
+#include "reports/sections/evidence.h"
 
 namespace isoline::reports {
 

@@ -1,4 +1,4 @@
-// Words for leads.
+// Pairs over the problems that both were given.
 #include "reports/sections/leading.h"
 
 #include <fmt/format.h>
@@ -7,11 +7,26 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/read/grounds.h"
-#include "reports/sections/measure_words.h"
+#include "reports/read/ranking.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
+
+std::vector<MethodPair> all_pairs(const Comparison& c) {
+  Costs costs = median_costs(c, kTightest);
+  for (std::size_t p = 0; p < costs.size(); ++p)
+    if (!is_ordered(c, p)) costs[p].assign(costs[p].size(), std::nullopt);
+  const Groups groups = groups_of(c);
+  std::vector<MethodPair> all;
+  for (std::size_t a = 0; a < c.optimizers.size(); ++a)
+    for (std::size_t b = a + 1; b < c.optimizers.size(); ++b)
+      all.push_back({a, b, pairing_of(costs, groups, a, b)});
+  return all;
+}
+
+// Words for leads.
+
 namespace {
 
 // The first in rank that cannot be told from the leader by itself; the next where all can be.

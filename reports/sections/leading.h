@@ -3,10 +3,23 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "reports/read/comparison.h"
 
 namespace isoline::reports {
+
+struct MethodPair {
+  std::size_t a = 0, b = 0;  // optimizers
+  Pairing pairing;
+};
+
+// At the tightest tolerance by what the yardstick counts, over the problems given to both that are
+// not learned; a < b.
+std::vector<MethodPair> all_pairs(const Comparison& comparison);
+
+// The lead of an order in words, the same on every screen: the deeds of the first, how it stands to
+// the next, whether that is settled, and what these data could have shown.
 
 // "36 methods on the 17 settings of 15 problems that all of them were given"
 std::string field_text(const Comparison& comparison, const Lead& lead);

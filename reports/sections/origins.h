@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "reports/read/comparison.h"
-#include "reports/read/tuned_rates.h"
+#include "reports/read/study.h"
 
 namespace isoline::reports {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <set>
 
-#include "reports/read/grounds.h"
+#include "reports/read/ranking.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/leading.h"
-#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <map>
 
-#include "reports/read/grounds.h"
-#include "reports/read/orders.h"
+#include "reports/read/ranking.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
-#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/runtimes.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

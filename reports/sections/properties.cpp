@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
@@ -142,6 +144,172 @@ Section properties_section(const Audits& all) {
   section.tables = {properties_table(all)};
   section.plots = property_plots(all);
   return section;
+}
+
+// What an audit says, in one sentence a property, for a reader who meets these properties first.
+
+namespace {
+
+using Test = std::function<bool(const AuditedOptimizer&)>;
+
+constexpr Real kSame = 0.02;  // how near to a whole exponent is that exponent
+
+std::vector<std::string> names_where(const Audits& all, const Test& test) {
+  std::vector<std::string> names;
+  for (const AuditedOptimizer& audited : all)
+    if (audited.reason.empty() && test(audited)) names.push_back(audited.name);
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : joined(names);
+}
+
+bool has_exponent(const PowerLaw& law, Real exponent) {
+  return law.holds() && std::abs(law.exponent - exponent) <= kSame;
+}
+
+// The factor of the inverse Hessian: a slope has none, but where L is curved and x rescaled by s,
+// Newton's step and the gradient's differ by it.
+std::string hessian_sentence(const Audits& all) {
+  const auto step_of = [&](const char* name) {
+    const auto found = std::ranges::find(all, name, &AuditedOptimizer::name);
+    return found != all.end() && found->law(Scaled::input).step.holds()
+               ? found->law(Scaled::input).step.exponent
+               : kUnknown;
+  };
+  const Real newton = step_of("newton"), gradient = step_of("gd");
+  if (std::isnan(newton - gradient)) return "";
+  return fmt::format(
+      " Newton’s factor is measured where L has a Hessian: of x rescaled by s its step goes as "
+      "s^{:.2g} and that of gradient descent as s^{:.2g}, which differ by s^{:.2g}.",
+      newton, gradient, newton - gradient);
+}
+
+// The chapter's L = αx, where the figures and the chapter need not say the same.
+std::string slope_sentence(const Audits& all) {
+  const auto with = [&](Real exponent) {
+    return listed(names_where(all, [=](const AuditedOptimizer& audited) {
+      return has_exponent(audited.law(Scaled::slope).step, exponent);
+    }));
+  };
+  return fmt::format(
+      "Of the slope L = αx the book’s chapter states that gradient descent steps by α and changes "
+      "L by α², that the inverse Hessian of Newton’s method brings a factor 1/α², and that the "
+      "inverse gradient steps by 1/α. It states no law for Adam, half-inverse gradients or others. "
+      "Measured are the exponents 1 for {}; 0 for {}; −1 for {}. That more than the inverse "
+      "gradient have −1 contradicts it only in words: to L alone, whose Hessian is zero, Newton’s "
+      "method has no step, while methods over residuals and inverses are told here y = αx and a "
+      "target one below, and 1/α is the step that reaches it.{}",
+      with(1), with(0), with(-1), hessian_sentence(all));
+}
+
+std::string scaling_sentence(const Audits& all) {
+  const auto sound = names_where(all, [](const AuditedOptimizer& audited) {
+    return has_exponent(audited.law(Scaled::input).step, -1);
+  });
+  const auto wrong = names_where(all, [](const AuditedOptimizer& audited) {
+    return has_exponent(audited.law(Scaled::input).step, 1);
+  });
+  const auto none = names_where(all, [](const AuditedOptimizer& audited) {
+    const PowerLaw& law = audited.law(Scaled::input).step;
+    return law.has_values() && !law.holds();
+  });
+  return fmt::format(
+      "Write x in a unit s times as large and its numbers shrink by 1/s: a step should do the "
+      "same, exponent −1, and does for {}; it grows by s instead for {}, so that what needs a "
+      "large change gets a small one; no power law at all: {}. {}",
+      listed(sound), listed(wrong), listed(none), slope_sentence(all));
+}
+
+std::string invariance_sentence(const Audits& all) {
+  const auto kept = [&](std::size_t first, std::size_t last) {
+    return names_where(all, [=](const AuditedOptimizer& audited) {
+      for (std::size_t i = first; i < last; ++i)
+        if (!(audited.deviations[i] <= kInvariantDeviation)) return false;
+      return true;
+    });
+  };
+  return fmt::format(
+      "The whole path is the same in other units of x, component by component, for {}; under every "
+      "affine change of x for {}; under every affine change of y for {}.",
+      listed(kept(0, 1)), listed(kept(0, 3)), listed(kept(3, 6)));
+}
+
+std::string convergence_sentence(const Audits& all) {
+  constexpr Real kQuadratic = 1.7;  // rounding leaves few points to fit
+  const auto at_once = names_where(all, [](const AuditedOptimizer& audited) {
+    return audited.regular.is_exact && audited.regular.steps == 1;
+  });
+  const auto quadratic = names_where(all, [](const AuditedOptimizer& audited) {
+    return audited.regular.residual <= kMostOrderResidual && audited.regular.order >= kQuadratic;
+  });
+  const auto left =
+      names_where(all, [](const AuditedOptimizer& audited) { return audited.singular.is_exact; });
+  return fmt::format(
+      "Near a solution the number of right digits doubles each step (order 2) for {}; one step "
+      "is enough for {}; others gain digits at a steady rate (order 1) or none. Where the Jacobian "
+      "is singular at the solution, it is still reached to rounding by {}.",
+      listed(quadratic), listed(at_once), listed(left));
+}
+
+std::string composition_sentence(const Audits& all) {
+  constexpr Real kSmallest = 0.05;  // degrees: what prints as 0.0
+  const auto faithful = names_where(
+      all, [](const AuditedOptimizer& audited) { return audited.linear_angle < kSmallest; });
+  const AuditedOptimizer* worst = nullptr;
+  for (const AuditedOptimizer& audited : all)
+    if (audited.reason.empty() && audited.linear_angle >= kSmallest &&
+        (worst == nullptr || audited.linear_angle > worst->linear_angle))
+      worst = &audited;
+  return fmt::format(
+      "In a composition of stages, what a step changes in an intermediate quantity should be the "
+      "step that the method would take there. Through a linear stage it is, for {}; the largest "
+      "angle between the two is that of {}.",
+      listed(faithful),
+      worst == nullptr ? "none" : fmt::format("{}, {:.0f}°", worst->name, worst->linear_angle));
+}
+
+std::string oracle_sentence(const Audits& all) {
+  const auto asks = [&](const char* oracle) {
+    return names_where(
+        all, [=](const AuditedOptimizer& audited) { return audited.counted.contains(oracle); });
+  };
+  const auto losses = names_where(all, [](const AuditedOptimizer& audited) {
+    return audited.counted.size() == 1 && audited.counted.contains("forward");
+  });
+  return fmt::format(
+      "As counted, {} asked for the loss alone, {} for a Jacobian, {} for a Hessian, {} for an "
+      "inverse of the physics, {} for the true x, which is what one is looking for.",
+      listed(losses), listed(asks("jacobian")), listed(asks("hessian")), listed(asks("inverse")),
+      listed(asks("truth")));
+}
+
+std::string declaration_sentence(const Audits& all) {
+  std::string text, unmeasured;
+  for (const AuditedOptimizer& audited : all)
+    if (!audited.reason.empty())
+      unmeasured += fmt::format(" Not measured: {}, {}.", audited.name, audited.reason);
+  for (const AuditedOptimizer& audited : all)
+    for (const std::string& flag : audited.flags)
+      text += fmt::format("{}{} {}", text.empty() ? "" : "; ", audited.name, flag);
+  const std::vector<std::string> teachers =
+      names_where(all, [](const AuditedOptimizer& audited) { return !audited.network.empty(); });
+  if (!teachers.empty())
+    unmeasured += fmt::format(
+        " {} train a network: the loss and y are scaled, the path is that of the weights, and "
+        "changes of x, order and angle do not apply, since no step is made in x.",
+        listed(teachers));
+  if (text.empty()) text = "Every optimizer measured behaves as it declares";
+  return text + "." + unmeasured;
+}
+
+}  // namespace
+
+std::vector<Reading> property_readings(const Audits& all) {
+  return {{"Scaling", scaling_sentence(all)},         {"Invariance", invariance_sentence(all)},
+          {"Convergence", convergence_sentence(all)}, {"Composition", composition_sentence(all)},
+          {"Oracles", oracle_sentence(all)},          {"Declarations", declaration_sentence(all)}};
 }
 
 }  // namespace isoline::reports

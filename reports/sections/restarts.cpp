@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "reports/read/reached.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
-#include "reports/sections/measure_words.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/runtimes.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

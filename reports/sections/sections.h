@@ -2,12 +2,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/records/audited.h"
 #include "reports/read/comparison.h"
+#include "reports/sections/evidence.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/section.h"
-#include "reports/sections/verdicts.h"
 
 namespace isoline::reports {
 
@@ -43,5 +45,24 @@ std::string measured_text(const Judgement& judgement);                 // "23.4 
 std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);
+
+// A report before it has a format: its sections in order, and what they were made from.
+
+struct Document {
+  Comparison comparison;  // of a study that must outlive it
+  std::vector<Judgement> claims;
+  std::string out = {};    // the folder that it goes to, where that is known: links start there
+  std::string headline;    // "33 optimizers on 16 problems, …"
+  std::string statuses;    // "target 3, budget 2"
+  std::string incomplete;  // which cells are missing; empty where none is
+  std::vector<std::string> remarks;  // what a reader must know before believing the tables
+  std::vector<Section> sections;
+  std::vector<Figure> figures;
+
+  const Section& section(std::string_view id) const;
+};
+
+// Claims are those whose cells are among the runs.
+Document document_of(Comparison comparison, std::vector<Judgement> claims = {});
 
 }  // namespace isoline::reports

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <map>
 
-#include "reports/read/equal_work.h"
-#include "reports/read/grounds.h"
+#include "reports/read/ranking.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"
-#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

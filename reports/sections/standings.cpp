@@ -1,13 +1,40 @@
-// Who solves the problems: the verdict, the standings of the common order, and who stands apart.
+// Bootstraps the scores over names of problems.
+#include "reports/sections/standings.h"
+
 #include <fmt/format.h>
 
-#include "reports/read/grounds.h"
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "reports/read/ranking.h"
+#include "reports/sections/claim_terms.h"
+#include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"
-#include "reports/sections/measure_words.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
+#include "reports/statistics/statistics.h"
+#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
+
+std::vector<Interval> score_intervals(const Comparison& c) {
+  const Costs costs = common_costs(c, kTightest);
+  Costs ratios;
+  for (const auto& row : costs) ratios.push_back(cost_ratios(row));
+  std::vector<Interval> all(c.optimizers.size());
+  for (const std::size_t s : c.order.methods) {
+    const Band band = band_over_names(c, column_of(ratios, s), "problems", [](Real ratio) {
+      return std::vector<Real>{score_of(ratio, kProfileEnd)};
+    });
+    if (!band.value.empty()) all[s] = {band.low[0], band.high[0]};
+  }
+  return all;
+}
+
+// Who solves the problems: the verdict, the standings of the common order, and who stands apart.
+
 namespace {
 
 std::string typical_text(const Standing& standing) {
@@ -116,6 +143,158 @@ Section standings_section(const Comparison& c) {
   if (!c.apart.empty()) section.tables.push_back(apart_table(c));
   if (!c.other_orders.empty()) section.tables.push_back(orders_table(c));
   return section;
+}
+
+// The leader against each other method, and what so few problems cannot show.
+
+namespace {}  // namespace
+
+Table leader_table(const Comparison& c) {
+  Table table{
+      .id = "leader",
+      .title = "The leader against each of the others",
+      .reading = "There is no leader.",
+      .caption = fmt::format(
+          "One doubling a problem: log2 of the ratio of median {} to {}, the median over its "
+          "settings, within ±6, which is also what solving against not solving counts. × of the "
+          "leader: 2 to the median of them. p: exact two-sided paired sign flips of their mean; "
+          "after Holm over all methods here. A problem that neither solves is left out; so is a "
+          "method that applies to fewer than half of the settings.",
+          counted_name(c), tau_name(c)),
+      .columns = {"optimizer", "× of the leader", "wins : losses", "p", "after Holm", "n problems",
+                  "failed"},
+      .rows = {}};
+  if (!c.lead) return table;
+  const Lead& lead = *c.lead;
+  for (const Rival& rival : lead.rivals) {
+    if (table.rows.size() >= kMostTableRows) break;
+    const Pairing& pairing = rival.pairing;
+    table.row_topics.push_back({.optimizer = rival.optimizer});
+    table.rows.push_back(
+        {optimizer_text(c, rival.optimizer),
+         {fmt::format("{:.3g}", pairing.typical()), {{"ratio", pairing.typical()}}},
+         {fmt::format("{} : {}", pairing.wins, pairing.losses),
+          {{"wins", Real(pairing.wins)}, {"losses", Real(pairing.losses)}}},
+         {fmt::format("{:.2g}", rival.p), {{"p", rival.p}}},
+         {fmt::format("{:.2g}", rival.adjusted), {{"adjusted_p", rival.adjusted}}},
+         count_cell(pairing.doublings.size()),
+         failed_cell(c, rival.optimizer)});
+  }
+  table.reading = settled_text(c, lead) + " " + power_text(c, lead);
+  return table;
+}
+
+std::vector<std::string> limits_of_evidence(const Comparison& c) {
+  std::vector<std::string> all;
+  const std::size_t k = c.order.methods.size(), names = names_of(c, c.order);
+  if (k < 2 || names == 0) return all;
+  const Real friedman = friedman_of(c);
+  all.push_back(fmt::format(
+      "Friedman’s test of {} over the {} given to all of them: p = {:.2g}, so {}.",
+      counted(k, "method"), counted(names, "problem"), friedman,
+      friedman <= kSignificant ? "the mean ranks differ" : "equal mean ranks cannot be ruled out"));
+  if (c.lead && !c.lead->rivals.empty()) {
+    const Real pairs = Real(c.lead->rivals.size()),
+               least = std::min(1.0, std::exp2(1 - Real(names)));
+    all.push_back(power_text(c, *c.lead));
+    all.push_back(fmt::format(
+        "Over {} the least p that sign flips can give is {:.2g}, after Holm over the leader’s {} "
+        "pairs {:.2g}{}.",
+        counted(names, "problem"), least, pairs, std::min(1.0, least * pairs),
+        least * pairs > kSignificant ? ": no pair can be told apart after it, whatever the results"
+                                     : ""));
+  }
+  if (c.seeds.size() < kFewestForInterval)
+    all.push_back(
+        fmt::format("With {} no interval over seeds reaches 95 %: ranges are shown instead.",
+                    counted(c.seeds.size(), "seed")));
+  all.push_back("Nothing here speaks for problems unlike these: they were chosen, not drawn.");
+  return all;
+}
+
+// The first against the second method, problem by problem.
+
+namespace {}  // namespace
+
+// One bar a problem: the doublings by which the leader is told from the next.
+Plots log_ratio_plot(const Comparison& c) {
+  if (c.order.methods.size() < 2) return {};
+  const Costs costs = common_costs(c, kTightest);
+  std::vector<std::pair<Real, std::string>> bars;
+  std::size_t given = 0;
+  for (const auto& [name, problems] : problems_by_name(c)) {
+    const Pairing pairing = pairing_of(costs, {problems}, 0, 1);
+    given += !pairing.doublings.empty() || pairing.neither > 0;
+    if (!pairing.doublings.empty()) bars.emplace_back(pairing.doublings[0], name);
+  }
+  if (bars.empty()) return {};
+  std::ranges::sort(bars);
+  const std::string first = optimizer_text(c, 0), second = optimizer_text(c, 1);
+  Plot plot{
+      .kind = Plot::Kind::bars,
+      .id = "plot-log-ratio",
+      .title = fmt::format("{} against {}, problem by problem", first, second),
+      .reading =
+          fmt::format("{} {}.", second, pairing_text(c, pairing_of(costs, groups_of(c), 0, 1), 0)),
+      .caption = fmt::format(
+          "log2 of the ratio of median {} to {}, sorted, of several settings the median: "
+          "below 0 {} needs less, above 0 {}; at ±{:.0f} at least {:.0f} times, or the other never reaches it (Morales 2002). n = {} problems given to both, of which neither "
+          "solves {}; failed: {} and {}.",
+          counted_name(c), tau_name(c), first, second, std::log2(kProfileEnd), kProfileEnd, given,
+          given - bars.size(), failed_cell(c, 0).text, failed_cell(c, 1).text),
+      .x_label = "problems",
+      .y_label = fmt::format("log2 of the ratio of {}", counted_name(c))};
+  PlotSeries series{0, first + " / " + second, {}, {}, {}, {}};
+  for (const auto& [ratio, name] : bars) {
+    series.x.push_back(Real(plot.rows.size()));
+    series.y.push_back(ratio);
+    plot.rows.push_back({name, {.problem = problems_by_name(c).at(name)[0]}});
+  }
+  plot.series.push_back(std::move(series));
+  return {std::move(plot)};
+}
+
+// Whether the order of methods holds at declared and at measured prices.
+
+namespace {
+
+constexpr std::size_t kFirst = 3;
+
+// The first three by score, at the prices of one measure.
+std::vector<std::string> first_by(const Comparison& c, Measure by) {
+  std::vector<std::string> names;
+  const auto lead = lead_of(c, false, by);
+  if (!lead) return names;
+  for (std::size_t i = 0; i < std::min(kFirst, lead->ranked.size()); ++i)
+    if (lead->ranked[i].score > 0) names.push_back(optimizer_text(c, lead->ranked[i].optimizer));
+  return names;
+}
+
+}  // namespace
+
+std::string prices_text(const Comparison& c) {
+  if (c.yardstick.by == Measure::time && c.is_any_timed_together)
+    return "Some of these times were taken while other runs shared the machine, and are marked ≈: an "
+           "order by them is no evidence. Runs with --exclusive are timed alone.";
+  const bool is_by_calls = c.yardstick.by == Measure::work || c.yardstick.by == Measure::cost;
+  if (!is_by_calls || !has_order(c)) return "";
+  const auto priced = static_cast<std::size_t>(std::ranges::count_if(
+      c.order.settings, [&](std::size_t p) { return c.problems[p].prices.are_measured(); }));
+  if (priced == 0)
+    return "These results cannot say whether the order holds at measured prices: none was measured "
+           "here, or calls are too short to be.";
+  const std::vector<std::string> declared = first_by(c, Measure::work),
+                                 measured = first_by(c, Measure::cost);
+  if (declared.empty() && measured.empty()) return "";
+  const std::string where = fmt::format("measured prices (told on {} of {}, declared elsewhere)",
+                                        priced, counted(c.order.settings.size(), common_noun(c)));
+  if (declared == measured)
+    return fmt::format("At declared prices and at {} the first are the same: {}.", where,
+                       joined(declared));
+  const bool is_same_first = !declared.empty() && !measured.empty() && declared[0] == measured[0];
+  return fmt::format("The order {} at both prices: at declared ones the first are {}; at {}, {}.",
+                     is_same_first ? "below the first does not hold" : "does not hold",
+                     joined(declared), where, joined(measured));
 }
 
 }  // namespace isoline::reports

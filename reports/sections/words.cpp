@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "core/shell.h"
-#include "reports/sections/measure_words.h"
+#include "reports/sections/claim_terms.h"
 #include "reports/statistics/resampling.h"
 
 namespace isoline::reports {

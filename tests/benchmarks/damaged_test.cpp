@@ -9,7 +9,6 @@
 #include <algorithm>
 
 #include "benchmarks/run/run_plan.h"
-#include "benchmarks/run/used_rates.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "tests/benchmarks/hostile.h"

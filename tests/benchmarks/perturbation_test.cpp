@@ -1,11 +1,10 @@
 // Perturbed starts differ in the last bit and in nothing else; their records stay apart.
-#include "benchmarks/run/perturbation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "benchmarks/run/execute.h"
 #include "benchmarks/run/perturbed_runs.h"
 #include "core/errors.h"
 #include "tests/benchmarks/matrix.h"

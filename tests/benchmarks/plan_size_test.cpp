@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/text.h"
 #include "core/errors.h"
 #include "core/spec.h"
+#include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/plan/suite.h"
-#include "benchmarks/run/tuning_grid.h"
+#include "benchmarks/run/tune.h"
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/schema.h"

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "benchmarks/run/hold.h"
+#include "benchmarks/run/pending.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/files.h"
 #include "tests/benchmarks/hostile.h"

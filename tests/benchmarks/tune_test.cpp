@@ -9,9 +9,8 @@
 
 #include "benchmarks/plan/resources.h"
 #include "benchmarks/plan/suite.h"
+#include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/sheets.h"
-#include "benchmarks/run/tuning_score.h"
-#include "benchmarks/run/used_rates.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "problems/dense_physics.h"

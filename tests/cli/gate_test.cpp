@@ -5,8 +5,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/status.h"
 #include "core/records/record.h"
+#include "core/status.h"
 #include "tests/cli/shell.h"
 
 namespace isoline::benchmarks {

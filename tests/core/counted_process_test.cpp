@@ -1,6 +1,4 @@
 // The processor time of a program that computes for this one counts as this one's.
-#include "core/shell.h"
-
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -10,6 +8,7 @@
 
 #include "core/clock.h"
 #include "core/foreign/child.h"
+#include "core/shell.h"
 
 namespace isoline {
 namespace {

@@ -1,7 +1,7 @@
 // Instants are read as they are written.
-#include "core/clock.h"
-
 #include <gtest/gtest.h>
+
+#include "core/clock.h"
 
 namespace isoline {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/schema.h"
 #include "core/records/record.h"
+#include "core/records/schema.h"
 
 namespace isoline {
 namespace {

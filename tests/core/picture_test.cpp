@@ -1,11 +1,11 @@
 // What is shown of a sample: itself, the curl of a velocity, against its formula, or a history.
-#include "core/frames.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "core/frames.h"
 
 namespace isoline {
 namespace {

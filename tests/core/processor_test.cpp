@@ -1,8 +1,7 @@
 // What the processor says of itself, and the kernel that is asked for on processors of every kind.
-#include "core/threads.h"
-
 #include <gtest/gtest.h>
 
+#include "core/threads.h"
 
 namespace isoline {
 namespace {

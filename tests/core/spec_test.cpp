@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "core/text.h"
 #include "core/errors.h"
+#include "core/text.h"
 
 namespace isoline {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/fourier.h"
-#include "networks/network.h"
 #include "networks/fourier_operator.h"
+#include "networks/network.h"
 
 namespace isoline::networks {
 

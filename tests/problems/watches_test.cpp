@@ -1,6 +1,4 @@
 // The series of learning problems, against closed forms and finite differences.
-#include "problems/learning.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "core/trace.h"
 #include "make.h"
+#include "problems/learning.h"
 
 namespace isoline::problems {
 namespace {

@@ -1,11 +1,11 @@
 // The best of b values: by hand, and by counting all subsets.
-#include "reports/statistics/best_of.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
 #include <limits>
+
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

@@ -1,6 +1,4 @@
 // Rounding alone is not called worse, and a fault in a cell that hangs on rounding is still found.
-#include "reports/compare/differences.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <map>
 
 #include "reports/compare/baseline.h"
+#include "reports/compare/differences.h"
 #include "reports/compare/gate.h"
 #include "tests/reports/fixture.h"
 

@@ -6,7 +6,7 @@
 
 #include "reports/page/page.h"
 #include "reports/report.h"
-#include "reports/sections/verdicts.h"
+#include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

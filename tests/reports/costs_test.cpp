@@ -1,12 +1,11 @@
 // Equivalent forward solves: raw counts at measured prices, and what does not depend on them.
-#include "reports/read/costs.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
 #include "reports/compare/subject.h"
+#include "reports/read/metrics.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"

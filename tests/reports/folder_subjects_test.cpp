@@ -1,12 +1,11 @@
 // A folder read record by record gives the subjects that its whole study would.
-#include "reports/compare/subject.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include "core/errors.h"
 #include "core/records/file_text.h"
 #include "reports/compare/gate.h"
+#include "reports/compare/subject.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

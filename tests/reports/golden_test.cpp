@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/statistics/rank_tests.h"
 #include "reports/statistics/resampling.h"
-#include "reports/statistics/runtimes.h"
+#include "reports/statistics/statistics.h"
+#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 namespace {

@@ -1,12 +1,10 @@
 // Who is compared with whom: common settings, two meanings of one method, missing seeds, words.
-#include "reports/read/orders.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
-#include "reports/read/grounds.h"
+#include "reports/read/ranking.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/leading.h"
 #include "reports/sections/sections.h"

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "reports/page/kinds.h"
-#include "reports/read/brief.h"
-#include "reports/read/equal_work.h"
-#include "reports/read/grounds.h"
-#include "reports/read/ladders.h"
+#include "reports/read/axes.h"
+#include "reports/read/ranking.h"
 #include "reports/report.h"
-#include "reports/sections/method_pairs.h"
-#include "reports/sections/scores.h"
+#include "reports/sections/leading.h"
+#include "reports/sections/standings.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

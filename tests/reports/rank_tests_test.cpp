@@ -1,10 +1,10 @@
 // Tests by ranks against SciPy 1.10.1 and enumeration. Samples: numpy.random.default_rng(7),
 // normal, rounded to three digits.
-#include "reports/statistics/rank_tests.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
+
+#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 namespace {

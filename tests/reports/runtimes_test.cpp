@@ -1,13 +1,12 @@
 // Running times, areas, ranks and accuracies against hand-computed cases.
-#include "reports/statistics/runtimes.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "reports/statistics/rank_tests.h"
 #include "reports/statistics/resampling.h"
+#include "reports/statistics/statistics.h"
+#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 namespace {

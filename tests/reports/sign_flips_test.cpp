@@ -1,12 +1,10 @@
 // The paired test by sign flips and Friedman's test, against enumeration and SciPy.
-#include "reports/statistics/sign_flips.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
-#include "reports/statistics/friedman.h"
+#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 namespace {

@@ -1,10 +1,9 @@
 // By what a report measures: the scale of a loss, the two kinds of success, other tolerances.
-#include "reports/read/yardstick.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "reports/read/metrics.h"
 #include "reports/read/reached.h"
 #include "tests/reports/fixture.h"
 

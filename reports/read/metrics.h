@@ -1,12 +1,17 @@
-// By what a report measures: what is counted, and the tolerances at which success is told.
+// By what runs are measured, the tolerances of success, and what a run cost at measured prices.
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/ladder.h"
 #include "core/real.h"
+#include "core/records/record.h"
+#include "core/records/sheet.h"
 
 namespace isoline::reports {
 
@@ -67,5 +72,37 @@ class ByMeasure {
  private:
   std::array<Values, kMeasures.size()> values_;
 };
+
+// What runs cost in equivalent forward solves: their raw counts at the measured prices of their
+// problem. Where nothing was measured, or too short a call to be told, at the declared ones.
+
+// A shorter call takes mostly what a call takes, whatever is called: its price is not its own.
+inline constexpr Real kShortestCall = 1e-6;  // seconds
+bool is_told(const MeasuredPrices& prices, const MeasuredPrice& price);
+
+class Prices {
+ public:
+  Prices() = default;
+  explicit Prices(const Sheet* sheet);  // of this very problem; may be null
+
+  bool are_measured() const { return !measured_.empty(); }  // any that is told
+  bool is_measured(std::string_view oracle) const { return measured_.contains(oracle); }
+
+  Real cost(const Record& record) const;  // of all that the run asked
+  // At each point of the curve.
+  std::vector<Real> curve_costs(const Record& record) const;
+  // At each hit, infinite where never reached. Where an older record does not tell the counts at
+  // its hits they are read between the points of the curve, by work, which it does tell.
+  std::vector<Real> hit_costs(const Record& record) const;
+
+ private:
+  Real price(const Record& record, std::size_t kind) const;
+
+  std::map<std::string, Real, std::less<>> measured_;  // by oracle
+};
+
+// The raw counts when the declared work of the run was `work`: of its hit, or, in older records, of
+// the first kept point from there on.
+OracleCounts counts_at(const Record& record, Real work);
 
 }  // namespace isoline::reports

@@ -1,11 +1,14 @@
 // Exact distributions of rank sums, counted out by dynamic programming over doubled midranks, which
 // are whole numbers; probabilities instead of counts, so that nothing overflows.
-#include "reports/statistics/rank_tests.h"
+#include "reports/statistics/tests.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
+
+#include "core/random.h"
 
 namespace isoline::reports {
 namespace {
@@ -163,6 +166,154 @@ MedianInterval median_interval(std::vector<Real> values) {
   }
   const std::size_t first = std::max<std::size_t>(k, 1) - 1;
   return {median_of(values), values[first], values[n - 1 - first]};
+}
+
+// Friedman's statistic, and the tail of χ² by the incomplete gamma function.
+
+namespace {
+
+constexpr Real kEnough = 1e-15;
+constexpr int kMostTerms = 10'000;
+
+// γ(a, x) / Γ(a) by its series: Abramowitz, Stegun (1964), 6.5.29. For x < a + 1.
+Real lower_gamma(Real a, Real x) {
+  Real term = 1 / a, sum = term;
+  for (int n = 1; n < kMostTerms && term > kEnough * sum; ++n) {
+    term *= x / (a + n);
+    sum += term;
+  }
+  return sum * std::exp(a * std::log(x) - x - std::lgamma(a));
+}
+
+// Γ(a, x) / Γ(a) by its continued fraction, 6.5.31, after Lentz. For x ≥ a + 1.
+Real upper_gamma(Real a, Real x) {
+  constexpr Real kTiny = 1e-300;
+  Real b = x + 1 - a, c = 1 / kTiny, d = 1 / b, fraction = d;
+  for (int n = 1; n < kMostTerms; ++n) {
+    const Real numerator = -n * (n - a);
+    b += 2;
+    d = numerator * d + b;
+    c = b + numerator / c;
+    if (std::abs(d) < kTiny) d = kTiny;
+    if (std::abs(c) < kTiny) c = kTiny;
+    d = 1 / d;
+    fraction *= c * d;
+    if (std::abs(c * d - 1) < kEnough) break;
+  }
+  return fraction * std::exp(a * std::log(x) - x - std::lgamma(a));
+}
+
+}  // namespace
+
+Real chi_square_tail(Real x, Real freedom) {
+  if (!(x > 0)) return 1;
+  const Real a = freedom / 2, half = x / 2;
+  return half < a + 1 ? 1 - lower_gamma(a, half) : upper_gamma(a, half);
+}
+
+// With ties: 12 Σ (R_j − n (k + 1)/2)² / (n k (k + 1) (1 − Σ (t³ − t) / (n (k³ − k)))), the last
+// factor from Σ ranks², which ties lower.
+Real friedman_p(const std::vector<std::vector<Real>>& values) {
+  if (values.size() < 2 || values[0].size() < 2) return 1;
+  const Real n = Real(values.size()), k = Real(values[0].size()), mean = (k + 1) / 2;
+  std::vector<Real> sums(values[0].size(), 0);
+  Real spread = 0;  // of all ranks about their mean
+  for (const auto& block : values) {
+    const std::vector<Real> ranks = mid_ranks(block);
+    for (std::size_t j = 0; j < ranks.size(); ++j) {
+      sums[j] += ranks[j];
+      spread += (ranks[j] - mean) * (ranks[j] - mean);
+    }
+  }
+  if (spread == 0) return 1;
+  Real between = 0;
+  for (const Real sum : sums) between += (sum - n * mean) * (sum - n * mean);
+  return chi_square_tail(between * (k - 1) / spread, k - 1);
+}
+
+// Flips of signs, counted out where they are few enough.
+
+namespace {
+
+constexpr Real kRounding = 1e-9;  // of sums, relative: flips as far out as the data count as such
+
+// Of all 2^left signs of the last sizes, how many bring |sum| to `far`. Sizes descend, so that most
+// branches are decided early; after[i] is the sum from i on.
+struct Counter {
+  const std::vector<Real>& sizes;
+  const std::vector<Real>& after;
+  Real far = 0;
+
+  Real count(std::size_t i, Real sum) const {
+    const Real left = after[i];
+    if (std::abs(sum) + left < far) return 0;
+    if (std::abs(sum) - left >= far) return std::exp2(Real(sizes.size() - i));
+    return count(i + 1, sum + sizes[i]) + count(i + 1, sum - sizes[i]);
+  }
+};
+
+Real exact_p(const std::vector<Real>& sizes, Real far) {
+  std::vector<Real> after(sizes.size() + 1, 0);
+  for (std::size_t i = sizes.size(); i-- > 0;) after[i] = after[i + 1] + sizes[i];
+  return Counter{sizes, after, far}.count(0, 0) / std::exp2(Real(sizes.size()));
+}
+
+// With the data themselves among the flips, so that no p is 0.
+Real drawn_p(const std::vector<Real>& sizes, Real far) {
+  constexpr std::size_t kFlips = 1U << 16;
+  constexpr int kBits = 52;  // of one draw
+  Draws random(0, "report", "signs");
+  std::size_t hits = 0;
+  for (std::size_t flip = 0; flip < kFlips; ++flip) {
+    Real sum = 0;
+    std::uint64_t signs = 0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      if (i % kBits == 0)
+        signs = static_cast<std::uint64_t>(random.uniform() * std::exp2(Real(kBits)));
+      sum += (signs & 1U) == 1 ? sizes[i] : -sizes[i];
+      signs >>= 1U;
+    }
+    hits += std::abs(sum) >= far;
+  }
+  return Real(hits + 1) / Real(kFlips + 1);
+}
+
+// Of Student's t with so many degrees of freedom, from the normal's: Cornish, Fisher (1938); to
+// 1e-3 from seven on.
+Real student_quantile(Real z, Real freedom) {
+  const Real z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom) +
+         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * freedom * freedom * freedom);
+}
+
+}  // namespace
+
+Real sign_flip_p(const std::vector<Real>& differences) {
+  std::vector<Real> sizes;
+  for (const Real difference : differences)
+    if (difference != 0) sizes.push_back(std::abs(difference));
+  std::ranges::sort(sizes, std::ranges::greater{});
+  const Real observed = std::abs(std::accumulate(differences.begin(), differences.end(), 0.0));
+  const Real far = observed - kRounding * std::accumulate(sizes.begin(), sizes.end(), 0.0);
+  if (far <= 0) return 1;
+  return sizes.size() <= kExactFlips ? exact_p(sizes, far) : drawn_p(sizes, far);
+}
+
+Real deviation_of(const std::vector<Real>& values) {
+  if (values.size() < 2) return 0;
+  const Real n = Real(values.size());
+  const Real mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  Real sum = 0;
+  for (const Real value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / (n - 1));
+}
+
+Real detectable_mean(Real deviation, std::size_t n) {
+  constexpr Real kLevel = 1.959963984540054, kPower = 0.8416212335729143;  // normal quantiles
+  if (n < 2) return std::numeric_limits<Real>::infinity();
+  const Real freedom = Real(n - 1);
+  return (student_quantile(kLevel, freedom) + student_quantile(kPower, freedom)) * deviation /
+         std::sqrt(Real(n));
 }
 
 }  // namespace isoline::reports

@@ -1,9 +1,8 @@
 // Puts the sections of a report in order.
-#include "reports/sections/document.h"
+#include "reports/sections/sections.h"
 
 #include <algorithm>
 
-#include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -1,8 +1,10 @@
-// Tests by ranks: do two samples differ, by how much, and what is left of it among many tests.
+// Tests of differences between methods: by ranks, over all methods, and by flips of signs.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
+#include "core/real.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
@@ -36,5 +38,29 @@ std::vector<Real> benjamini_hochberg(const std::vector<Real>& p);
 std::vector<Real> holm(const std::vector<Real>& p);
 
 inline constexpr std::size_t kExact = 100;  // values up to which distributions are counted out
+
+// Do several methods differ at all over the same problems? Friedman's test by ranks (1937).
+
+// values[block][treatment], the less the better; infinite values rank last, ties share. The p of
+// the χ² approximation with k − 1 degrees of freedom, corrected for ties; 1 where nothing differs.
+Real friedman_p(const std::vector<std::vector<Real>>& values);
+
+// P(χ² with so many degrees of freedom ≥ x).
+Real chi_square_tail(Real x, Real freedom);
+
+// The paired test by sign flips: could differences of this size have had either sign?
+
+// The two-sided p of the mean of paired differences: the share of all flips of their signs whose
+// mean is as far from 0. Fisher (1935). Exact up to kExactFlips of them, beyond that over 2^16
+// fixed flips. 1 where all are 0. Differences are finite.
+Real sign_flip_p(const std::vector<Real>& differences);
+inline constexpr std::size_t kExactFlips = 20;
+
+// The standard deviation of a sample; 0 of fewer than two.
+Real deviation_of(const std::vector<Real>& values);
+
+// The mean difference that a two-sided test at 0.05 over n pairs of this deviation finds in 80 % of
+// all samples: (t(0.975) + t(0.8)) deviation / √n. Infinite of fewer than two pairs.
+Real detectable_mean(Real deviation, std::size_t n);
 
 }  // namespace isoline::reports
