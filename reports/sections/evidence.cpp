@@ -119,27 +119,6 @@ std::vector<Real> cost_grid(Measure by, Real most) {
   return grid;
 }
 
-std::vector<Real> costs_over_seeds(const Comparison& c, const Cell& cell) {
-  const Measure by = cost_measure(c);
-  std::vector<Real> costs;
-  for (const std::size_t run : cell.runs)
-    costs.push_back(in_units(by, c.runs[run].taken[by][kTightest]));
-  costs.resize(std::max(cell.planned, costs.size()), kNever);
-  return costs;
-}
-
-Interval interval_over_seeds(const std::vector<Real>& values, const std::string& key) {
-  if (values.size() >= kFewestForInterval) return bootstrap_median(values, key);
-  const Spread spread = spread_of(values);
-  return {spread.low, spread.high};
-}
-
-std::string interval_words(const Comparison& c) {
-  if (c.seeds.size() < kFewestForInterval)
-    return fmt::format("the range of {}, which is no interval", c.seeds.size());
-  return "the 95 % bootstrap interval over seeds (1,000 draws), of fewer than 6 their range";
-}
-
 void Leading::offer(Real mine, const std::string& label) {
   if (mine > value) {
     value = mine;

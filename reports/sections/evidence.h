@@ -24,8 +24,6 @@ Table leader_table(const Comparison& comparison);
 Table loss_without_x_table(const Comparison& comparison);
 Table condition_table(const Comparison& comparison);
 Table data_profile_table(const Comparison& comparison);
-Table anytime_table(const Comparison& comparison);
-Table interval_table(const Comparison& comparison);
 Table restart_table(const Comparison& comparison);
 Table calls_table(const Comparison& comparison);
 Table prices_table(const Comparison& comparison);
@@ -34,14 +32,13 @@ Plots profile_plot(const Comparison& comparison);
 Plots log_ratio_plot(const Comparison& comparison);
 Plots data_profile_plot(const Comparison& comparison);
 Plots runtime_plot(const Comparison& comparison);
-Plots target_plot(const Comparison& comparison);
 
 // In the order of a report: what is declared above stands in it once it is named here.
 inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
     profile_table, leader_table,   loss_without_x_table, condition_table, data_profile_table,
-    anytime_table, interval_table, restart_table,        calls_table,     prices_table};
+    restart_table,        calls_table,     prices_table};
 inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {
-    profile_plot, log_ratio_plot, data_profile_plot, runtime_plot, target_plot};
+    profile_plot, log_ratio_plot, data_profile_plot, runtime_plot};
 
 // Of the section on rates: without rows where no method ran both ways.
 Table tuned_and_defaults_table(const Comparison& comparison);
@@ -52,7 +49,6 @@ std::vector<std::string> limits_of_evidence(const Comparison& comparison);
 inline constexpr std::size_t kMostTableRows = 40;  // the best optimizers
 inline constexpr std::size_t kMostLines = 8;       // of a plot, the best optimizers
 inline constexpr std::size_t kMostRivals = 4;      // of the leader, each in a plot of two lines
-inline constexpr std::size_t kMostPlotRows = 25;   // problems
 
 // What they share.
 // The best of the common order: of tables that compare. And of all, those apart after them.
@@ -76,13 +72,6 @@ Real in_units(Measure by, Real value);                  // as tables and axes ha
 std::string denominators(const Comparison& comparison, std::size_t shown);
 // 10^(i / 8) from 1, of times from a microsecond, to the first beyond `most`.
 std::vector<Real> cost_grid(Measure by, Real most);
-// What each run of a cell took to the headline's tolerance, in those units; infinite where it did
-// not get there or is missing.
-std::vector<Real> costs_over_seeds(const Comparison& comparison, const Cell& cell);
-// 95 % of the bootstrap of the median; of fewer seeds than can give it, their range.
-Interval interval_over_seeds(const std::vector<Real>& values, const std::string& key);
-std::string interval_words(const Comparison& comparison);  // which of the two, in words
-
 // Who has the greatest value above 0, ties all.
 struct Leading {
   Real value = 0;

@@ -1,4 +1,4 @@
-// Plots of what runs cost: runtime distributions with simulated restarts, and cost to a target.
+// The plot of runtime distributions with simulated restarts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -82,27 +82,6 @@ PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<
   return {s, optimizer_text(c, s), grid, hits.shares(std::max(pairs, 1.0)), {}, {}};
 }
 
-constexpr std::size_t kMostTargetLines = 5;
-
-// Cost to the tightest tolerance by problem, with its interval or range over seeds.
-PlotSeries target_series(const Comparison& c, std::size_t s, std::size_t problems) {
-  PlotSeries series{s, optimizer_text(c, s), {}, {}, {}, {}};
-  for (std::size_t p = 0; p < problems; ++p) {
-    const Cell& cell = c.cell(p, s);
-    if (!cell.is_measured()) continue;
-    const std::vector<Real> costs = costs_over_seeds(c, cell);
-    const Real median = median_of(costs);
-    if (median == kNever) continue;
-    const Interval interval =
-        interval_over_seeds(costs, c.problems[p].spec + " " + c.optimizers[s].label);
-    series.x.push_back(median);
-    series.y.push_back(Real(p));
-    series.low.push_back(interval.low);
-    series.high.push_back(interval.high);
-  }
-  return series;
-}
-
 }  // namespace
 
 Plots runtime_plot(const Comparison& c) {
@@ -127,47 +106,6 @@ Plots runtime_plot(const Comparison& c) {
     plot.series.push_back(runtime_series(c, s, grid));
   plot.reading = fmt::format("Most targets within 100 {}: {}; in the end: {}.", unit_name(by),
                              highest_at(plot, 100), highest_at(plot, grid.back()));
-  return {std::move(plot)};
-}
-
-Plots target_plot(const Comparison& c) {
-  Plot plot{
-      .kind = Plot::Kind::dots,
-      .id = "plot-target",
-      .title = fmt::format("Cost to {}, {} by {}", tau_name(c), setting_noun(c), setting_noun(c)),
-      .reading = "",
-      .caption = "",
-      .x_label = std::string(unit_name(cost_measure(c))),
-      .y_label = "",
-      .is_log_x = true};
-  const std::size_t shown = shown_optimizers(c, kMostTargetLines);
-  const std::size_t problems = std::min(c.problems.size(), kMostPlotRows);
-  for (std::size_t p = 0; p < problems; ++p)
-    plot.rows.push_back({problem_name(c.problems[p]), {.problem = p}});
-  std::size_t dots = 0;
-  Real widest = 1;
-  std::string where;
-  for (std::size_t s = 0; s < shown; ++s) {
-    plot.series.push_back(target_series(c, s, problems));
-    const PlotSeries& one = plot.series.back();
-    dots += one.x.size();
-    for (std::size_t i = 0; i < one.x.size(); ++i) {
-      const Real ratio = one.high[i] / std::max(one.low[i], 1e-9);
-      if (!(ratio > widest)) continue;
-      widest = ratio;
-      where = fmt::format("{} on {}", one.name, plot.rows[std::size_t(one.y[i])].name);
-    }
-  }
-  if (dots == 0) return {};
-  plot.caption =
-      fmt::format("Median over seeds in {} with {}; no mark: the median run does not reach it; {}.",
-                  cost_unit(c), interval_words(c), denominators(c, shown));
-  plot.reading = fmt::format(
-      "{} of {} pairs reach it in the median; {}.", dots, shown * problems,
-      where.empty() ? "no range has any width: seeds agree"
-                    : fmt::format("the widest is that of {}, {}", where,
-                                  widest == kNever ? "without an upper end"
-                                                   : fmt::format("a factor of {:.3g}", widest)));
   return {std::move(plot)};
 }
 

@@ -59,10 +59,6 @@ Interval interval_of(std::vector<Real> draws) {
   return {quantile(draws, kTail), quantile(draws, 1 - kTail)};
 }
 
-Interval bootstrap_median(const std::vector<Real>& values, const std::string& key) {
-  return bootstrap(values, key, [](const std::vector<Real>& some) { return median_of(some); });
-}
-
 Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key) {
   if (!values.empty() && values.size() < kFewestForInterval)
     return {std::ranges::min(values), std::ranges::max(values)};

@@ -35,8 +35,7 @@ Interval interval_of(std::vector<Real> draws);
 // So many values are the fewest that can give 95 %: 2/2⁶ is the first below 0.05.
 inline constexpr std::size_t kFewestForInterval = 6;
 
-// Of a statistic of values. The key names the stream. Of a mean of fewer values, their range.
-Interval bootstrap_median(const std::vector<Real>& values, const std::string& key);
+// Of the mean of values; of fewer values, their range. The key names the stream.
 Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key);
 
 // Ratios of two sums over groups, as a share of problems is: value, and 95 % of the resamples of

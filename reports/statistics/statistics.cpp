@@ -129,16 +129,4 @@ std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const
   return costs;
 }
 
-Real area_over_curve(const std::vector<Real>& work, const std::vector<Real>& gap, Real budget,
-                     Real digits) {
-  Real area = 0, best = 1;
-  for (std::size_t i = 0; i < work.size() && work[i] < budget; ++i) {
-    if (gap[i] < best) best = gap[i];  // false for not-a-number
-    const Real end = i + 1 < work.size() ? std::min(work[i + 1], budget) : budget;
-    const Real depth = best > 0 ? -std::log10(best) / digits : 1;
-    area += (end - work[i]) * std::clamp(depth, 0.0, 1.0);
-  }
-  return budget > 0 ? area / budget : 0;
-}
-
 }  // namespace isoline::reports

@@ -72,11 +72,4 @@ Real expected_running_time(const std::vector<Attempt>& attempts);
 // their costs summed. Ascending; all infinite without a success.
 std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const std::string& key);
 
-// The share of the area over a convergence curve: (1/B) Σ_b (1 − clip(1 + log10(gap_b) / digits)),
-// with gap_b the best so far after b, 1 at the start. As IOHinspector has it.
-// It is the area under the ECDF of infinitely many log-spaced targets down to 10^−digits. Exact for
-// steps: gap[i] holds from work[i] on.
-Real area_over_curve(const std::vector<Real>& work, const std::vector<Real>& gap, Real budget,
-                     Real digits);
-
 }  // namespace isoline::reports

@@ -67,12 +67,6 @@ TEST(Golden, MeanRanksAreThoseOfSciPy) {
   EXPECT_NEAR(ours.high, high, 5 * (high - low) / 70);
 }
 
-TEST(Golden, AreaOverTheCurveIsTheMeanOverEveryEvaluation) {
-  const std::vector<Real> work = golden().at("work"), gap = golden().at("gap");
-  EXPECT_NEAR(area_over_curve(work, gap, golden().at("budget"), 8), golden().at("aocc").get<Real>(),
-              kRounding);
-}
-
 TEST(Golden, ExpectedRunningTimeIsThatOfGeometricRestarts) {
   std::vector<Attempt> attempts;
   for (std::size_t i = 0; i < golden().at("spent").size(); ++i)

@@ -29,41 +29,6 @@ TEST(SimulatedRestarts, HaveTheExpectedMean) {
   EXPECT_EQ(simulated_restarts({{5, true}}, "cell").back(), 5);
 }
 
-// From gap 1 down to 1e-2 at work 10 and 1e-4 at 50 of 100, over 8 digits:
-// 40/100 · 2/8 + 50/100 · 4/8 = 0.35.
-TEST(AreaOverCurve, IsExactForSteps) {
-  EXPECT_NEAR(area_over_curve({0, 10, 50}, {1, 1e-2, 1e-4}, 100, 8), 0.35, 1e-15);
-  EXPECT_NEAR(area_over_curve({0, 10, 50, 60}, {1, 1e-2, 1e-4, 7}, 100, 8), 0.35, 1e-15)
-      << "the best so far counts";
-  EXPECT_EQ(area_over_curve({0}, {1}, 100, 8), 0);
-  EXPECT_EQ(area_over_curve({}, {}, 100, 8), 0);
-  EXPECT_NEAR(area_over_curve({0, 50}, {1, 0}, 100, 8), 0.5, 1e-15);
-}
-
-// The ECDF of n targets 10^(−8 j / n) has the same area in the limit.
-TEST(AreaOverCurve, IsTheAreaUnderTheEcdfOfManyTargets) {
-  const std::vector<Real> work = {0, 3, 17, 40}, gap = {1, 0.3, 2e-3, 5e-7};
-  constexpr int kTargets = 100'000;
-  Real sum = 0;
-  for (int j = 1; j <= kTargets; ++j)
-    for (std::size_t i = 0; i < gap.size(); ++i)
-      if (gap[i] <= std::pow(10.0, -8.0 * j / kTargets)) {
-        sum += 1 - work[i] / 100;
-        break;
-      }
-  EXPECT_NEAR(area_over_curve(work, gap, 100, 8), sum / kTargets, 1e-4);
-}
-
-// Five values: the resampled median is the least with chance about 0.058, so 95 % reach all of
-// them.
-TEST(Bootstrap, OfAMedianSpansWhatResamplesReach) {
-  const Interval interval = bootstrap_median({1, 2, 3, 4, 5}, "cell");
-  EXPECT_EQ(interval.low, 1);
-  EXPECT_EQ(interval.high, 5);
-  EXPECT_EQ(bootstrap_median({1, kNever, kNever}, "cell").high, kNever);
-  EXPECT_EQ(bootstrap_mean({2, 2}, "cell").low, 2);
-}
-
 TEST(MidRanks, ShareTiesAndPutTheUnsolvedLast) {
   EXPECT_EQ(mid_ranks({5, kNever, 3, 5, kNever}), (std::vector<Real>{2.5, 4.5, 1, 2.5, 4.5}));
 }

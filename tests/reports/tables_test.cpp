@@ -55,26 +55,6 @@ TEST(Tables, ExpectedRunningTimeCountsWhatFailedRunsSpent) {
   EXPECT_TRUE(at(table, "gd", "square").ends_with("(1/2)")) << at(table, "gd", "square");
 }
 
-// Every tenth of the 51 targets costs 10 more: by 100 all are met, by 10 the first 6 of 51.
-TEST(Tables, RuntimeDistributionCountsTargets) {
-  const Study study = study_of({{"p", "a", 2}});
-  const Table table = anytime_table(compare_optimizers(study));
-  EXPECT_EQ(at(table, "a", "≤ 10"), "12 %");
-  EXPECT_EQ(at(table, "a", "≤ 100"), "100 %");
-  EXPECT_EQ(at(table, "a", "n runs"), "1");
-}
-
-// A method that goes on ten times as long changes no other's area: 51 targets a forward solve or
-// two apart, of the 2000 that the request allowed.
-TEST(Tables, TheAreaOverAConvergenceCurveDoesNotDependOnWhoElseRan) {
-  Study study = study_of({{"p", "a", 1}});
-  study.runs[0].request.budget.work = 2000;
-  const std::string alone = at(anytime_table(compare_optimizers(study)), "a", "area");
-  EXPECT_EQ(alone, "0.987");
-  study.runs.push_back(record_of({.problem = "p", .optimizer = "b", .work_per_hit = 1000}));
-  EXPECT_EQ(at(anytime_table(compare_optimizers(study)), "a", "area"), alone);
-}
-
 TEST(Tables, NobodyHasTheLargestAreaWhereAllAreZero) {
   Study study;
   for (const char* problem : {"p", "q", "r", "s"})
@@ -82,7 +62,6 @@ TEST(Tables, NobodyHasTheLargestAreaWhereAllAreZero) {
       study.runs.push_back(record_of(
           {.problem = problem, .optimizer = optimizer, .hits = 1, .status = Status::budget}));
   const Comparison c = compare_optimizers(study);
-  EXPECT_TRUE(has(anytime_table(c).reading, "all areas are 0")) << anytime_table(c).reading;
   EXPECT_TRUE(has(profile_table(c).reading, "No method solves any")) << profile_table(c).reading;
   const Document document = document_of(compare_optimizers(study));
   for (const Plot& plot : document.section("statistics").plots)
@@ -102,17 +81,6 @@ TEST(Tables, CountsOfSettingsAreNotCalledProblems) {
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(at(data_profile_table(c), "a", "n settings"), "2");
   EXPECT_EQ(std::ranges::count(data_profile_table(c).columns, "n problems"), 0);
-}
-
-// Three seeds give a range, whatever is resampled: an interval of 95 % takes six.
-TEST(Tables, OfFewerThanSixSeedsTheRangeIsCalledARange) {
-  Study study;
-  for (std::uint64_t seed = 0; seed < 3; ++seed)
-    study.runs.push_back(record_of({.seed = seed, .work_per_hit = 1 + 2 * std::int64_t(seed)}));
-  const Table table = interval_table(compare_optimizers(study));
-  EXPECT_TRUE(has(table.caption, "range of 3")) << table.caption;
-  EXPECT_FALSE(has(table.caption, "95 %")) << table.caption;
-  EXPECT_EQ(at(table, "gd", "square"), "90 [30–150] (3/3)");
 }
 
 TEST(Tables, EveryFormatPrintsTheSameFigures) {

@@ -38,14 +38,6 @@ ranks = stats.rankdata(costs, axis=1)
 boot = stats.bootstrap((ranks[:, 0],), np.mean, n_resamples=200000, method="percentile",
                        random_state=np.random.default_rng(1))
 
-work = np.cumsum(random.integers(1, 30, 12))
-gap = np.minimum.accumulate(10 ** -random.uniform(0, 9, 12))
-budget = int(work[-1] + 40)
-best = np.ones(budget)
-for w, g in zip(work, gap):
-    best[w:] = np.minimum(best[w:], g)
-aocc = float(np.mean(1 - np.clip((np.log10(best) + 8) / 8, 0, 1)))
-
 spent = np.round(random.uniform(50, 200, 9))
 success = np.array([1, 0, 0, 1, 0, 1, 0, 0, 0], dtype=bool)
 chance = success.mean()
@@ -60,10 +52,6 @@ json.dump({
     "mean_ranks": [float(m) for m in ranks.mean(axis=0)],
     "first_rank_interval": [float(boot.confidence_interval.low),
                             float(boot.confidence_interval.high)],
-    "work": [int(w) for w in work],
-    "gap": [float(g) for g in gap],
-    "budget": budget,
-    "aocc": aocc,
     "spent": [float(s) for s in spent],
     "success": [bool(s) for s in success],
     "ert": float(ert)
