@@ -174,41 +174,21 @@ Perturbed perturbed_from_json(const Json& json) {
 
 void read_figures(Subject& subject, const Json& cell) {
   const auto real = [&](const char* key) { return real_of(cell.at(key)); };
-  // Baselines of before knew the start, and no scale.
-  const auto scale = [&](const char* key, const char* older) {
-    return real(cell.contains(key) ? key : older);
-  };
   const auto add_works = [&](const char* key, Quantity (*quantity)(Real, Real)) {
     for (std::size_t t = 0; t < kTolerances.size(); ++t)
       subject.quantities.push_back(quantity(kTolerances[t].tau, real_of(cell.at(key).at(t))));
   };
   subject.trace = cell.at("trace").get<std::string>();
   subject.rest = cell.value("rest", std::string());
-  const Real loss_scale = scale("scale", "start_loss");
-  subject.quantities = {loss_quantity("loss", real("loss"), loss_scale),
-                        loss_quantity("best loss", real("best_loss"), loss_scale)};
+  subject.quantities = {loss_quantity("loss", real("loss"), real("scale")),
+                        loss_quantity("best loss", real("best_loss"), real("scale"))};
   if (cell.contains("x_error"))
-    subject.quantities.push_back(
-        x_error_quantity(real("x_error"), scale("x_scale", "start_x_error")));
+    subject.quantities.push_back(x_error_quantity(real("x_error"), real("x_scale")));
   add_works("work", work_quantity);
   if (cell.contains("found")) add_works("found", found_quantity);
 }
 
-// "sine × adam[rate=0.1], seed 0" is all that older baselines tell of what was asked.
-void read_title(Subject& subject, const std::string& title) {
-  const std::size_t cross = title.find(" × "), end = title.rfind(", seed ");
-  if (cross == std::string::npos || end == std::string::npos) return;
-  const std::size_t second = cross + std::string(" × ").size();
-  const auto given = [](const std::string& spec) {
-    return Given{.name = name_of_spec(spec), .asked = spec, .spec = spec, .options = {}};
-  };
-  subject.problem = given(title.substr(0, cross));
-  subject.optimizer = given(title.substr(second, end - second));
-  subject.title = title;
-}
-
 void read_question(Subject& subject, const Json& cell, const Json& file) {
-  if (!cell.contains("given")) return read_title(subject, cell.at("title").get<std::string>());
   const auto seed = cell.at("seed").get<std::uint64_t>();
   const auto given = [&](std::size_t side) {
     return given_from_json(file.at("given").at(cell.at("given").at(side).get<std::size_t>()));

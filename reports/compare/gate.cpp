@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/errors.h"
 #include "core/files.h"
@@ -61,6 +62,21 @@ Difference silent_difference(const Subject& a, const Subject& b) {
   return difference;
 }
 
+// "all 4 of adam, 7 of 10 of gd".
+std::string lack_text(const std::vector<const Subject*>& lacking, const std::vector<Subject>& all) {
+  std::map<std::string, std::pair<std::size_t, std::size_t>> counts;  // lacking, of all
+  for (const Subject* subject : lacking) ++counts[subject->optimizer.name].first;
+  for (const Subject& subject : all)
+    if (const auto at = counts.find(subject.optimizer.name); at != counts.end())
+      ++at->second.second;
+  std::vector<std::string> names;
+  for (const auto& [name, count] : counts)
+    names.push_back(count.first == count.second
+                        ? fmt::format("all {} of {}", count.second, name)
+                        : fmt::format("{} of {} of {}", count.first, count.second, name));
+  return names_text(names);
+}
+
 class Gate {
  public:
   explicit Gate(const GateOptions& options) : options_(options) {}
@@ -71,12 +87,10 @@ class Gate {
     result_.settings = changed_settings(pairs);
     for (const auto& [a, b] : pairs.both) join(*a, *b);
     miss(pairs, before);
-    result_.added = grouped(pairs.only_after, after);
     choose_timed();
     result_.times = judge_times(timed_, options_.least_noise);
     sort_differences();
     result_.causes = caused(result_.differences, result_.incomparable);
-    result_.groups = grouped(result_.differences, result_.by_method);
     add_remarks();
     conclude(result_, options_);
     return result_;
@@ -85,7 +99,6 @@ class Gate {
  private:
   void join(const Subject& a, const Subject& b) {
     ++result_.joined;
-    ++result_.by_method[a.optimizer.name];
     offer_times(a, b);
     const std::string reason = why_incomparable(a, b, options_);
     if (reason.empty()) return judge(a, b);
@@ -137,8 +150,8 @@ class Gate {
       is_used[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
     }
     for (const Subject* subject : pairs.only_after) result_.only_after.push_back(subject->title);
-    result_.otherwise = asked_otherwise(unexpected, pairs.only_after);
-    result_.lacking = grouped(unexpected, before);
+    result_.other_terms = take_other_terms(unexpected, pairs.only_after);
+    result_.lack = lack_text(unexpected, before);
     for (std::size_t i = 0; i < is_used.size(); ++i)
       if (!is_used[i])
         result_.remarks.push_back(fmt::format(
@@ -225,29 +238,31 @@ GateResult compare_subjects(const std::vector<Subject>& before, const std::vecto
 
 namespace {
 
-// "adam in all 26 cells, in sine × adam, seed 0: loss 1e-3 → 2; 3 other optimizers".
-std::string cause_in(const std::vector<DifferenceGroup>& groups, Change change) {
-  std::vector<const DifferenceGroup*> its;
-  for (const DifferenceGroup& group : groups)
-    if (group.change == change) its.push_back(&group);
-  if (its.empty()) return "";
-  const DifferenceGroup& first = *its[0];
-  const std::string more =
-      its.size() == 1 ? "" : fmt::format("; and {}", counted(its.size() - 1, "other optimizer"));
-  return fmt::format("{} in {} cell{}, in {}: {}{}", first.optimizer,
-                     share_text(first.cells, first.of), first.of == 1 ? "" : "s", first.worst.title,
-                     step_text(first.worst), more);
+// "26 cells of adam, most in sine × adam, seed 0: loss 1e-3 → 2": of what rounding does not
+// explain.
+std::string worst_text(const GateResult& result, Change change) {
+  const Difference* worst = nullptr;
+  std::set<std::string> cells, optimizers;
+  for (const Difference& difference : result.differences) {
+    if (difference.change != change || difference.is_rounding) continue;
+    if (worst == nullptr) worst = &difference;  // they come worst first
+    cells.insert(difference.key);
+    optimizers.insert(difference.optimizer);
+  }
+  if (worst == nullptr) return "";
+  return fmt::format("{} of {}, most in {}: {}", counted(cells.size(), "cell"),
+                     names_text({optimizers.begin(), optimizers.end()}), worst->title,
+                     step_text(*worst));
 }
 
 std::string lack_cause(const GateResult& result) {
   if (result.only_before.empty()) return "";
   std::vector<std::string> names;
-  for (const OtherTerms& terms : result.otherwise)
+  for (const OtherTerms& terms : result.other_terms)
     names.push_back(fmt::format("{} with another budget in NEW, {}", terms.cells, terms.what));
-  for (const LackGroup& group : result.lacking)
-    names.push_back(fmt::format("{} of {}", share_text(group.cells, group.of), group.optimizer));
+  if (!result.lack.empty()) names.push_back(result.lack);
   return fmt::format("NEW lacks {} of BASE ({})", counted(result.only_before.size(), "cell"),
-                     names_text(names));
+                     joined(names));
 }
 
 // Where nothing else is worse, or better.
@@ -302,7 +317,7 @@ void conclude(GateResult& result, const GateOptions& options) {
   const std::string faster = time_cause(result.times, -1, "faster");
   if (has(Change::worse) || !slower.empty() || !lacks.empty())
     settle(kWorse, with_causes("worse", {settings_cause(result.settings), lacks,
-                                         cause_in(result.groups, Change::worse),
+                                         worst_text(result, Change::worse),
                                          rounding_cause(result, Change::worse), slower}));
   else if (result.joined == 0)
     settle(kNotComparable, "not comparable: no cell is in both");
@@ -312,7 +327,7 @@ void conclude(GateResult& result, const GateOptions& options) {
   else if (has(Change::better) || !faster.empty())
     settle(kBetterOnly,
            with_causes("better, nothing worse",
-                       {settings_cause(result.settings), cause_in(result.groups, Change::better),
+                       {settings_cause(result.settings), worst_text(result, Change::better),
                         rounding_cause(result, Change::better), faster}));
   else if (has(Change::changed) || !result.settings.empty())
     settle(kGood,

@@ -39,17 +39,15 @@ struct AllowedCell {
 };
 
 struct GateResult {
-  std::size_t joined = 0, equal = 0;  // subjects in both; of them, without any difference
-  std::size_t chaotic = 0;            // of them, judged by status and coarse targets
-  std::map<std::string, std::size_t> by_method;  // of them, by optimizer
-  std::vector<std::string> builds, settings;     // what differs before any figure does, in words
-  std::vector<Difference> differences;           // worst first
-  std::vector<CauseGroup> causes;                // of them and of what cannot be compared
-  std::vector<DifferenceGroup> groups;           // of them, by cause and optimizer
-  std::vector<TimeVerdict> times;                // worst first
+  std::size_t joined = 0, equal = 0;          // subjects in both; of them, without any difference
+  std::size_t chaotic = 0;                    // of them, judged by status and coarse targets
+  std::vector<std::string> builds, settings;  // what differs before any figure does, in words
+  std::vector<Difference> differences;        // worst first
+  std::vector<CauseGroup> causes;             // of them and of what cannot be compared
+  std::vector<TimeVerdict> times;             // worst first
   std::vector<std::string> only_before, only_after;  // titles; the allowed ones are not among them
-  std::vector<OtherTerms> otherwise;                 // of them, asked with another budget
-  std::vector<LackGroup> lacking, added;             // the rest, by optimizer
+  std::vector<OtherTerms> other_terms;               // of them, asked with another budget
+  std::string lack;                                  // which optimizers NEW lacks cells of
   std::vector<AllowedCell> allowed;                  // only in BASE
   std::vector<Incomparable> incomparable;
   std::vector<std::string> remarks;

@@ -108,36 +108,6 @@ void cut(Section& section) {
 
 Row line(const std::string& text) { return {text}; }
 
-// "sine 3, heat", those with most cells first, or how many there are.
-std::string problems_text(const DifferenceGroup& group) {
-  constexpr std::size_t kMost = 3;
-  std::vector<std::pair<std::size_t, std::string>> all;
-  for (const auto& [name, cells] : group.problems) all.emplace_back(cells.size(), name);
-  std::ranges::stable_sort(all, std::greater(), [](const auto& each) { return each.first; });
-  std::vector<std::string> names;
-  for (const auto& [cells, name] : all)
-    if (names.size() < kMost)
-      names.push_back(cells == 1 ? name : fmt::format("{} {}", name, cells));
-  const std::string more =
-      all.size() > kMost ? fmt::format(" and {} more", all.size() - kMost) : "";
-  return joined(names) + more;
-}
-
-Row row_of(const DifferenceGroup& group) {
-  std::string others;
-  for (std::size_t i = 1; i < group.what.size(); ++i)
-    others += (i == 1 ? "also " : ", ") + group.what[i];
-  const std::string remainder = remainder_text(group.worst);
-  const std::string cells =
-      group.of == 0 ? std::to_string(group.cells) : share_text(group.cells, group.of);
-  return {name_of(group.change),
-          fmt::format("{}: {}", cells, group.optimizer),
-          problems_text(group),
-          group.worst.title,
-          step_text(group.worst),
-          remainder + (remainder.empty() || others.empty() ? "" : "; ") + others};
-}
-
 Row row_of(const TimeVerdict& time) {
   return {name_of_time(time.change),
           time.title,
@@ -147,57 +117,20 @@ Row row_of(const TimeVerdict& time) {
           fmt::format("{}, {}", time.n_before, time.n_after)};
 }
 
-Row row_of(const LackGroup& group) {
-  return {fmt::format("{}: {}", share_text(group.cells, group.of), group.optimizer),
-          names_text({group.problems.begin(), group.problems.end()}), group.first};
-}
-
-Row row_of(const OtherTerms& terms) {
-  return {terms.what,
-          fmt::format("{} of {}", counted(terms.cells, "cell"),
-                      names_text({terms.optimizers.begin(), terms.optimizers.end()})),
-          terms.first};
-}
-
-// What cannot be compared for one reason, by optimizer.
-struct IncomparableGroup {
-  std::string optimizer, first;
-  std::set<std::string> problems;
-  std::size_t cells = 0;
-};
-
-std::vector<IncomparableGroup> incomparable_for(const std::string& reason,
-                                                const std::vector<Incomparable>& all) {
-  std::map<std::string, IncomparableGroup> groups;
-  for (const Incomparable& pair : all) {
-    if (pair.reason != reason) continue;
-    IncomparableGroup& group = groups[pair.optimizer];
-    if (group.cells++ == 0) group.first = pair.title;
-    group.optimizer = pair.optimizer;
-    group.problems.insert(pair.problem);
-  }
-  std::vector<IncomparableGroup> list;
-  for (auto& [key, group] : groups) list.push_back(std::move(group));
-  return list;
-}
-
-Row row_of(const IncomparableGroup& group) {
-  return {fmt::format("{}: {}", group.cells, group.optimizer),
-          names_text({group.problems.begin(), group.problems.end()}), group.first};
-}
-
-// A table a cause, in the order of the causes.
-void add_differences(Section& section, const GateResult& result,
-                     const std::vector<DifferenceGroup>& groups) {
+// A table a cause, in the order of the causes; what rounding explains is in none.
+void add_differences(Section& section, const GateResult& result) {
   for (const CauseGroup& cause : result.causes) {
-    std::vector<DifferenceGroup> its;
-    std::ranges::copy_if(groups, std::back_inserter(its),
-                         [&](const DifferenceGroup& group) { return group.cause == cause.cause; });
+    std::vector<Difference> its;
+    std::ranges::copy_if(result.differences, std::back_inserter(its), [&](const Difference& one) {
+      return one.cause == cause.cause && !one.is_rounding;
+    });
     add_table(section,
               {.title = "Differences: " + cause.cause,
-               .columns = {"", "cells", "problems", "the largest", "figure", "change"},
-               .align = "llllll"},
-              its, [](const DifferenceGroup& group) { return row_of(group); });
+               .columns = {"", "cell", "figure", "change"},
+               .align = "llll"},
+              its, [](const Difference& one) -> Row {
+                return {name_of(one.change), one.title, step_text(one), remainder_text(one)};
+              });
   }
 }
 
@@ -214,34 +147,26 @@ void add_what_differs(Section& section, const GateResult& result) {
 }
 
 void add_what_is_apart(Section& section, const GateResult& result) {
-  const auto lack = [](const LackGroup& group) { return row_of(group); };
   add_table(section,
             {.title = "In both, with another budget",
-             .columns = {"what differs", "cells", "the first"},
-             .align = "lll"},
-            result.otherwise, [](const OtherTerms& terms) { return row_of(terms); });
-  add_table(section,
-            {.title = "Only in BASE, by optimizer",
-             .columns = {"cells", "problems", "the first"},
-             .align = "lll"},
-            result.lacking, lack);
+             .columns = {"what differs", "cells"},
+             .align = "ll"},
+            result.other_terms, [](const OtherTerms& terms) -> Row {
+              return {terms.what,
+                      fmt::format("{} of {}", counted(terms.cells, "cell"),
+                                  names_text({terms.optimizers.begin(), terms.optimizers.end()}))};
+            });
+  add_table(section, {.title = "Only in BASE", .columns = {"cell"}}, result.only_before, line);
   add_table(section,
             {.title = "Only in BASE, as allowed", .columns = {"cell", "reason"}, .align = "ll"},
             result.allowed, [](const AllowedCell& cell) -> Row {
               return {cell.title, cell.reason};
             });
-  for (const CauseGroup& cause : result.causes)
-    add_table(section,
-              {.title = "Not comparable: " + cause.cause,
-               .columns = {"cells", "problems", "the first"},
-               .align = "lll"},
-              incomparable_for(cause.cause, result.incomparable),
-              [](const IncomparableGroup& group) { return row_of(group); });
-  add_table(section,
-            {.title = "Only in NEW, by optimizer",
-             .columns = {"cells", "problems", "the first"},
-             .align = "lll"},
-            result.added, lack);
+  add_table(section, {.title = "Not comparable", .columns = {"cell", "reason"}, .align = "ll"},
+            result.incomparable, [](const Incomparable& pair) -> Row {
+              return {pair.title, pair.reason};
+            });
+  add_table(section, {.title = "Only in NEW", .columns = {"cell"}}, result.only_after, line);
 }
 
 // The verdict is its title; then the counts, the causes and what else must be known.
@@ -252,13 +177,13 @@ Section section_of(const GateResult& result, bool lists_all) {
   const std::size_t told =
       lists_all ? result.causes.size() : std::min(kMostCauses, result.causes.size());
   for (const CauseGroup& cause : std::span(result.causes).first(told))
-    section.readings.push_back({"Cause", fmt::format("{}: {}.", cause.cause, words_of(cause))});
+    section.readings.push_back(
+        {"Cause", fmt::format("{}: {}.", cause.cause, cause_group_text(cause))});
   if (told < result.causes.size())
     section.readings.push_back({"", fmt::format("{} more; --all lists them.",
                                                 counted(result.causes.size() - told, "cause"))});
   for (const std::string& remark : result.remarks) section.readings.push_back({"", remark + "."});
-  add_differences(section, result,
-                  lists_all ? grouped_by_problem(result.differences) : result.groups);
+  add_differences(section, result);
   add_what_differs(section, result);
   add_what_is_apart(section, result);
   return section;
@@ -310,14 +235,6 @@ Json json_of(const TimeVerdict& t) {
           {"noise", json_number(t.noise)}};
 }
 
-Json json_of(const DifferenceGroup& g) {
-  Json problems = Json::object();
-  for (const auto& [name, cells] : g.problems) problems[name] = cells.size();
-  return {{"change", name_of(g.change)}, {"cause", g.cause},      {"optimizer", g.optimizer},
-          {"problems", problems},        {"cells", g.cells},      {"of", g.of},
-          {"figures", g.what},           {"worst", g.worst.title}};
-}
-
 Json json_of(const CauseGroup& group) {
   return {{"cause", group.cause},
           {"cells", group.cells.size()},
@@ -358,8 +275,7 @@ std::string gate_json(const GateResult& result) {
                   {"options", result.settings},
                   {"differences", list_of(result.differences)},
                   {"causes", list_of(result.causes)},
-                  {"other_budgets", list_of(result.otherwise)},
-                  {"groups", list_of(result.groups)},
+                  {"other_budgets", list_of(result.other_terms)},
                   {"times", list_of(result.times)},
                   {"not_comparable", list_of(result.incomparable)},
                   {"only_in_base", result.only_before},

@@ -23,7 +23,7 @@ std::string as_keyed(const Subject& subject) { return subject.key; }
 
 std::string in_terms(const Subject& subject, const std::string& problem,
                      const std::string& optimizer) {
-  return subject.terms.empty() ? "" : problem + " × " + optimizer + ", " + subject.terms;
+  return problem + " × " + optimizer + ", " + subject.terms;
 }
 
 std::string as_asked(const Subject& subject) {
@@ -33,8 +33,6 @@ std::string as_asked(const Subject& subject) {
 std::string as_given(const Subject& subject) {
   return in_terms(subject, subject.problem.spec, subject.optimizer.spec);
 }
-
-std::string as_titled(const Subject& subject) { return subject.title; }
 
 // Where each identity stands; those that two share are nowhere.
 std::map<std::string, std::size_t> places_of(const Left& left, Identity identity) {
@@ -60,15 +58,12 @@ Left addresses(const std::vector<Subject>& subjects) {
 
 Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& after) {
   Left old = addresses(before), now = addresses(after), answer(old.size(), nullptr);
-  for (const Identity identity : {as_keyed, as_asked, as_given, as_titled}) {
+  for (const Identity identity : {as_keyed, as_asked, as_given}) {
     const auto places = places_of(now, identity);
     for (const auto& [name, i] : places_of(old, identity)) {
       const auto at = places.find(name);
       if (at == places.end()) continue;
-      const Subject* const other = now[at->second];
-      // Titles are silent about budgets: where both sides tell theirs, they are others.
-      if (identity == as_titled && !old[i]->terms.empty() && !other->terms.empty()) continue;
-      answer[i] = other;
+      answer[i] = now[at->second];
       old[i] = now[at->second] = nullptr;
     }
   }
@@ -157,7 +152,6 @@ struct PartChange {
 
 std::map<std::string, std::size_t> changes_between(const Subject& a, const Subject& b) {
   std::map<std::string, std::size_t> changes;
-  if (a.terms.empty() || b.terms.empty()) return changes;  // a title tells no options
   count_changes(a.problem, b.problem, changes);
   count_changes(a.optimizer, b.optimizer, changes);
   return changes;

@@ -15,9 +15,8 @@ struct Pairs {
 };
 
 // By their keys; then by what was asked, as typed, with its seed and budget, since a changed
-// default or rate changes the key; then by the options given; then by title, where an older side
-// tells no more. What two of a side have in common pairs neither. The subjects must outlive the
-// pairs.
+// default or rate changes the key; then by the options given. What two of a side have in common
+// pairs neither. The subjects must outlive the pairs.
 Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& after);
 
 // What differs between paired subjects before any figure does: what they were given, and which

@@ -12,29 +12,29 @@
 namespace isoline::reports {
 namespace {
 
-struct Column {
+struct CsvColumn {
   std::string name;
   std::function<std::string(const Run&)> text;
 };
 
-void add_reached(std::vector<Column>& columns, const Yardstick& yardstick, const char* what,
+void add_reached(std::vector<CsvColumn>& columns, const Yardstick& yardstick, const char* what,
                  Measure by) {
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     columns.push_back({fmt::format("{}_to_{}", what, yardstick.tolerances[t].name),
                        [by, t](const Run& run) { return exact_figure(run.taken[by][t]); }});
 }
 
-using Columns = std::vector<Column>;
+using CsvColumns = std::vector<CsvColumn>;
 
-void add(Columns& columns, const char* name, Real Summary::*value) {
+void add(CsvColumns& columns, const char* name, Real Summary::*value) {
   columns.push_back(
       {name, [value](const Run& run) { return exact_figure(run.record->summary.*value); }});
 }
-void add(Columns& columns, const char* name, std::int64_t Summary::*value) {
+void add(CsvColumns& columns, const char* name, std::int64_t Summary::*value) {
   columns.push_back(
       {name, [value](const Run& run) { return std::to_string(run.record->summary.*value); }});
 }
-void add(Columns& columns, const char* name, std::string (*text)(const Record&)) {
+void add(CsvColumns& columns, const char* name, std::string (*text)(const Record&)) {
   columns.push_back({name, [text](const Run& run) { return csv_field(text(*run.record)); }});
 }
 
@@ -43,7 +43,7 @@ std::string count_of(const Run& run, std::size_t kind) {
 }
 std::string is_timed_alone(const Run& run) { return run.is_timed_alone ? "true" : "false"; }
 
-void add_figures(Columns& columns, const Yardstick& yardstick) {
+void add_figures(CsvColumns& columns, const Yardstick& yardstick) {
   add(columns, "iterations", &Summary::iterations);
   add(columns, "work", &Summary::work);
   add(columns, "start_loss", &Summary::start_loss);
@@ -63,8 +63,8 @@ void add_figures(Columns& columns, const Yardstick& yardstick) {
   add(columns, "peak_memory_bytes", &Summary::peak_memory_bytes);
 }
 
-Columns columns_of_runs(const Yardstick& yardstick) {
-  Columns columns;
+CsvColumns columns_of_runs(const Yardstick& yardstick) {
+  CsvColumns columns;
   add(columns, "problem", [](const Record& record) { return record.request.problem.spec; });
   add(columns, "optimizer", [](const Record& record) { return record.request.optimizer.spec; });
   add(columns, "seed", [](const Record& record) { return std::to_string(record.request.seed); });
@@ -89,7 +89,7 @@ std::string text_of(const PlannedCell& cell, const std::string& column) {
 }
 
 template <class Text>
-void add_line(std::string& csv, const std::vector<Column>& columns, Text text) {
+void add_line(std::string& csv, const std::vector<CsvColumn>& columns, Text text) {
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (i > 0) csv += ',';
     csv += text(columns[i]);
@@ -101,14 +101,14 @@ void add_line(std::string& csv, const std::vector<Column>& columns, Text text) {
 
 std::string csv_report(const Document& document) {
   const Comparison& c = document.comparison;
-  const std::vector<Column> columns = columns_of_runs(c.yardstick);
+  const std::vector<CsvColumn> columns = columns_of_runs(c.yardstick);
   std::string csv;
-  add_line(csv, columns, [](const Column& column) { return column.name; });
+  add_line(csv, columns, [](const CsvColumn& column) { return column.name; });
   for (const Run& run : c.runs)
     if (!run.is_repeated)
-      add_line(csv, columns, [&](const Column& column) { return column.text(run); });
+      add_line(csv, columns, [&](const CsvColumn& column) { return column.text(run); });
   for (const PlannedCell& cell : c.missing)
-    add_line(csv, columns, [&](const Column& column) { return text_of(cell, column.name); });
+    add_line(csv, columns, [&](const CsvColumn& column) { return text_of(cell, column.name); });
   return csv;
 }
 

@@ -79,8 +79,8 @@ TEST(Pairing, AChangedDefaultIsComparedAndNamed) {
               std::vector<std::string>(
                   {"levenberg-marquardt: default of initial-damping 1e-4 → 1e4 (4 cells)"}));
     EXPECT_TRUE(has(result.verdict, "default of initial-damping 1e-4 → 1e4")) << result.verdict;
-    ASSERT_EQ(result.groups.size(), 1U);
-    EXPECT_EQ(result.groups[0].cells, 4U);
+    ASSERT_EQ(result.causes.size(), 1U);
+    EXPECT_EQ(result.causes[0].cells.size(), 4U);
   }
 }
 
@@ -138,59 +138,6 @@ TEST(Pairing, PartsOfTheBuildThatDifferAreNamedFirst) {
     EXPECT_LT(text.find("Builds that differ"), text.find("Remarks")) << text;
     EXPECT_EQ(result.exit_code, kGood) << text;
   }
-}
-
-TEST(Pairing, DifferencesAreOneLineAnOptimizerAndDirection) {
-  const GateResult result = compared([](Record& record) {
-    if (record.request.optimizer.name == "adam") {
-      record.summary.loss *= 1.05;
-      record.summary.x_error *= 2;
-    }
-    if (record.request.optimizer.name == "gd" && record.request.seed == 1)
-      record.summary.loss *= 0.5;
-  });
-  ASSERT_EQ(result.groups.size(), 2U);
-  EXPECT_EQ(result.groups[0].optimizer, "adam");
-  EXPECT_EQ(result.groups[0].cells, 4U);
-  EXPECT_EQ(result.groups[0].of, 4U);
-  EXPECT_EQ(result.groups[0].what, (std::vector<std::string>{"error in x", "loss"}));
-  EXPECT_EQ(result.groups[1].cells, 2U);
-  EXPECT_TRUE(has(gate_terminal(result), "all 4: adam")) << gate_terminal(result);
-  EXPECT_TRUE(has(gate_markdown(result), "2 of 4: gd")) << gate_markdown(result);
-}
-
-TEST(Pairing, AnOlderBaselineTellsNoMoreThanTitles) {
-  const Results results;
-  fill(results.after, of_optimizer("adam", [](Record& record) {
-         record.request.optimizer.options.set("epsilon", 1e-2);
-         record.summary.loss *= 2;
-       }));
-  fill(results.before, as_it_was);
-  Json cells = Json::array();
-  for (const Record& record : read_study({results.before.path()}).runs)
-    cells.push_back({{"cell", record.cell},
-                     {"title", record.request.problem.spec + " × " + record.request.optimizer.spec +
-                                   ", seed " + std::to_string(record.request.seed)},
-                     {"status", "budget"},
-                     {"build", record.build},
-                     {"trace", "0"},
-                     {"loss", record.summary.loss},
-                     {"best_loss", record.summary.best_loss},
-                     {"start_loss", 1},
-                     {"work", {10, 30, "inf"}}});
-  const Json old = {{"schema", kBaselineSchema},
-                    {"suites", {"quick"}},
-                    {"minima", Json::array()},
-                    {"cells", cells}};
-  results.before.add_file("old.json", old.dump());
-  const GateResult result = compare_results(results.before.path() / "old.json",
-                                            results.after.path(), {.tolerance = kTolerance});
-  EXPECT_EQ(result.joined, 12U);
-  EXPECT_EQ(result.exit_code, kWorse);
-  ASSERT_EQ(result.groups.size(), 1U);
-  EXPECT_EQ(result.groups[0].optimizer, "adam");
-  EXPECT_EQ(result.groups[0].cells, 4U);
-  EXPECT_TRUE(result.settings.empty()) << "titles tell no options";
 }
 
 }  // namespace
