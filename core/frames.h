@@ -1,5 +1,5 @@
-// What x and y of a problem are, where each is a number a cell of one grid, or the first and last
-// of the states of a line: for pictures of them.
+// Pictures of the first sample of a batch, one number a cell of a field, and the frames that a run
+// keeps of them.
 #pragma once
 
 #include <functional>
@@ -9,27 +9,10 @@
 #include <vector>
 
 #include "core/array.h"
-#include "core/real.h"
+#include "core/field.h"
 #include "core/trace.h"
 
 namespace isoline {
-
-struct Quantity {
-  std::string name;       // "temperature before"
-  std::string unit = {};  // empty: a pure number
-};
-
-// x and y (rows · columns, samples), the cells column by column. Where `time` is above 0 a row is a
-// state: x (columns, samples) the first one, at 0, and y the last, with evenly spread ones between.
-struct Field {
-  Index rows = 0, columns = 0;
-  Quantity x, y;
-  Real time = 0;
-
-  bool is_history() const { return time > 0; }
-};
-
-// What is shown of the first sample of a batch, one number a cell of a field.
 
 // The curl of a velocity on a periodic grid, ∂v/∂i − ∂u/∂j by central differences, in units of a
 // cell: u and v are the first and second half of `velocity`, column by column. (rows · columns)

@@ -2,12 +2,33 @@
 // physics and networks stay const; sized at first use, so that hot loops allocate nothing.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "core/array.h"
 
 namespace isoline {
+
+// Of the choices made, in order.
+class PieceDigest {
+ public:
+  void add(std::uint64_t choice) { state_ = (state_ ^ choice) * kPrime; }  // as FNV-1a, by words
+  std::uint64_t value() const { return state_; }
+
+ private:
+  static constexpr std::uint64_t kPrime = 0x100000001b3;
+  std::uint64_t state_ = 0xcbf29ce484222325;
+};
+
+// What a forward pass leaves behind where the map has kinks: a component's Scratch is one, too.
+struct Pieces {
+  virtual ~Pieces() = default;
+  virtual void add_choices(PieceDigest& digest) = 0;  // of the last forward pass
+};
+
+// What a forward pass leaves behind for the products that follow it. Owned by the caller, so that
+// physics and networks stay const; sized at first use, so that hot loops allocate nothing.
 
 // What a component keeps that is no array of double: it derives its own.
 struct Scratch {

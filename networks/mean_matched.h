@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/pieces.h"
+#include "core/workspace.h"
 #include "networks/network.h"
 
 namespace isoline::networks {

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <string_view>
 
-#include "core/pieces.h"
 #include "core/product.h"
+#include "core/workspace.h"
 #include "networks/activation.h"
 #include "networks/network.h"
 

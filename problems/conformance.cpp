@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/pieces.h"
+#include "core/workspace.h"
 
 namespace isoline::problems {
 namespace {

@@ -7,12 +7,12 @@
 #include <memory>
 #include <optional>
 
+#include "core/field.h"
 #include "core/foreign/foreign.h"
 #include "core/frames.h"
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/random.h"
-#include "core/records/panel.h"
 #include "core/registry.h"
 #include "core/status.h"
 #include "networks/network.h"

@@ -9,7 +9,7 @@
 #include "benchmarks/run/sheets.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 

@@ -15,7 +15,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/field_frames.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 #include "core/records/request.h"
 
 namespace isoline::benchmarks {

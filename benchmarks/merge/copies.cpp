@@ -7,8 +7,8 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/file_text.h"
 #include "core/records/json_view.h"
+#include "core/records/plan.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;

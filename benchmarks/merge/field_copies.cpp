@@ -7,7 +7,7 @@
 #include "benchmarks/merge/join.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;

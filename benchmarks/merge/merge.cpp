@@ -21,7 +21,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 #include "core/records/record.h"
 #include "core/threads.h"
 

@@ -8,10 +8,10 @@
 
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/file_text.h"
 #include "core/records/json_view.h"
+#include "core/records/plan.h"
 #include "core/records/record.h"
-#include "core/records/request_fields.h"
+#include "core/records/record_fields.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;

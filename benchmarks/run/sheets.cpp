@@ -15,7 +15,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 
 namespace isoline::benchmarks {
 

@@ -14,7 +14,7 @@
 #include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;

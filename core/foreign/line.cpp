@@ -1,5 +1,4 @@
-// Frames over a socket of the Unix domain: whole in one call where the system lets it, waited for
-// by a short spin and then by poll.
+// Names of what frames ask.
 #include "core/foreign/line.h"
 
 #include <fmt/format.h>
@@ -8,15 +7,51 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/text.h"
 
 namespace isoline {
+namespace {
+
+constexpr std::array<std::pair<Verb, std::string_view>, 18> kNames{{
+    {Verb::hello, "hello"},
+    {Verb::linearize, "linearize"},
+    {Verb::pushforward, "pushforward"},
+    {Verb::pullback, "pullback"},
+    {Verb::jacobian, "jacobian"},
+    {Verb::inverse, "inverse"},
+    {Verb::begin, "begin"},
+    {Verb::value, "value"},
+    {Verb::gradient, "gradient"},
+    {Verb::value_and_gradient, "value_and_gradient"},
+    {Verb::residual, "residual"},
+    {Verb::jacobian_of_r, "jacobian"},
+    {Verb::pushforward_of_r, "pushforward"},
+    {Verb::pullback_of_r, "pullback"},
+    {Verb::hessian_product, "hessian_product"},
+    {Verb::report, "report"},
+    {Verb::finish, "finish"},
+    {Verb::claim, "claim"},
+}};
+
+}  // namespace
+
+std::string_view name_of(Verb verb) {
+  const auto* const found =
+      std::ranges::find(kNames, verb, &std::pair<Verb, std::string_view>::first);
+  return found == kNames.end() ? "an unknown verb" : found->second;
+}
+
+// Frames over a socket of the Unix domain: whole in one call where the system lets it, waited for
+// by a short spin and then by poll.
+
 namespace {
 
 // An answer that comes soon is met awake: to be woken takes as long as it does itself.

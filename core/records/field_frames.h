@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/grid.h"
 #include "core/real.h"
 
 namespace isoline {

@@ -1,11 +1,11 @@
-// JSON to read and be done with: values as they stand in parsed text, some eight times as fast as a
-// tree of them, for records by the hundred thousand. With json_view.cpp the only door to simdjson.
-// What is missing or of another type than asked for is a UsageError.
+// JSON to write and to read: places in a tree, and views of a text. The headers of the libraries,
+// which are large, stay in json_view.cpp.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +14,41 @@
 #include "core/real.h"
 
 namespace isoline {
+
+using Json = nlohmann::json;
+
+// Valid as long as its tree, and until its list grows.
+class JsonPlace {
+ public:
+  explicit JsonPlace(Json& here) : here_(&here) {}
+
+  JsonPlace operator[](std::string_view member) const;  // made where it is missing
+  JsonPlace next() const;                               // a new element at the end of the list
+  void make_object() const;                             // an empty one
+  void make_list() const;                               // an empty one
+  void set_null() const;
+  void set(bool value) const;
+  void set(std::int64_t value) const;
+  void set(std::uint64_t value) const;
+  void set(std::string_view value) const;  // of what is no UTF-8 U+FFFD stays
+  void set(const char* value) const { set(std::string_view(value)); }
+  void set(Real value) const;                    // also infinite, or not a number
+  void set(std::span<const Real> values) const;  // a list of them
+  void set(Json value) const;
+
+  void parse(std::string_view text) const;  // JSON as text
+  void include(
+      std::string_view text) const;  // the members of an object as text, put beside its own
+  // A further law of a schema. One that refers to a definition stands alone, so both are asked for.
+  void restrict(std::string_view law) const;
+
+ private:
+  Json* here_;
+};
+
+// JSON to read and be done with: values as they stand in parsed text, some eight times as fast as a
+// tree of them, for records by the hundred thousand. With json_view.cpp the only door to simdjson.
+// What is missing or of another type than asked for is a UsageError.
 
 // What a view's get_to() reads. A name of its own: within the class its members are not known yet.
 template <class Value, class View>

@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/records/file_text.h"
-#include "core/records/forms.h"
+#include "core/records/fields.h"
 
 namespace isoline {
 

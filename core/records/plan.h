@@ -1,12 +1,26 @@
 // Schema isoline.plan/1: every cell ever planned in a result folder, in order.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 namespace isoline {
+
+struct Plan;
+struct Record;
+struct Sheet;
+
+std::string file_text(const Record& record);
+std::string file_text(const Plan& plan);
+std::string file_text(const Sheet& sheet);
+
+// Most of a record's file, or that of its pictures: ours have some tens of thousands.
+inline constexpr std::size_t kMostRecordBytes = std::size_t{64} << 20;
+
+// Schema isoline.plan/1: every cell ever planned in a result folder, in order.
 
 using Json = nlohmann::json;
 

@@ -12,7 +12,7 @@
 
 #include "core/digest.h"
 #include "core/fourier.h"
-#include "core/records/provenance_fields.h"
+#include "core/records/record_fields.h"
 #include "core/threads.h"
 #include "isoline_build_flags.h"
 #include "isoline_build_info.h"

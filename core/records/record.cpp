@@ -9,7 +9,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/ladder.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 #include "core/records/record_fields.h"
 
 namespace isoline {

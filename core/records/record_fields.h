@@ -2,11 +2,91 @@
 // line here, the place that fills it, and the schema renewed (tests/core/run_schema_test.cpp).
 #pragma once
 
-#include "core/records/provenance_fields.h"
+#include "core/records/fields.h"
+#include "core/records/provenance.h"
 #include "core/records/record.h"
-#include "core/records/request_fields.h"
+#include "core/records/request.h"
 
 namespace isoline {
+
+void fields(Like<Component> auto& component, auto& field) {
+  field("name", component.name);
+  field("options", component.options);
+  field("spec", component.spec);
+  field.optional("asked", component.asked, R"({"description": "The spec as typed"})");
+  field.optional("revision", component.revision, R"({"description": "Of older records"})");
+  if constexpr (std::remove_cvref_t<decltype(field)>::kReads)
+    component.is_learned = asks_to_learn(component.options);
+}
+
+void fields(Like<Budget> auto& budget, auto& field) {
+  field("iterations", budget.iterations);
+  field("work", Unlimited{budget.work});
+  field("seconds", budget.seconds);
+  field("target", budget.target);
+}
+
+void fields(Like<Request> auto& request, auto& field) {
+  field("problem", request.problem);
+  field("optimizer", request.optimizer);
+  field("seed", request.seed);
+  field("budget", request.budget);
+  field("threads", request.threads, R"({"minimum": 1})");
+  field("rates", request.rates);
+}
+
+// The members of a provenance, as they stand in a record.
+
+inline constexpr const char* kRunKey = "run";
+
+void fields(Like<Build> auto& build, auto& field) {
+  field.expected("version", build.version);
+  field.expected("commit", build.commit);
+  field.expected("dirty", build.is_dirty);
+  field.optional("isoline_commit", build.isoline_commit);
+  field.expected("compiler", build.compiler);
+  field.optional("build_type", build.build_type);
+  field.expected("flags", build.flags);
+  field.expected("instruction_set", build.instruction_set);
+  field.expected("processor", build.processor);
+  field.optional("processor_features", build.processor_features);
+  field.optional("kernel", build.kernel);
+  field.optional("kernel_chosen_by", build.kernel_chosen_by);
+  field.optional("cache_bytes", build.cache_bytes);
+  field.optional("cores", build.cores);
+  field.optional("system", build.system);
+  field.expected("libraries", build.libraries);
+  field.other(kRunKey);
+  field.rest(build.other);
+}
+
+void fields(Like<RunProvenance> auto& run, auto& field) {
+  field.expected("started", run.started);
+  field.expected("concurrent_jobs", run.concurrent_jobs, R"({"minimum": 1})");
+  field.expected("exclusive", run.is_exclusive);
+  field.forgiven("command", run.command);
+  field.rest(run.other, false);
+}
+
+// One object of both, the run under a key of its own.
+template <>
+struct Form<Provenance> {
+  static void write(const Provenance& provenance, JsonPlace out) {
+    Form<Build>::write(*provenance.build, out);
+    if (provenance.run != RunProvenance()) Form<RunProvenance>::write(provenance.run, out[kRunKey]);
+  }
+  static void read(const JsonView& json, Provenance& provenance) {
+    provenance = provenance_from(json);
+  }
+  static void law(JsonPlace out) {
+    Form<Build>::law(out);
+    Form<RunProvenance>::law(out["properties"][kRunKey]);
+    out["required"].next().set(kRunKey);
+  }
+};
+
+// The members of a record, as they stand in its file: a new one costs its line in record.h, its
+// line here, the place that fills it, and the schema renewed (tests/core/run_schema_test.cpp).
 
 inline constexpr const char* kDigestLaw = R"({"pattern": "^[0-9a-f]{16}$"})";
 

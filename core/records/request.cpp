@@ -6,7 +6,7 @@
 #include "core/digest.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/request_fields.h"
+#include "core/records/record_fields.h"
 
 namespace isoline {
 

@@ -7,8 +7,8 @@
 
 #include "core/digest.h"
 #include "core/json.h"
-#include "core/records/file_text.h"
-#include "core/records/forms.h"
+#include "core/records/fields.h"
+#include "core/records/plan.h"
 
 namespace isoline {
 

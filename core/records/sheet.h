@@ -12,9 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "core/frames.h"
-#include "core/grid.h"
-#include "core/records/panel.h"
+#include "core/field.h"
+#include "core/real.h"
 #include "core/status.h"
 
 namespace isoline {

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "core/array.h"
-#include "core/pieces.h"
+#include "core/workspace.h"
 #include "problems/physics/lattice.h"
 
 namespace isoline::problems {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 
 namespace isoline::reports {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 #include "reports/read/reached.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 
 namespace isoline::reports {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/digest.h"
-#include "core/random.h"
+#include "core/draws.h"
 #include "reports/statistics/resampling.h"
 
 namespace isoline::reports {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/random.h"
+#include "core/draws.h"
 
 namespace isoline::reports {
 namespace {

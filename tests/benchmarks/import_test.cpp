@@ -9,7 +9,7 @@
 #include "benchmarks/merge/contradictions.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 #include "core/records/schema.h"
 #include "reports/read/comparison.h"
 #include "tests/benchmarks/builtin_schema.h"

@@ -1,7 +1,7 @@
 // Differences across kinks: ways that cross one which its component declares are drawn anew.
 #include <gtest/gtest.h>
 
-#include "core/pieces.h"
+#include "core/workspace.h"
 #include "problems/conformance.h"
 
 namespace isoline::problems {

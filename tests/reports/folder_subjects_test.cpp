@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 
 #include "core/errors.h"
-#include "core/records/file_text.h"
+#include "core/records/plan.h"
 #include "reports/compare/gate.h"
 #include "reports/compare/subject.h"
 #include "tests/reports/fixture.h"

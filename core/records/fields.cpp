@@ -1,5 +1,5 @@
 // Types of members whose form is more than a line.
-#include "core/records/forms.h"
+#include "core/records/fields.h"
 
 #include <charconv>
 #include <nlohmann/json.hpp>

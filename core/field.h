@@ -1,11 +1,29 @@
-// A figure that a problem wants drawn of its runs, as the paper it is from draws it.
+// What x and y of a problem are, and which figures a problem asks for.
 #pragma once
 
 #include <map>
 #include <string>
 
+#include "core/real.h"
+
 namespace isoline {
 
+struct Quantity {
+  std::string name;       // "temperature before"
+  std::string unit = {};  // empty: a pure number
+};
+
+// x and y (rows · columns, samples), the cells column by column. Where `time` is above 0 a row is a
+// state: x (columns, samples) the first one, at 0, and y the last, with evenly spread ones between.
+struct Field {
+  Index rows = 0, columns = 0;
+  Quantity x, y;
+  Real time = 0;
+
+  bool is_history() const { return time > 0; }
+};
+
+// A figure that a problem wants drawn of its runs, as the paper it is from draws it.
 struct Panel {
   std::string title;  // "Fig. 5d: error over ξ"
   // "curve": error in x against iterations. "sweep": the error at the end over the option `over`,
