@@ -30,7 +30,6 @@ isoline_library(Isoline::valijson "" valijson/validator.hpp)
 isoline_library(Isoline::httplib "cpp-httplib" httplib.h)
 target_compile_definitions(Isoline::httplib INTERFACE CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT
                            CPPHTTPLIB_BROTLI_SUPPORT)
-isoline_library(Isoline::nettle "nettle" nettle/sha2.h)
 
 # Ceres' own CMake target is the static library. Built for other vector instructions than ours, its
 # inline Eigen functions would be merged with ours at link time; the shared library keeps its own.

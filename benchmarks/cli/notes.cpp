@@ -141,12 +141,6 @@ constexpr const char* kExportNotes =
     "Numbers read back as the same numbers; inf, -inf and nan are written so. Bencher's format has no\n"
     "infinity: what half of the runs never reach is left out there, and reached-1e-6 tells how many do.";
 
-constexpr const char* kImportNotes =
-    "The description names the problem, the optimizer, the seed, the source, the date, and for each\n"
-    "quantity its column: loss, and work or calls of oracles; iteration, wall_seconds, x_error and others\n"
-    "where they are known. The record stands in every table, marked §: it is judged by its own figures\n"
-    "and never verified.";
-
 const std::map<std::string_view, Notes>& notes() {
   static const std::map<std::string_view, Notes> all = {
       {"run", {kRun, kRunNotes}},
@@ -174,10 +168,6 @@ const std::map<std::string_view, Notes>& notes() {
       {"infer", {"  isoline infer net.json --input observed.csv --output x.csv"}},
       {"serve", {kServe, kServeNotes}},
       {"export", {kExport, kExportNotes}},
-      {"import",
-       {"  isoline import curve.csv --out results/quick\n"
-        "  isoline import curve.csv --description theirs.json --out results/quick",
-        kImportNotes}},
       {"completion", {"  isoline completion bash > ~/.isoline-completion"}},
       {"help", {"  isoline help\n  isoline help run"}},
       {"version", {"  isoline version"}}};

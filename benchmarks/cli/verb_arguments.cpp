@@ -297,13 +297,6 @@ void declare(VerbArguments& verb, ExportArguments& given) {
   verb.text("--out", given.out, "Where to write: a file; of coco a new folder").required();
 }
 
-void declare(VerbArguments& verb, ImportArguments& given) {
-  verb.text("CURVE", given.curve, "The curve: a CSV file, a row a point").required();
-  verb.text("--description", given.description,
-            "What it is, isoline.import/1 (default: CURVE with .json for its ending)");
-  verb.text("--out", given.out, "Result folder that the record joins").required();
-}
-
 void declare(VerbArguments& verb, CompletionArguments& given) {
   verb.text("SHELL", given.shell, "bash").one_of({"bash"}).shown();
 }

@@ -66,7 +66,6 @@ void declare(VerbArguments& verb, NewArguments& given);
 void declare(VerbArguments& verb, InferArguments& given);
 void declare(VerbArguments& verb, ServeArguments& given);
 void declare(VerbArguments& verb, ExportArguments& given);
-void declare(VerbArguments& verb, ImportArguments& given);
 void declare(VerbArguments& verb, CompletionArguments& given);
 
 }  // namespace isoline::benchmarks

@@ -53,7 +53,6 @@ std::shared_ptr<const RunArguments> add_verbs_on_results(VerbList& to) {
   to.add("best", "Keep the best losses of runs, where no least loss is declared", best_verb);
   to.add("claims", "Judge what papers claim by runs; what is missing is run first", claims_verb);
   to.add("export", "Write curves as CSV, as data of COCO, or as metrics of Bencher", export_verb);
-  to.add("import", "Take a curve that others computed as a record, by its own claims", import_verb);
   return run;
 }
 

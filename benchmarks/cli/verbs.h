@@ -188,11 +188,6 @@ struct ExportArguments {
 };
 int export_verb(const ExportArguments& given, Session& session);
 
-struct ImportArguments {
-  std::string curve, description, out;  // the second: beside the first where empty
-};
-int import_verb(const ImportArguments& given, Session& session);
-
 struct CompletionArguments {
   std::string shell = "bash";
   std::vector<std::string> verbs;  // filled in by the command line, which knows them

@@ -17,7 +17,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
        {"run",    "plan",    "report", "compare", "baseline", "merge",      "submit",
         "status", "best",    "claims", "list",    "describe", "check",      "audit",
         "new",    "replay",  "tune",   "train",   "infer",    "completion", "help",
-        "serve",  "version", "export", "import",  "validate"}) {
+        "serve",  "version", "export", "validate"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
@@ -32,7 +32,7 @@ TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   const std::string completion = Shell()("./isoline completion bash").out;
   EXPECT_TRUE(contains(
       completion,
-      "\"run plan report compare baseline replay merge submit status best claims export import list "
+      "\"run plan report compare baseline replay merge submit status best claims export list "
       "describe check audit new "
       "validate tune train infer serve completion help version  --help --version\""))
       << completion;
@@ -176,7 +176,6 @@ const std::vector<Mistake> kMistakes = {
     {"export .", "--out"},
     {"export . --out x.csv", "no records in .: `isoline run"},
     {"export nowhere.tar.gz --out x.csv", "nowhere.tar.gz"},
-    {"import nowhere.csv --out results", "nowhere.csv"},
     {"list problms", "problms"}};
 
 TEST(Usage, MistakesAreOneSentenceWithASuggestionAndExitOne) {

@@ -25,8 +25,7 @@ const std::map<std::string, void (*)(std::string_view)> kTargets = {
     {"network", network},
     {"npy", npy},
     {"wire", wire},
-    {"bridge", bridge},
-    {"foreign_curve", foreign_curve}};
+    {"bridge", bridge}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";
 
