@@ -18,16 +18,19 @@ int merge_verb(const MergeArguments& given, Session&) {
     say(stderr, fmt::format("interrupted; nothing is left of {}\n", given.out));
     return kInterrupted;
   }
-  say(stderr, told(outcome.conflicts));
-  if (!outcome.conflicts.empty())
-    say(stderr, fmt::format("all conflicts: {}/conflicts.json\n", given.out));
   for (const std::string& sentence : outcome.unreadable)
     say(stderr, fmt::format("left out: {}\n", sentence));
-  for (const std::string& sentence : outcome.remarks) say(stdout, sentence + "\n");
+  if (!outcome.conflicts.empty()) {
+    say(stderr, conflicts_text(outcome.conflicts));
+    say(stderr, fmt::format("{} is not written: remove the wrong records, or --force their runs, and "
+                            "merge again\n",
+                            given.out));
+    return kWorse;
+  }
   say(stdout, fmt::format("{} in {}: {} with timings of several folders, {} left out\n",
                           counted(std::size_t(outcome.records), "record"), given.out,
-                          outcome.united, outcome.conflicts.size() + outcome.unreadable.size()));
-  return outcome.conflicts.empty() && outcome.unreadable.empty() ? kGood : kWorse;
+                          outcome.united, outcome.unreadable.size()));
+  return outcome.unreadable.empty() ? kGood : kWorse;
 }
 
 }  // namespace isoline::benchmarks

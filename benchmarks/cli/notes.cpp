@@ -76,9 +76,9 @@ constexpr const char* kReplayNotes =
 
 constexpr const char* kMergeNotes =
     "Records of the same cell and build become one with the timings of all. Where they differ in\n"
-    "anything but timings and provenance the record is left out, the cell is named on standard\n"
-    "error, OUT/conflicts.json lists it, and the exit code is 2; all else is written. To\n"
-    "resolve a conflict remove the wrong record, or --force its run, and merge again.";
+    "anything but timings and provenance nothing is written, the cells are named on standard error,\n"
+    "the optimizer with most of them first, and the exit code is 2. Remove the wrong records, or\n"
+    "--force their runs, and merge again.";
 
 constexpr const char* kSubmit =
     "  isoline submit --slurm --array 16 --time 2h -- quick --seeds 20      prints two jobs\n"

@@ -11,7 +11,7 @@
 
 #include "benchmarks/cli/on_terminal.h"
 #include "benchmarks/cli/verbs.h"
-#include "benchmarks/merge/contradictions.h"
+#include "benchmarks/merge/record_union.h"
 #include "benchmarks/plan/resources.h"
 #include "core/errors.h"
 #include "core/files.h"

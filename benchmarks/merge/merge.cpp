@@ -1,45 +1,97 @@
-// Merges folders file by file: what only one folder has, or all have alike, is copied unread but
-// for its grammar; only what differs is parsed and joined. Threads share the files.
+// Merges folders file by file; only what differs is parsed. Threads share the files.
 #include "benchmarks/merge/merge.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <atomic>
+#include <array>
+#include <csignal>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
-#include "benchmarks/merge/copies.h"
-#include "benchmarks/merge/ending.h"
-#include "benchmarks/merge/field_copies.h"
-#include "benchmarks/merge/join.h"
-#include "benchmarks/merge/merge_audits.h"
-#include "core/digest.h"
+#include "benchmarks/merge/record_union.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/records/audited.h"
+#include "core/records/json_view.h"
 #include "core/records/plan.h"
 #include "core/records/record.h"
-#include "core/threads.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
 
 namespace {
 
-std::string title_of(const Request& request) {
-  return fmt::format("{} × {}, seed {}", request.problem.spec, request.optimizer.spec,
-                     request.seed);
+volatile std::sig_atomic_t is_ending_asked = 0;
+
+// While it lives, Ctrl-C and a polite kill raise a flag and do no more, so that what is half made
+// is removed before the program ends.
+class EndingGuard {
+ public:
+  EndingGuard() {
+    is_ending_asked = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { is_ending_asked = 1; };
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &old_[i]);
+  }
+  ~EndingGuard() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &old_[i], nullptr);
+  }
+  EndingGuard(const EndingGuard&) = delete;
+  EndingGuard& operator=(const EndingGuard&) = delete;
+
+ private:
+  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, kSignals.size()> old_{};
+};
+
+struct EndingAsked {};
+void go_on() {
+  if (is_ending_asked != 0) throw EndingAsked();
 }
 
-Json json_from(const std::string& text, const std::string& origin) {
-  return parse_json(text, origin);
+// By cell; the least where a digest has two.
+Plan plan_union(const std::vector<Plan>& plans) {
+  std::set<std::string> suites;
+  std::map<std::string, PlannedCell> cells;
+  const auto key = [](const PlannedCell& cell) {
+    return std::tie(cell.problem, cell.optimizer, cell.seed, cell.cell);
+  };
+  for (const Plan& plan : plans) {
+    suites.insert(plan.suites.begin(), plan.suites.end());
+    for (const PlannedCell& cell : plan.cells) {
+      const auto [at, is_first] = cells.emplace(cell.cell, cell);
+      if (!is_first && key(cell) < key(at->second)) at->second = cell;
+    }
+  }
+  Plan all{.suites = {suites.begin(), suites.end()}, .cells = {}};
+  for (const auto& [digest, cell] : cells) all.cells.push_back(cell);
+  std::ranges::sort(all.cells, {}, key);
+  return all;
 }
-std::string text_of(const Plan& plan) { return file_text(plan); }
-std::string text_of(const Json& json) { return json_text(json) + "\n"; }
+
+// The rows of the tables of rates that plans used, one a problem and optimizer.
+Json rates_union(const std::vector<Json>& tables) {
+  std::map<std::pair<std::string, std::string>, Json> rows;
+  for (const Json& table : tables)
+    for (const Json& row : table.at("rows")) {
+      const auto [at, is_first] = rows.try_emplace({row.at("problem"), row.at("optimizer")}, row);
+      if (!is_first && json_text(row) < json_text(at->second)) at->second = row;
+    }
+  Json all = Json::array();
+  for (const auto& [pair, row] : rows) all.push_back(row);
+  return {{"schema", "isoline.rates/1"}, {"rows", all}};
+}
+
+struct Copy {
+  std::string text;
+  fs::path folder;
+};
 
 class Merge {
  public:
@@ -47,167 +99,145 @@ class Merge {
       : folders_(folders), out_(out), listener_(listener) {}
 
   MergeOutcome run() {
-    read_old_conflicts();
-    merge_part("runs", [this](const std::string& name, const std::vector<Copy>& copies) {
-      record(name, copies);
+    merge_part("runs");
+    merge_part("components");
+    const auto plans = read_all<Plan>("plan.json", plan_from_text);
+    if (!plans.empty()) write_unflushed(out_ / "plan.json", file_text(plan_union(plans)));
+    const auto rates = read_all<Json>("rates.json", [](const auto& text, const auto& origin) {
+      const Json table = parse_json(text, origin);
+      rates_union({table});  // refuses what is no table
+      return table;
     });
-    merge_part("components", [this](const std::string& name, const std::vector<Copy>& copies) {
-      sheet(name, copies);
-    });
-    merge_list<Plan>("plan.json", plan_from_text, join_plans);
-    merge_list<Json>("rates.json", json_from, join_rates);
+    if (!rates.empty()) write_unflushed(out_ / "rates.json", json_text(rates_union(rates)) + "\n");
     merge_audits();
-    remark(other_provenance_,
-           "records agree but for timings and provenance; the latest run's provenance is kept");
-    remark(other_sheets_, "component sheets differ between the folders; one of each is kept");
-    disputed_.merge(newly_disputed_);
-    write_conflicts();
-    outcome_.united = united_;
     std::ranges::sort(outcome_.conflicts);
     std::ranges::sort(outcome_.unreadable);
     return outcome_;
   }
 
  private:
-  void remark(std::size_t count, const char* what) {
-    if (count > 0) outcome_.remarks.push_back(fmt::format("{} {}", count, what));
-  }
-
-  template <class One>
-  void merge_part(const char* part, const One& one) {
+  void merge_part(const std::string& part) {
     fs::create_directories(out_ / part);
-    const Part files(folders_, part, outcome_.unreadable);
+    std::map<std::string, std::vector<const fs::path*>> owners;  // folders, by the file's name
+    for (const fs::path& folder : folders_) try {
+        std::error_code unknown;
+        require(!fs::is_symlink(folder / part, unknown), [&] {
+          return fmt::format("{} is a symbolic link, which is not followed here",
+                             (folder / part).string());
+        });
+        for (std::string& name : names_in(folder / part))
+          if (!name.ends_with(".tmp")) owners[std::move(name)].push_back(&folder);
+      } catch (const UsageError& error) {
+        outcome_.unreadable.emplace_back(error.what());
+      }
+    std::vector<const decltype(owners)::value_type*> files;
+    for (const auto& file : owners) files.push_back(&file);
     const auto merge_one = [&](std::size_t i) {
       go_on();
-      std::vector<std::string> damaged;
-      one(files.name(i), files.copies(i, damaged));
-      for (const std::string& sentence : damaged) tell(outcome_.unreadable, sentence);
+      merge_file(fs::path(part) / files[i]->first, files[i]->second);
     };
     share(files.size(), merge_one, listener_);
   }
 
-  void record(const std::string& name, const std::vector<Copy>& copies) {
-    if (disputed_.contains(name) || copies.empty()) return;
-    const bool is_record = name.ends_with(".json");
-    if (copies.size() == 1) return keep(name, copies[0].text, is_record);
-    if (is_record) return join(name, copies);
-    const std::string wanted = digest_of_fields(folders_, name);
-    for (const Copy& copy : copies)
-      if (digest(copy.text) == wanted) return keep(name, copy.text, false);
-    dispute(name, {"", fmt::format("{}: its copies differ in {}", name, places(copies))});
+  void merge_file(const fs::path& name, const std::vector<const fs::path*>& owners) {
+    static thread_local JsonReader reader;
+    const bool is_json = name.extension() == ".json";
+    std::vector<Copy> copies;  // of different text
+    for (const fs::path* folder : owners) try {
+        std::string text = read_text(*folder / name, kMostRecordBytes, Links::refused);
+        if (std::ranges::find(copies, text, &Copy::text) != copies.end()) continue;
+        if (is_json) reader.parse(text, (*folder / name).string());
+        copies.push_back({std::move(text), *folder});
+      } catch (const UsageError& error) {
+        const std::lock_guard lock(mutex_);
+        outcome_.unreadable.emplace_back(error.what());
+      }
+    if (copies.empty()) return;
+    const bool is_record = is_json && name.parent_path() == "runs";
+    std::optional<std::string> text = copies[0].text;
+    if (copies.size() > 1 && is_record) {
+      text = united_record(name, copies);
+    } else if (copies.size() > 1 && !is_json) {
+      text.reset();
+      dispute({"", fmt::format("{}: its copies differ in {}", name.filename().string(),
+                               places(copies))});
+    }
+    if (!text) return;
+    write_unflushed(out_ / name, *text);
+    const std::lock_guard lock(mutex_);
+    outcome_.records += is_record;
+    outcome_.united += is_record && copies.size() > 1;
   }
 
-  void join(const std::string& name, const std::vector<Copy>& copies) {
+  std::optional<std::string> united_record(const fs::path& file, const std::vector<Copy>& copies) {
+    const std::string name = file.filename().string();
     try {
-      Json joined = parse_json(copies[0].text, name);
-      const Request request = request_from_json(joined.at("request"));
-      bool is_other = false;
+      Json record = parse_json(copies[0].text, name);
+      const Request request = request_from_json(record.at("request"));
       for (std::size_t i = 1; i < copies.size(); ++i) {
-        const JoinedRecord both = join_records(joined, parse_json(copies[i].text, name));
-        if (!both.difference.empty())
-          return dispute(
-              name, {request.optimizer.name,
-                     fmt::format("{} ({}): the results in {} differ at {}", title_of(request), name,
-                                 places(copies), both.difference)});
-        is_other = is_other || both.is_provenance_other;
-        joined = *both.record;
+        const std::string difference = unite_records(record, parse_json(copies[i].text, name));
+        if (difference.empty()) continue;
+        dispute({request.optimizer.name,
+                 fmt::format("{} × {}, seed {} ({}): the results in {} differ at {}",
+                             request.problem.spec, request.optimizer.spec, request.seed, name,
+                             places(copies), difference)});
+        return std::nullopt;
       }
-      other_provenance_ += is_other;
-      ++united_;
-      keep(name, json_text(joined) + "\n", true);
+      return json_text(record) + "\n";
     } catch (const std::exception& error) {
-      dispute(name, {"", fmt::format("{}: its copies in {} differ and are no records: {}", name,
-                                     places(copies), error.what())});
+      dispute({"", fmt::format("{}: its copies in {} differ and are not records: {}", name,
+                               places(copies), error.what())});
+      return std::nullopt;
     }
   }
 
-  // Sheets describe components and are no results: of two wordings the lesser text stays, and the
-  // outcome says so.
-  void sheet(const std::string& name, const std::vector<Copy>& copies) {
-    if (copies.empty()) return;
-    std::vector<std::string> texts;
-    for (const Copy& copy : copies) texts.push_back(copy.text);
-    other_sheets_ += have_other_wordings(texts);
-    write_unflushed(out_ / "components" / name, texts[0]);
-  }
-
-  // A file that each folder may have, united where several have it; a damaged one is
-  // named.
-  template <class List>
-  void merge_list(const char* name, List (*read)(const std::string&, const std::string&),
-                  List (*united)(const List&, const List&)) {
-    std::set<std::string> texts;
-    std::optional<List> all;
+  // What each folder may have once; a damaged file is named.
+  template <class Value, class Read>
+  std::vector<Value> read_all(const char* name, Read read) {
+    std::vector<Value> all;
     for (const fs::path& folder : folders_) {
       const fs::path file = folder / name;
       if (is_there(file)) try {
-          std::string text = read_text(file, kMostBytes, Links::refused);
-          const List one = read(text, file.string());
-          all = united(all ? *all : one, one);
-          texts.insert(std::move(text));
+          all.push_back(read(read_text(file, kMostBytes, Links::refused), file.string()));
         } catch (const std::exception& error) {
-          tell(outcome_.unreadable, fmt::format("{}: {}", file.string(), error.what()));
+          outcome_.unreadable.push_back(fmt::format("{}: {}", file.string(), error.what()));
         }
     }
-    if (all) write_unflushed(out_ / name, texts.size() == 1 ? *texts.begin() : text_of(*all));
+    return all;
   }
 
   void merge_audits() {
-    AuditUnion audits = unite_audits(folders_);
-    if (audits.json) write_unflushed(out_ / "audit.json", json_text(*audits.json, 1) + "\n");
-    disputed_audits_ = std::move(audits.disputed);
-    std::ranges::move(audits.conflicts, std::back_inserter(outcome_.conflicts));
-    std::ranges::move(audits.unreadable, std::back_inserter(outcome_.unreadable));
+    const auto audits = read_all<Json>("audit.json", [](const auto& text, const auto& origin) {
+      return audit_to_json(audit_from_json(parse_json(text, origin)));
+    });
+    if (audits.empty()) return;
+    std::map<std::string, Json> by_name;
+    for (const Json& audit : audits)
+      for (const Json& audited : audit.at("optimizers")) {
+        const auto [known, is_new] = by_name.try_emplace(audited.at("name"), audited);
+        if (!is_new && known->second != audited)
+          dispute({known->first, "its audit: the folders measured different things"});
+      }
+    Json all = audit_to_json({});
+    for (const auto& [name, audited] : by_name) all["optimizers"].push_back(audited);
+    write_unflushed(out_ / "audit.json", json_text(all, 1) + "\n");
   }
 
-  void read_old_conflicts() {
-    for (const fs::path& folder : folders_)
-      for (const std::string& name : disputed_in(folder).records)
-        if (disputed_.insert(name).second)
-          outcome_.conflicts.push_back(
-              {"", fmt::format("{}: in conflict since an earlier merge ({})", name,
-                               (folder / "conflicts.json").string())});
-  }
-
-  void write_conflicts() {
-    if (disputed_.empty() && disputed_audits_.empty()) return;
-    Json json{{"schema", kConflictsSchema}, {"records", disputed_}};
-    if (!disputed_audits_.empty()) json["audits"] = disputed_audits_;
-    write_unflushed(out_ / "conflicts.json", json_text(json, 1) + "\n");
-  }
-
-  void keep(const std::string& name, const std::string& text, bool is_record) {
-    write_unflushed(out_ / "runs" / name, text);
-    const std::lock_guard lock(mutex_);
-    outcome_.records += is_record;
-  }
-
-  void dispute(const std::string& name, Conflict conflict) {
+  void dispute(Conflict conflict) {
     const std::lock_guard lock(mutex_);
     outcome_.conflicts.push_back(std::move(conflict));
-    newly_disputed_.insert(name);
   }
 
-  void tell(std::vector<std::string>& sentences, const std::string& sentence) {
-    const std::lock_guard lock(mutex_);
-    sentences.push_back(sentence);
-  }
-
-  std::string places(const std::vector<Copy>& copies) const {
+  static std::string places(const std::vector<Copy>& copies) {
     std::vector<std::string> names;
-    for (const Copy& copy : copies) names.push_back(folders_[copy.folder].string());
-    std::ranges::sort(names);
+    for (const Copy& copy : copies) names.push_back(copy.folder.string());
     return fmt::format("{}", fmt::join(names, ", "));
   }
 
   const std::vector<fs::path>& folders_;
-  fs::path out_;
+  const fs::path& out_;
   const Listener& listener_;
   std::mutex mutex_;
-  std::set<std::string> disputed_;         // by the folders; threads only read it
-  std::set<std::string> newly_disputed_;   // by this merge
-  std::set<std::string> disputed_audits_;  // optimizers
-  std::atomic<std::size_t> united_{0}, other_provenance_{0}, other_sheets_{0};
   MergeOutcome outcome_;
 };
 
@@ -229,6 +259,10 @@ MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& o
     fs::remove_all(unfinished);
     fs::create_directories(unfinished);
     MergeOutcome outcome = Merge(folders, unfinished, listener).run();
+    if (!outcome.conflicts.empty()) {
+      fs::remove_all(unfinished);
+      return outcome;
+    }
     flush_all(unfinished);
     go_on();
     fs::rename(unfinished, place);
@@ -240,6 +274,28 @@ MergeOutcome merge_folders(const std::vector<fs::path>& given, const fs::path& o
     fs::remove_all(unfinished, unknown);
     throw;
   }
+}
+
+std::string conflicts_text(const std::vector<Conflict>& conflicts) {
+  constexpr std::size_t kExamples = 3;
+  std::map<std::string, std::vector<std::string>> groups;
+  for (const Conflict& conflict : conflicts)
+    groups[conflict.optimizer].push_back(conflict.sentence);
+  std::vector<std::pair<std::string, std::vector<std::string>>> sorted(groups.begin(),
+                                                                       groups.end());
+  std::ranges::stable_sort(sorted, std::less(), [](const auto& group) {
+    return std::pair(group.first.empty(), -static_cast<std::ptrdiff_t>(group.second.size()));
+  });
+  std::string text;
+  for (const auto& [optimizer, sentences] : sorted) {
+    text += fmt::format("{}: {} conflict{}\n", optimizer.empty() ? "other files" : optimizer,
+                        sentences.size(), sentences.size() == 1 ? "" : "s");
+    for (std::size_t i = 0; i < std::min(kExamples, sentences.size()); ++i)
+      text += "  " + sentences[i] + "\n";
+    if (sentences.size() > kExamples)
+      text += fmt::format("  … and {} more\n", sentences.size() - kExamples);
+  }
+  return text;
 }
 
 }  // namespace isoline::benchmarks

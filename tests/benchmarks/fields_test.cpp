@@ -2,8 +2,8 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/merge/contradictions.h"
 #include "benchmarks/merge/merge.h"
+#include "benchmarks/merge/record_union.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/same_result.h"
 #include "core/errors.h"
@@ -229,19 +229,6 @@ TEST(Fields, AreMergedWithTheRecordThatHasThem) {
       EXPECT_EQ(fields_violation(read_json(path), path), "");
     }
   }
-}
-
-TEST(Fields, OfTwoCopiesThatDifferTheOneThatTheRecordNamesIsMerged) {
-  const std::vector<Request> requests = requests_of("heat[N=8]", "gd");
-  const Folder good(requests), bad(requests);
-  std::string bytes = read_text(bad.file());
-  bytes[bytes.size() - 2] ^= 1;
-  write_text(bad.file(), bytes);
-  const TemporaryFolder place;
-  const MergeOutcome outcome = merge_folders({bad.path(), good.path()}, place.path() / "a");
-  EXPECT_TRUE(outcome.conflicts.empty());
-  EXPECT_EQ(read_text(field_path(path_in(place.path() / "a", good.records[0]))),
-            read_text(good.file()));
 }
 
 TEST(Fields, ThatAreMissingOrDamagedAreNamedByTheirRecord) {

@@ -35,25 +35,6 @@ std::optional<std::size_t> end_of_noncode(const std::string& text, std::size_t a
   return std::nullopt;
 }
 
-// After a closing brace: whether the statement goes on, as after an initializer.
-bool goes_on(const std::string& code, std::size_t after) {
-  const std::size_t next = code.find_first_not_of(" \n", after);
-  return next != std::string::npos &&
-         std::string_view(",;).(-+*/<>=?:[&|").find(code[next]) != std::string_view::npos;
-}
-
-std::string with_single_blanks(const std::string& text) {
-  std::string made;
-  for (const char c : text) {
-    const bool is_blank = c == ' ' || c == '\n';
-    if (!is_blank)
-      made += c;
-    else if (!made.empty() && made.back() != ' ')
-      made += ' ';
-  }
-  return made;
-}
-
 }  // namespace
 
 std::string code_of(const std::string& text) {
@@ -73,40 +54,6 @@ std::string code_of(const std::string& text) {
     at = stop;
   }
   return code;
-}
-
-std::vector<Statement> statements_of(const std::string& code) {
-  struct Open {
-    std::string text;
-    int depth = 0;  // of parentheses and brackets
-  };
-  std::vector<Statement> statements;
-  std::vector<Open> outer;
-  Open now;
-  std::size_t line = 1;
-  for (std::size_t at = 0; at < code.size(); ++at) {
-    const char c = code[at];
-    line += c == '\n';
-    now.depth += c == '(' || c == '[';
-    now.depth -= c == ')' || c == ']';
-    if (c == '{') {
-      outer.push_back(now);
-      now = {};
-    } else if (c == '}' && !outer.empty()) {
-      now = outer.back();
-      outer.pop_back();
-      if (now.depth == 0 && !goes_on(code, at + 1))
-        now = {};
-      else
-        now.text += "{}";
-    } else if (c == ';' && now.depth == 0) {
-      statements.push_back({line, with_single_blanks(now.text)});
-      now = {};
-    } else {
-      now.text += c;
-    }
-  }
-  return statements;
 }
 
 std::vector<Type> types_of(const Source& source) {

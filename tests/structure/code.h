@@ -11,14 +11,6 @@ namespace isoline {
 // Comments, directives and what stands between quotes are left out; every line stays where it was.
 std::string code_of(const std::string& text);
 
-struct Statement {
-  std::size_t line;  // of its end
-  std::string text;  // what braces enclose is left out, white space is one blank
-};
-
-// What ends with a semicolon outside of parentheses, wherever it is nested.
-std::vector<Statement> statements_of(const std::string& code);
-
 struct Type {
   std::string name;  // isoline::reports::Point; of a nested one the outer alone is listed
   std::size_t line;

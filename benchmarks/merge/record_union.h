@@ -1,4 +1,4 @@
-// Is a record the one that its cell and build name, and the only one in its folder?
+// The union of two records of one cell and build, and whether a record is what its names say.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,14 @@ namespace isoline::benchmarks {
 
 using Json = nlohmann::json;
 
-// What is wrong where its cell is not the digest of its request; else empty.
+// Makes `record` the union with another record of its cell and build: the timings of both, each
+// value as often as the record that has it most often, and the fields and spectrum that either
+// keeps. Of the rest the later run's stays; a run that a clock or a kill ended gives way to one
+// that ended by itself. Where two results differ it returns the first places, "/summary/loss (1,
+// 2)", and changes nothing.
+std::string unite_records(Json& record, const Json& other);
+
+// What is wrong where the cell of a record is not the digest of its request; else empty.
 std::string cell_violation(const Json& record);
 
 // What is wrong with the file of fields beside a record that names one; else empty.
