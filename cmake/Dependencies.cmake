@@ -26,10 +26,6 @@ isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package 
 isoline_library(Isoline::random123 "" Random123/philox.h)
 isoline_library(Isoline::simdjson "simdjson" simdjson.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
-# Its classes are laid out by what the library was compiled with, which the headers do not say.
-isoline_library(Isoline::httplib "cpp-httplib" httplib.h)
-target_compile_definitions(Isoline::httplib INTERFACE CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT
-                           CPPHTTPLIB_BROTLI_SUPPORT)
 
 # Ceres' own CMake target is the static library. Built for other vector instructions than ours, its
 # inline Eigen functions would be merged with ours at link time; the shared library keeps its own.

@@ -37,7 +37,7 @@ _isoline() {
     *) case $verb in
          run|plan|submit) list=$("$program" list suites --names 2>/dev/null) ;;
          describe) list=$("$program" list all --names 2>/dev/null) ;;
-         check|serve) list=$("$program" list problems --names 2>/dev/null) ;;
+         check) list=$("$program" list problems --names 2>/dev/null) ;;
          claims) list=$("$program" claims --list --all 2>/dev/null | grep -oE '^  [a-z0-9-]+') ;;
          help) list="@VERBS@" ;;
          new) list="problem optimizer" ;;

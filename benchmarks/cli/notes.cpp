@@ -125,14 +125,6 @@ constexpr const char* kTuneNotes =
     "then\nthe one nearest to the default. Values that tie with the best and a best value at the edge of "
     "its\ngrid are named.";
 
-constexpr const char* kServe =
-    "  isoline serve rosenbrock 'sine[xi=32]'       prints where, and serves until it is stopped\n"
-    "  isoline serve heat --port 4242 --record results/mine --client my-method";
-constexpr const char* kServeNotes =
-    "A problem P is four models: P maps x to y, P.loss to the loss; P.inverse maps (y, x₀) to an x;\n"
-    "P.data, of no input, gives y* and the start. With --record what was asked of each is a record:\n"
-    "a new best evaluation is an iteration. Exit code: 0 once it is stopped by Ctrl-C or a kill.";
-
 constexpr const char* kExport =
     "  isoline export results/quick --out curves.csv             a row a kept point of each run\n"
     "  isoline export results/quick --format coco --out exdata   for COCO's post-processing\n"
@@ -166,7 +158,6 @@ const std::map<std::string_view, Notes>& notes() {
       {"tune", {kTune, kTuneNotes}},
       {"train", {"  isoline train 'sine[xi=32]' --optimizer sip --iterations 1000 --out net.json"}},
       {"infer", {"  isoline infer net.json --input observed.csv --output x.csv"}},
-      {"serve", {kServe, kServeNotes}},
       {"export", {kExport, kExportNotes}},
       {"completion", {"  isoline completion bash > ~/.isoline-completion"}},
       {"help", {"  isoline help\n  isoline help run"}},

@@ -274,19 +274,6 @@ void declare(VerbArguments& verb, InferArguments& given) {
   verb.memory("--memory", given.memory_bytes, "Most memory (default: 4GB)");
 }
 
-void declare(VerbArguments& verb, ServeArguments& given) {
-  verb.texts("PROBLEM", given.problems, "Problems: rosenbrock 'sine[xi=32]'").required();
-  verb.whole("--port", given.port,
-             "Port to listen at; 0: any that is free (default: the environment's PORT, else 0)",
-             {0, 65535});
-  verb.text("--host", given.host, "Address to listen at; no other machine reaches the default")
-      .shown();
-  verb.seed("--seed", given.seed, "Seed of the problems");
-  verb.text("--record", given.folder,
-            "Result folder that keeps what was asked, as a run's records");
-  verb.text("--client", given.client, "What tables call whoever asks");
-}
-
 void declare(VerbArguments& verb, ExportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--format", given.format,

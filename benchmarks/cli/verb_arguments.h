@@ -64,7 +64,6 @@ void declare(VerbArguments& verb, TuneArguments& given);
 void declare(VerbArguments& verb, TrainArguments& given);
 void declare(VerbArguments& verb, NewArguments& given);
 void declare(VerbArguments& verb, InferArguments& given);
-void declare(VerbArguments& verb, ServeArguments& given);
 void declare(VerbArguments& verb, ExportArguments& given);
 void declare(VerbArguments& verb, CompletionArguments& given);
 

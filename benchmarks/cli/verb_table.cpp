@@ -71,8 +71,6 @@ void add_verbs_on_components(VerbList& to) {
          tune_verb);
   to.add("train", "Train a network on a learning problem and write it to a file", train_verb);
   to.add("infer", "Apply a network that `isoline train` wrote to observations", infer_verb);
-  to.add("serve", "Offer problems as models of UM-Bridge, to optimizers of any language",
-         serve_verb);
 }
 
 }  // namespace

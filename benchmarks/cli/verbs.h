@@ -174,14 +174,6 @@ struct InferArguments {
 };
 int infer_verb(const InferArguments& given, Session& session);
 
-struct ServeArguments {
-  std::vector<std::string> problems;
-  std::string host = "127.0.0.1", folder, client;
-  int port = -1;  // −1: what PORT of the environment says, or any
-  std::uint64_t seed = 0;
-};
-int serve_verb(const ServeArguments& given, Session& session);
-
 struct ExportArguments {
   std::vector<std::string> folders;
   std::string format = "csv", out;

@@ -10,7 +10,7 @@
 namespace isoline {
 
 struct Foreign {
-  std::string door;         // "process", "umbridge" or "plugin"
+  std::string door;         // "process" or "plugin"; of older records "umbridge"
   std::string command;      // as it was given: a command, an address, a library's path
   std::string digest;       // of the files that are known to compute it
   std::string label;        // what tables call it, in the place of its spec; empty: the spec

@@ -11,11 +11,12 @@ import tempfile
 import unittest
 
 SERVER = pathlib.Path(__file__).parent / "model_server.py"
-GIVEN = 'start="[-1.2, 1]",target="[0, 0]",truth="[1, 1]",minimum=0'
+GIVEN = "--start [-1.2,1] --target [0,0] --truth [1,1] --minimum 0"
 
 
-def spec(kind, more=""):
-    return f'umbridge[command="{sys.executable} {SERVER} {kind}",{GIVEN}{more}]'
+def spec(kind, given=GIVEN, server=SERVER):
+    command = f"{sys.executable} -m umbridge model {given} -- {sys.executable} {server} {kind}"
+    return f'process[command="{command}"]'
 
 
 def processes_with(word):
@@ -36,7 +37,7 @@ class Client(unittest.TestCase):
 
     def isoline(self, *arguments, code=0):
         run = subprocess.run([sys.argv[1], *arguments], cwd=self.folder, capture_output=True,
-                             text=True, check=False)
+                             text=True, check=False, timeout=300)
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run.stdout + run.stderr
 
@@ -62,11 +63,6 @@ class Client(unittest.TestCase):
             there = [self.traced(self.record(spec(kind), optimizer)) for kind in ["plain", "fused"]]
             self.assertIn(own, there, optimizer)
 
-    def test_a_problem_served_and_bridged_again_is_the_same_bit_for_bit(self):
-        own = self.traced(self.record("rosenbrock", "levenberg-marquardt"))
-        served = f'umbridge[command="{sys.argv[1]} serve rosenbrock",model=rosenbrock,{GIVEN}]'
-        self.assertEqual(self.traced(self.record(served, "levenberg-marquardt")), own)
-
     def test_how_a_server_behaves_changes_nothing(self):
         plain = self.traced(self.record(spec("plain"), "levenberg-marquardt"))
         for kind in ["parts", "late", "chatty"]:
@@ -76,10 +72,10 @@ class Client(unittest.TestCase):
     def test_a_record_names_the_server_and_a_changed_one_is_another_build(self):
         own = pathlib.Path(self.folder) / "server.py"
         own.write_text(SERVER.read_text(encoding="utf-8"), encoding="utf-8")
-        problem = f'umbridge[command="{sys.executable} {own} plain",{GIVEN},label=valley]'
+        problem = spec("plain", GIVEN + " --label valley", own)
         first = self.record(problem, "ceres-lm")
         foreign = first["foreign"]["problem"]
-        self.assertEqual(foreign["door"], "umbridge")
+        self.assertEqual(foreign["door"], "process")
         self.assertEqual(foreign["label"], "valley")
         self.assertIn("server.py plain", foreign["command"])
         own.write_text(own.read_text(encoding="utf-8") + "# a remark\n", encoding="utf-8")
@@ -99,8 +95,7 @@ class Client(unittest.TestCase):
 
     def test_what_is_not_finite_is_data(self):
         start = GIVEN.replace("-1.2", "-1.1")
-        problem = f'umbridge[command="{sys.executable} {SERVER} holes",{start}]'
-        found = self.record(problem, "nlopt-neldermead")
+        found = self.record(spec("holes", start), "nlopt-neldermead")
         self.assertIn(found["status"], ("target", "converged", "budget", "stalled"),
                       found["message"])
 
@@ -113,6 +108,13 @@ class Client(unittest.TestCase):
                 texts = [pathlib.Path(path).read_text(encoding="utf-8")
                          for path in glob.glob(f"{self.folder}/{kind}/runs/*.json")]
                 self.assertIn(words, said + "".join(texts))
+
+    def test_what_is_given_wrong_is_refused_in_one_sentence(self):
+        for given, words in [("--start [1] --target [0,0]", "--start must have 2 numbers, got 1"),
+                             (GIVEN + " --model other", "which are valley; got 'other'"),
+                             (GIVEN + " --config 5", "--config must be a JSON object")]:
+            with self.subTest(given=given):
+                self.assertIn(words, self.isoline("check", spec("plain", given), code=1))
 
     def test_no_server_outlives_its_cell(self):
         self.record(spec("plain"), "levenberg-marquardt")

@@ -34,7 +34,7 @@ class Page(unittest.TestCase):
         with socket.create_server(("127.0.0.1", 0)) as probe:
             port = str(probe.getsockname()[1])
         run = subprocess.run(["bash", "-m", "-c", "set -e\n" + block(fence).replace(SHOWN_PORT, port)],
-                             cwd=self.folder, capture_output=True, text=True, check=False,
+                             cwd=self.folder, capture_output=True, text=True, check=False, timeout=120,
                              env=dict(os.environ, PATH=f"{self.folder}/bin:{os.environ['PATH']}"))
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return run.stdout
@@ -47,7 +47,7 @@ class Page(unittest.TestCase):
         said = self.run_block("shell serve")
         self.assertIn("my-descent", said)
         (record,) = self.records("results/mine")
-        self.assertEqual(record["summary"]["iterations"], 500)
+        self.assertEqual(record["counts"]["pullback"], 500)
         self.assertLess(record["summary"]["loss"], 2)
 
     def test_bridging(self):
@@ -55,15 +55,6 @@ class Page(unittest.TestCase):
         self.assertIn("0 failed", said)
         for record in self.records("results/model"):
             self.assertLess(record["summary"]["loss"], 1e-10, record["message"])
-
-    def test_the_options_are_those_that_there_are(self):
-        spec = re.search(r"check '(.*)'", block("shell model")).group(1)
-        run = subprocess.run([sys.argv[1], "describe", spec, "--json"], cwd=self.folder,
-                             capture_output=True, text=True, check=True)
-        options = {option["name"] for option in json.loads(run.stdout)["options"]}
-        text = PAGE.read_text(encoding="utf-8")
-        for option in options:
-            self.assertIn(f"`{option}`", text)
 
 
 if __name__ == "__main__":

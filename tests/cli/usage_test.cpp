@@ -17,7 +17,7 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
        {"run",    "plan",    "report", "compare", "baseline", "merge",      "submit",
         "status", "best",    "claims", "list",    "describe", "check",      "audit",
         "new",    "replay",  "tune",   "train",   "infer",    "completion", "help",
-        "serve",  "version", "export", "validate"}) {
+        "version", "export", "validate"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
@@ -34,7 +34,7 @@ TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
       completion,
       "\"run plan report compare baseline replay merge submit status best claims export list "
       "describe check audit new "
-      "validate tune train infer serve completion help version  --help --version\""))
+      "validate tune train infer completion help version  --help --version\""))
       << completion;
 }
 
@@ -79,12 +79,6 @@ const std::vector<Mistake> kMistakes = {
     {"audit zzzz", "unknown optimizer 'zzzz', which is like none of the "},
     {"report . --by tim", "did you mean 'time'"},
     {"infer absent.json --input x.csv --output y.csv", "isoline: absent.json: no such file"},
-    {"serve", "PROBLEM is required"},
-    {"serve square --port 99999", "--port must be a whole number from 0 to 65,535, got '99999'"},
-    {"serve square --client me", "--client names whoever asks in a record, and needs --record DIR"},
-    {"serve 'sine[mode=learn]'", "sine[mode=learn] learns a network"},
-    {"serve square --host 999.1.1.1", "nothing can listen at 999.1.1.1"},
-    {"check umbridge", "umbridge needs either url=http://… of a server, or command="},
     {"train rosenbrock --out net.json",
      "rosenbrock cannot be learned; these can: burgers, coupled-oscillators, exponential, "
      "heat, hig-toy, linear-chain, navier-stokes, poisson, poisson-hig, quantum-dipole, sine, "

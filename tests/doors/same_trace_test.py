@@ -27,15 +27,6 @@ class Doors(unittest.TestCase):
         (path,) = glob.glob(f"{self.folder}/{name}/runs/*.json")
         return json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
 
-    def serve(self):
-        server = subprocess.Popen([PROGRAM, "serve", "rosenbrock", "--port", "0"],
-                                  cwd=self.folder, stdout=subprocess.PIPE, text=True)
-        self.addCleanup(server.wait)
-        self.addCleanup(server.terminate)
-        self.addCleanup(server.stdout.close)
-        words = server.stdout.readline().split()
-        return next(word for word in words if word.startswith("http://"))
-
     def in_python(self, optimizer, tree):
         """By the arithmetic of this build: its compiler rounds x2 - x1^2 once, or twice."""
         records = [self.record(f"{kind}-{optimizer[:2]}",
@@ -45,15 +36,12 @@ class Doors(unittest.TestCase):
                      if record["curve"]["loss"] == tree["curve"]["loss"]), records[0])
 
     def test_descents_take_the_same_steps_through_all_of_them(self):
-        served = (f'umbridge[url="{self.serve()}",model="rosenbrock",start="[-1.2, 1]",'
-                  'target="[0, 0]",truth="[1, 1]",minimum=0]')
         for optimizer in ["levenberg-marquardt", "gd[rate=1e-3]"]:
             tree = self.record(f"tree-{optimizer[:2]}", "rosenbrock", optimizer)
             self.assertGreater(len(tree["curve"]["loss"]), 5)
             self.assertNotIn("foreign", tree)
             doors = {
                 "process": self.in_python(optimizer, tree),
-                "umbridge": self.record(f"umbridge-{optimizer[:2]}", served, optimizer),
                 "plugin": self.record(f"plugin-{optimizer[:2]}", "rosenbrock-c", optimizer,
                                       "--plugin", LIBRARY)}
             for door, record in doors.items():

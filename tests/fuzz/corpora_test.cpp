@@ -24,8 +24,7 @@ const std::map<std::string, void (*)(std::string_view)> kTargets = {
     {"checkpoint", checkpoint},
     {"network", network},
     {"npy", npy},
-    {"wire", wire},
-    {"bridge", bridge}};
+    {"wire", wire}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";
 

@@ -22,7 +22,6 @@ void checkpoint(std::string_view bytes);
 void network(std::string_view bytes);
 void npy(std::string_view bytes);
 void wire(std::string_view bytes);
-void bridge(std::string_view bytes);
 
 // Calls `read`. A refusal must be a sentence, not what a library says to itself.
 void expect_read_or_refused(const std::function<void()>& read);

@@ -98,14 +98,14 @@ TEST(Components, ThatNeedAnArgumentSayHowAndAreNotMeantByAll) {
 
 // A component that vanishes is missed here.
 const std::string kProblems =
-    "umbridge scaling square exponential sine poisson heat rosenbrock powell-singular beale "
+    "scaling square exponential sine poisson heat rosenbrock powell-singular beale "
     "helical-valley brown-badly-scaled box3d wood brown-dennis broyden-tridiagonal "
     "variably-dimensioned hig-toy linear-chain coupled-oscillators quantum-dipole poisson-hig "
     "burgers wave-packet navier-stokes process";
 const std::string kOptimizers =
     "gd momentum nesterov adagrad adadelta rmsprop adam adamw newton saddle-free-newton "
     "gauss-newton levenberg-marquardt inverse-gradient sip sip-theorem-3 sip-newton hig supervised "
-    "two-stage rescaled served "
+    "two-stage rescaled "
     "adahessian hessian-free kfac ceres-gauss-newton ceres-lm ceres-dogleg "
     "ceres-subspace-dogleg ceres-bfgs ceres-lbfgs ceres-ncg ceres-steepest-descent "
     "nlopt-lbfgs nlopt-var2 nlopt-tnewton nlopt-slsqp nlopt-mma nlopt-ccsaq nlopt-bobyqa "

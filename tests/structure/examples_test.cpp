@@ -54,7 +54,7 @@ TEST(Examples, InTheHelpOfEveryVerbAreRead) {
   for (const char* verb :
        {"run",   "report",   "compare",    "baseline", "replay",  "merge",    "best",  "claims",
         "list",  "describe", "check",      "audit",    "new",     "validate", "tune",  "train",
-        "infer", "serve",    "completion", "help",     "version", "export"}) {
+        "infer", "completion", "help",     "version", "export"}) {
     const std::vector<std::string> examples = examples_in(notes_of(verb));
     EXPECT_FALSE(examples.empty()) << verb;
     for (const std::string& example : examples) expect_read(example);

@@ -1,0 +1,398 @@
+"""UM-Bridge, the protocol for models over HTTP (Seelinger et al. 2023, version 1.0), both ways.
+
+A model that a server offers is a problem of Isoline; the server is started for it, or runs already:
+
+    process[command="python3 -m umbridge model --start [1,1] --target [2,3] -- python3 model.py"]
+    process[command="python3 -m umbridge model --start [1,1] --target [2,3] --url http://host:4242"]
+
+A problem of Isoline is served to a method that lives elsewhere, which becomes an optimizer:
+
+    process[command="python3 -m umbridge serve --port 4242 --client my-descent"]
+
+docs/serving-problems.md has the rest.
+"""
+
+import argparse
+import array
+import ast
+import atexit
+import http.client
+import http.server
+import json
+import math
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import urllib.parse
+
+import isoline
+
+PATIENCE = 86_400  # seconds: how long a call may take is the affair of the cell
+
+
+def vector(text):
+    """"[1, 2]", or a file of .npy that holds doubles."""
+    if not text.endswith(".npy"):
+        values = json.loads(text)
+        return [float(value) for value in (values if isinstance(values, list) else [values])]
+    with open(text, "rb") as file:
+        magic = file.read(8)
+        if magic[:6] != b"\x93NUMPY":
+            raise ValueError(f"{text} is not a file of .npy")
+        length = int.from_bytes(file.read(2 if magic[6] == 1 else 4), "little")
+        head = ast.literal_eval(file.read(length).decode("latin-1"))
+        if head["descr"] != "<f8":
+            raise ValueError(f"{text} holds {head['descr']}, and <f8 is read")
+        return array.array("d", file.read()).tolist()
+
+
+def parts_of(values, sizes):
+    parts, begin = [], 0
+    for size in sizes:
+        parts.append([float(value) for value in values[begin : begin + size]])
+        begin += size
+    return parts
+
+
+def number(value):
+    """NaN, Infinity, null and "inf" are data."""
+    return math.nan if value is None else float(value)
+
+
+# --- a model of another server as a problem
+
+
+class Model:
+    def __init__(self, given):
+        self.name, self.config, self.process = given.model, json.loads(given.config), None
+        if not isinstance(self.config, dict):
+            raise ValueError("--config must be a JSON object")
+        self.url, self.connection = given.url, None
+        if given.command:
+            self.start(given.command, given.startup)
+        models = self.ask("/Info")["models"]
+        self.name = self.name or (models[0] if len(models) == 1 else "")
+        if self.name not in models:
+            raise ValueError(f"--model must be one that the server has, which are {', '.join(models)}; "
+                             f"got '{self.name}'")
+        self.inputs = self.ask("/InputSizes", name=self.name)["inputSizes"]
+        self.outputs = self.ask("/OutputSizes", name=self.name)["outputSizes"]
+        self.support = self.ask("/ModelInfo", name=self.name)["support"]
+        if not self.support.get("Evaluate"):
+            raise ValueError(f"the model '{self.name}' does not support Evaluate")
+
+    def start(self, command, startup):
+        """With a free port in PORT; waits until it answers."""
+        with socket.create_server(("127.0.0.1", 0)) as probe:
+            port = probe.getsockname()[1]
+        self.url = f"http://127.0.0.1:{port}"
+        self.process = subprocess.Popen(command, stdout=sys.stderr, start_new_session=True,
+                                        env=dict(os.environ, PORT=str(port)))
+        atexit.register(self.end)
+        deadline = time.monotonic() + startup
+        while True:
+            if self.process.poll() is not None:
+                raise RuntimeError(f"'{' '.join(command)}' {self.ending()} before it listened")
+            try:
+                with socket.create_connection(("127.0.0.1", port), timeout=1):
+                    return
+            except OSError:
+                if time.monotonic() > deadline:
+                    raise RuntimeError(f"'{' '.join(command)}' did not listen at the port in PORT "
+                                       f"within {startup:g} s") from None
+                time.sleep(0.02)
+
+    def end(self):
+        try:
+            os.killpg(self.process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        self.process.wait()
+
+    def ending(self):
+        time.sleep(0.1)
+        code = self.process.poll() if self.process else None
+        return "still runs" if code is None else f"ended with code {code}"
+
+    def ask(self, path, **members):
+        """The answer's object; everything else that comes of it is an error that names the server."""
+        try:
+            status, text = self.exchange(path, members)
+        except (OSError, http.client.HTTPException) as error:
+            end = f"; the server {self.ending()}" if self.process else ""
+            raise RuntimeError(f"{self.url}{path}: {error or type(error).__name__}{end}") from None
+        try:
+            answer = json.loads(text)
+        except ValueError:
+            answer = None
+        if status != 200 or not isinstance(answer, dict) or "error" in answer:
+            error = answer.get("error") if isinstance(answer, dict) else None
+            said = error.get("message") if isinstance(error, dict) else f"status {status}: {text[:200]}"
+            raise RuntimeError(f"{self.url}{path} was refused by the model '{self.name}': {said}")
+        return answer
+
+    def exchange(self, path, members):
+        """Over one connection, which is made again where the server has closed it."""
+        place = urllib.parse.urlsplit(self.url)
+        body = json.dumps({**members, "config": self.config}) if members else None
+        for is_last in (False, True):
+            try:
+                if self.connection is None:
+                    self.connection = http.client.HTTPConnection(place.netloc, timeout=PATIENCE)
+                self.connection.request("POST" if body else "GET", place.path.rstrip("/") + path, body,
+                                        {"Content-Type": "application/json"})
+                reply = self.connection.getresponse()
+                return reply.status, reply.read().decode(errors="replace")
+            except (ConnectionError, http.client.BadStatusLine):
+                self.connection = None
+                if is_last:
+                    raise
+        raise AssertionError
+
+    def numbers(self, verb, size, **members):
+        output = self.ask(f"/{verb}", name=self.name, **members)["output"]
+        if not isinstance(output, list) or len(output) != size:
+            raise RuntimeError(f"/{verb} of the model '{self.name}' must give {size} numbers, and gave "
+                               f"{len(output) if isinstance(output, list) else output}")
+        return [number(value) for value in output]
+
+    def forward(self, x):
+        x = [float(value) for value in x]
+        if not all(map(math.isfinite, x)):  # many servers cannot read them: there is no value there
+            return [math.nan] * sum(self.outputs)
+        output = self.ask("/Evaluate", name=self.name, input=parts_of(x, self.inputs))["output"]
+        if [len(part) for part in output] != self.outputs:
+            raise RuntimeError(f"/Evaluate of the model '{self.name}' must give {sum(self.outputs)} "
+                               f"numbers in {len(self.outputs)} lists")
+        return [number(value) for part in output for value in part]
+
+    def product(self, verb, name, x, along, to_sizes, from_sizes):
+        """Each part of the result is the sum of what comes from every part of `along`."""
+        result, begin = [0.0] * sum(to_sizes), 0
+        given = parts_of(along, from_sizes)
+        is_pullback = verb == "Gradient"
+        for to, size in enumerate(to_sizes):
+            for source, part in enumerate(given):
+                which = {"inWrt": to, "outWrt": source} if is_pullback else {"inWrt": source, "outWrt": to}
+                for i, value in enumerate(self.numbers(verb, size, **which, **{name: part},
+                                                       input=parts_of(x, self.inputs))):
+                    result[begin + i] += value
+            begin += size
+        return result
+
+    def vjp(self, x, u):
+        return self.product("Gradient", "sens", x, u, self.inputs, self.outputs)
+
+    def jvp(self, x, v):
+        return self.product("ApplyJacobian", "vec", x, v, self.outputs, self.inputs)
+
+
+def model(given):
+    server = Model(given)
+    for name, size in (("start", sum(server.inputs)), ("target", sum(server.outputs)),
+                       ("truth", sum(server.inputs))):
+        values = getattr(given, name)
+        if values is not None and len(values) != size:
+            raise ValueError(f"--{name} must have {size} numbers, got {len(values)}")
+    isoline.problem(
+        server.forward, given.start, target=given.target, truth=given.truth, minimum=given.minimum,
+        vjp=server.vjp if server.support.get("Gradient") else None,
+        jvp=server.jvp if server.support.get("ApplyJacobian") else None,
+        name=given.label or server.name, note=f"model {server.name} over UM-Bridge",
+        source="Seelinger et al. (2023), protocol 1.0; the model's own")
+
+
+# --- a problem of Isoline for a method elsewhere
+
+
+class Refusal(Exception):
+    def __init__(self, kind, message, status=400):
+        super().__init__(message)
+        self.kind, self.status = kind, status
+
+
+class Served:
+    """The models loss (x ↦ L), residual (x ↦ r = y − y*) and start (nothing ↦ x0) of one run."""
+
+    VERBS = {"Evaluate": None, "Gradient": "pullback", "ApplyJacobian": "pushforward",
+             "ApplyHessian": "hessian_product"}
+
+    def __init__(self, run, offers):
+        self.run, self.offers = run, offers
+        self.sizes = {"loss": ([run.n], [1]), "residual": ([run.n], [run.residuals]), "start": ([], [run.n])}
+        self.best, self.best_loss = run.x0, math.inf
+        self.lock, self.called = threading.Lock(), time.monotonic()
+        self.is_over = threading.Event()
+
+    def support(self, name):
+        return {verb: need is None or name != "start" and need in self.offers
+                and not (verb == "ApplyHessian" and name == "residual")
+                for verb, need in self.VERBS.items()}
+
+    def answer(self, path, text):
+        if path == "Info":
+            return {"protocolVersion": 1.0, "models": list(self.sizes)}
+        try:
+            asked = json.loads(text)
+        except (ValueError, RecursionError):
+            raise Refusal("InvalidInput", "the body is not JSON") from None
+        name = asked.get("name") if isinstance(asked, dict) else None
+        if not isinstance(name, str) or name not in self.sizes:
+            raise Refusal("ModelNotFound", f"the models are {', '.join(self.sizes)}")
+        if path in ("InputSizes", "OutputSizes", "ModelInfo"):
+            return {"InputSizes": {"inputSizes": self.sizes[name][0]},
+                    "OutputSizes": {"outputSizes": self.sizes[name][1]},
+                    "ModelInfo": {"support": self.support(name)}}[path]
+        if not self.support(name)[path]:
+            raise Refusal("UnsupportedFeature", f"{name} does not offer {path}")
+        if not isinstance(asked.get("config", {}), dict):
+            raise Refusal("InvalidInput", "config must be an object")
+        x = self.vectors(asked.get("input"), self.sizes[name][0], "input")
+        with self.lock:
+            self.called = time.monotonic()
+            return {"output": self.computed(path, name, asked, x[0] if x else None)}
+
+    @staticmethod
+    def vectors(values, sizes, what):
+        is_good = isinstance(values, list) and len(values) == len(sizes) and all(
+            isinstance(part, list) and len(part) == size and
+            all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in part)
+            for part, size in zip(values, sizes))
+        if not is_good:
+            raise Refusal("InvalidInput", f"{what} must be vectors of {sizes} numbers")
+        return [[float(value) for value in part] for part in values]
+
+    def computed(self, path, name, asked, x):
+        if name == "start":
+            return [list(map(float, self.run.x0))]
+        for key in ("outWrt", "inWrt", "inWrt1", "inWrt2"):
+            if asked.get(key, 0) != 0 or isinstance(asked.get(key, 0), bool):
+                raise Refusal("InvalidInput", f"{key} must be 0: there is one input and one output")
+        sens = vec = None
+        if path in ("Gradient", "ApplyHessian"):
+            (sens,) = self.vectors([asked.get("sens")], self.sizes[name][1], "sens")
+        if path in ("ApplyJacobian", "ApplyHessian"):
+            (vec,) = self.vectors([asked.get("vec")], self.sizes[name][0], "vec")
+        run, is_loss = self.run, name == "loss"
+        if path == "Evaluate":
+            loss = run.value(x)
+            if loss < self.best_loss:
+                self.best, self.best_loss = x, loss
+            return [[loss]] if is_loss else [list(map(float, run.residual(x)))]
+        if path == "ApplyHessian":
+            return [sens[0] * float(value) for value in run.hvp(x, vec)]
+        if path == "Gradient":
+            back = run.gradient(x) if is_loss else run.vjp(x, sens)
+            return [(sens[0] if is_loss else 1.0) * float(value) for value in back]
+        if is_loss:
+            return [sum(float(a) * b for a, b in zip(run.gradient(x), vec))]
+        return list(map(float, run.jvp(x, vec)))
+
+
+class Handler(http.server.BaseHTTPRequestHandler):
+    timeout = 60  # seconds for a request to arrive
+    served = None
+    most_bytes = 1 << 20
+
+    def do_GET(self):
+        self.handle_call("Info" if self.path == "/Info" else None)
+
+    def do_POST(self):
+        verbs = ("InputSizes", "OutputSizes", "ModelInfo", *Served.VERBS)
+        self.handle_call(self.path[1:] if self.path[:1] == "/" and self.path[1:] in verbs else None)
+
+    do_PUT = do_DELETE = do_PATCH = do_OPTIONS = do_TRACE = lambda self: self.handle_call(None)
+
+    def handle_call(self, path):
+        status = 200
+        try:
+            if path is None:
+                raise Refusal("InvalidInput", "UM-Bridge has no such path, or not by this method", 404)
+            length = self.headers.get("Content-Length", "0")
+            if not length.isdigit() or int(length) > self.most_bytes or "chunked" in str(
+                    self.headers.get("Transfer-Encoding")):
+                raise Refusal("InvalidInput", "the body is longer than any call of these models", 413)
+            answer = self.served.answer(path, self.rfile.read(int(length)))
+        except Refusal as refusal:
+            status, answer = refusal.status, {"error": {"type": refusal.kind, "message": str(refusal)}}
+        except isoline.Stop:
+            status, answer = 400, {"error": {"type": "InvalidInput", "message": "the run is over: its "
+                                             "target is met or its budget is spent"}}
+            self.served.is_over.set()
+        except (isoline.Refused, OverflowError) as error:
+            status, answer = 400, {"error": {"type": "InvalidInput", "message": str(error)[:500]}}
+        text = json.dumps(answer).encode()
+        self.send_response(status)
+        self.send_header("Content-Type", "application/json")
+        self.send_header("Content-Length", str(len(text)))
+        self.end_headers()
+        self.wfile.write(text)
+
+    def log_message(self, *_):
+        pass
+
+
+def serve(given):
+    offers = [] if given.offers == "none" else given.offers.split(",")
+    run = isoline.optimizer(needs=offers, name=given.client,
+                            note="A method elsewhere, which asks over UM-Bridge.",
+                            source="Seelinger et al. (2023), protocol 1.0")
+    served = Served(run, offers)
+    Handler.served = served
+    Handler.most_bytes = (1 << 20) + 64 * (2 * run.n + run.residuals)
+    server = http.server.ThreadingHTTPServer((given.host, given.port), Handler)
+    server.daemon_threads = True
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    has_begun = False
+    while not served.is_over.wait(0.05):
+        with served.lock:
+            silent = time.monotonic() - served.called
+            has_begun = has_begun or served.best_loss < math.inf
+        if silent > (given.idle if has_begun else given.startup):
+            break
+    server.shutdown()
+    if served.is_over.is_set():
+        raise isoline.Stop
+    run.finish(served.best, f"nothing was asked for {given.idle:g} s")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="umbridge", description=__doc__.split("\n", 1)[0])
+    roles = parser.add_subparsers(dest="role", required=True)
+    one = roles.add_parser("model", help="a model of a server is a problem")
+    one.add_argument("--url", default="", help="of a server that runs already")
+    one.add_argument("--model", default="", help="its name; not needed where the server has one")
+    one.add_argument("--config", default="{}", help="a JSON object that goes with every call")
+    one.add_argument("--start", type=vector, required=True, help="x0: \"[1,2]\" or a file of .npy")
+    one.add_argument("--target", type=vector, required=True, help="y*")
+    one.add_argument("--truth", type=vector, help="x*, where it is known")
+    one.add_argument("--minimum", type=float, help="the least loss, where it is known")
+    one.add_argument("--label", default="", help="what tables call it")
+    one.add_argument("--startup", type=float, default=30, help="seconds for a command to listen")
+    one.add_argument("command", nargs="*", help="starts a server, with its port in PORT")
+    two = roles.add_parser("serve", help="a method elsewhere is an optimizer")
+    two.add_argument("--port", type=int, required=True)
+    two.add_argument("--host", default="127.0.0.1")
+    two.add_argument("--client", default="client", help="what tables call the method")
+    two.add_argument("--offers", default="pullback",
+                     help="of pullback, pushforward, hessian_product, with commas; or none")
+    two.add_argument("--idle", type=float, default=10, help="seconds without a call that end the run")
+    two.add_argument("--startup", type=float, default=50, help="seconds to wait for the first call")
+    given = parser.parse_args()
+    if given.role == "serve":
+        serve(given)
+    elif bool(given.url) == bool(given.command):
+        parser.error("model needs either --url of a server, or -- and a command that starts one")
+    else:
+        try:
+            model(given)
+        except (RuntimeError, ValueError, KeyError, TypeError, OSError) as error:
+            sys.exit(f"umbridge: {error}")
+
+
+if __name__ == "__main__":
+    main()
