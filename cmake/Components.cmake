@@ -1,15 +1,22 @@
-# isoline_components(folder ENTRY Entry HEADER header CORE files...)
+# isoline_registry(folder ENTRY Entry HEADER header [NAMESPACE namespace] CORE files...)
 #
-# Builds library isoline_<folder> from every <folder>/**.cpp and writes the registry that names them:
-# <folder>/heat.cpp must define register_heat(Registry<Entry>&). Files after CORE are compiled only;
-# so are those of folders below, unless they define their function too.
-function(isoline_components folder)
-  cmake_parse_arguments(PARSE_ARGV 1 "" "" "ENTRY;HEADER" "CORE")
-  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+# Writes the registry that names every component of <folder>: <folder>/heat.cpp must define
+# register_heat(Registry<Entry>&). Files after CORE are compiled only; so are those of folders below,
+# unless they define their function too. With NAMESPACE <folder> lies below the calling folder. Sets
+# <folder>_sources.
+function(isoline_registry folder)
+  cmake_parse_arguments(PARSE_ARGV 1 "" "" "ENTRY;HEADER;NAMESPACE" "CORE")
+  set(path ${CMAKE_CURRENT_SOURCE_DIR})
+  set(namespace ${folder})
+  if(_NAMESPACE)
+    set(path ${path}/${folder})
+    set(namespace ${_NAMESPACE})
+  endif()
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${path} ${path}/*.cpp)
   list(SORT files)
   foreach(file IN LISTS files)
     cmake_path(GET file STEM name)
-    file(STRINGS ${file} definition REGEX "void register_${name}\\(" LIMIT_COUNT 1)
+    file(STRINGS ${path}/${file} definition REGEX "void register_${name}\\(" LIMIT_COUNT 1)
     if(definition AND NOT file IN_LIST _CORE)
       string(APPEND declarations "void register_${name}(Registry<${_ENTRY}>&);\n")
       string(APPEND calls "  register_${name}(registry);\n")
@@ -20,6 +27,13 @@ function(isoline_components folder)
     endif()
   endforeach()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/registry.cpp.in registry.cpp @ONLY)
-  add_library(isoline_${folder} STATIC ${files} ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp)
+  list(TRANSFORM files PREPEND ${path}/)
+  set(${folder}_sources ${files} ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp PARENT_SCOPE)
+endfunction()
+
+# isoline_components(folder …): the library isoline_<folder> of these sources.
+function(isoline_components folder)
+  isoline_registry(${folder} ${ARGN})
+  add_library(isoline_${folder} STATIC ${${folder}_sources})
   add_library(Isoline::${folder} ALIAS isoline_${folder})
 endfunction()

@@ -3,16 +3,14 @@
 // taken at the (θ, input) of the last forward.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/array.h"
-#include "core/options.h"
 #include "core/random.h"
-#include "core/registry.h"
 #include "core/workspace.h"
+#include "networks/network_entry.h"
 
 namespace isoline::networks {
 
@@ -86,32 +84,8 @@ class Network {
                      Workspace& w) const;  // forward by default
 };
 
-// What a network is asked to map. Grids are columns of channels·N² numbers, channel by channel,
-// each N×N column major.
-struct NetworkShape {
-  Index inputs, outputs;                          // i, k
-  Index grid = 0;                                 // N where samples are grids, else 0
-  Index input_channels = 1, output_channels = 1;  // of grids
-};
-
-struct NetworkEntry {
-  std::string name, title;
-  std::string source;  // author, year, equation
-  std::string note = {};
-  OptionTable options = {};
-  std::string file = {};  // that registers it, as the registry saw it
-  std::function<std::unique_ptr<Network>(const OptionValues& complete_options, const NetworkShape&)>
-      make = {};
-};
-using NetworkRegistry = Registry<NetworkEntry>;
-
-// Every network, registered once.
-const NetworkRegistry& network_registry();
-
 // A network from "mlp[layers=32-64-32]"; UsageError where it does not fit the shape.
 std::unique_ptr<Network> make_network(const std::string& spec, const NetworkShape& shape);
-
-void register_networks(NetworkRegistry& registry);  // generated: one call a file
 
 // The identity network x = θ: with it a learning problem is the direct optimization of one x.
 

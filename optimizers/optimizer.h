@@ -6,10 +6,9 @@
 #include <functional>
 #include <memory>
 
-#include "core/foreign/foreign.h"
 #include "core/options.h"
-#include "core/registry.h"
 #include "optimizers/meter.h"
+#include "optimizers/optimizer_entry.h"
 
 namespace isoline::optimizers {
 
@@ -58,92 +57,6 @@ bool persist_state(typename M::State& state, Archive& archive) {
   }
   return std::is_empty_v<typename M::State>;
 }
-
-enum class Family {
-  first_order,
-  curvature,
-  inversion,
-  ceres,
-  nlopt,
-  nlopt_derivative_free,
-  foreign
-};
-inline constexpr std::array<std::string_view, 7> kFamilyNames = {
-    "first-order", "curvature", "inversion", "ceres", "nlopt", "nlopt-derivative-free", "foreign"};
-inline std::string_view name_of(Family family) {
-  return kFamilyNames[static_cast<std::size_t>(family)];
-}
-
-// What a step is by its mathematics, whoever wrote it: charts colour by it.
-enum class Kind {
-  other,
-  gradient,         // along ∇L, with momentum, a line search or a separable model
-  adaptive,         // ∇L over its own history, component by component
-  quasi_newton,     // curvature from differences of ∇L
-  second_order,     // curvature from H, or products with it, or factors of it
-  least_squares,    // Jᵀ J instead of H: Gauss-Newton and Levenberg-Marquardt
-  half_inverse,     // a root of J's singular values
-  inversion,        // the physics inverted, exactly or step by step
-  derivative_free,  // losses alone
-};
-inline constexpr std::array<std::string_view, 9> kKindNames = {
-    "other",         "gradient",     "adaptive",  "quasi-newton",   "second-order",
-    "least-squares", "half-inverse", "inversion", "derivative-free"};
-inline std::string_view name_of(Kind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
-
-// The one option of a method that tuning chooses. A grid has the default, so many values below it
-// and the rest above, each `factor` times the one before.
-struct Tunable {
-  enum class Unit {
-    option,  // the default itself
-    cauchy,  // ‖∇L‖²/‖J∇L‖² at a problem's start: of a step along ∇L, whose size has no other
-  };
-  std::string option = {};  // empty: there is nothing to tune
-  int below = 3;
-  Real factor = 3.1622776601683795;  // half a decade
-  Unit unit = Unit::option;
-};
-
-struct OptimizerEntry;
-using OptimizerRegistry = Registry<OptimizerEntry>;
-
-struct OptimizerEntry {
-  std::string name, title;
-  Family family = Family::first_order;
-  Kind kind = Kind::other;
-  std::string formula;    // of the update, plain text with the mathematical letters of Unicode
-  std::string source;     // author, year, equation
-  std::string note = {};  // deviations and what a reader should know
-  OracleSet needs = {};
-  // The path in y does not change when x is rescaled, componentwise and linearly.
-  bool is_input_scale_invariant = false;
-  // Compares losses from step to step, so that fresh samples at each step would mislead it.
-  bool needs_same_samples = false;
-  // Above these the cell is inapplicable: n, and min(n, m·B) where J is factorized whole.
-  Index most_unknowns = std::numeric_limits<Index>::max();
-  Index most_rank = std::numeric_limits<Index>::max();
-  OptionTable options = {};
-  Tunable tunable = {};
-  // Whether `*` of a suite means it: not where an argument is required, nor what is a variant of
-  // another for one experiment.
-  bool in_all = true;
-  // As a problem's: how to name one where the name alone means nothing, and who computes it where
-  // that is another program.
-  std::string needs_argument = {};
-  std::function<Foreign(const OptionValues& complete_options)> introduce = {};
-  std::string file = {};  // that registers it, as the registry saw it
-  // All it needs, where that depends on the options or the problem; `needs` is then the least.
-  std::function<OracleSet(const OptionValues& options, const Problem&)> needs_for = {};
-  // Specs of the optimizers that step inside it, on a direct problem or where it learns.
-  std::function<std::vector<std::string>(const OptionValues& options, bool is_learning)> inside =
-      {};
-  // Any further reason why this pair makes no sense; empty if it does.
-  std::function<std::string(const OptionValues& options, const Problem&)> objection = {};
-  std::function<std::unique_ptr<Optimizer>(const OptionValues& options, const OptimizerRegistry&)>
-      make = {};
-  std::function<std::unique_ptr<Descent>(const OptionValues& options)> make_descent =
-      {};  // gradient rules
-};
 
 // What this optimizer asks of this problem: what the meter is to grant.
 OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options,
@@ -232,7 +145,5 @@ OptimizerEntry rule_entry(OptimizerEntry entry) {
   };
   return entry;
 }
-
-void register_optimizers(OptimizerRegistry& registry);  // generated: one call a file
 
 }  // namespace isoline::optimizers

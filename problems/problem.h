@@ -8,15 +8,14 @@
 #include <optional>
 
 #include "core/field.h"
-#include "core/foreign/foreign.h"
 #include "core/frames.h"
 #include "core/options.h"
 #include "core/oracle.h"
 #include "core/random.h"
-#include "core/registry.h"
 #include "core/status.h"
 #include "networks/network.h"
 #include "problems/physics.h"
+#include "problems/problem_entry.h"
 
 namespace isoline::problems {
 
@@ -39,8 +38,6 @@ struct Point {
 
   const Matrix& x() const { return physics.x; }  // (k, B)
 };
-
-class Problem;
 
 // Named quantities of a problem at θ and the forward pass there over the samples that judge, traced
 // at kept iterations.
@@ -196,37 +193,6 @@ class Draw {
   std::string problem_;  // without options: sweeps see the same draws
 };
 
-// Where a problem comes from: columns of tables stand together by it.
-enum class Group { other, toy, physics, classical };
-inline constexpr std::array<std::string_view, 4> kGroupNames = {"other", "toy", "physics",
-                                                                "classical"};
-inline std::string_view name_of(Group group) {
-  return kGroupNames[static_cast<std::size_t>(group)];
-}
-
-struct ProblemEntry {
-  std::string name, title;
-  Group group = Group::other;
-  std::string formula;    // plain text with the mathematical letters of Unicode
-  std::string source;     // author, year, equation
-  std::string note = {};  // deviations and what a reader should know
-  Aim aim = Aim::loss;    // what its user wants: a small loss, or the x that was sought
-  OptionTable options = {};
-  // Whether `*` of a suite means it: not where a forward solve takes over a millisecond or an
-  // argument is required.
-  bool in_all = true;
-  // Where its name alone means nothing, how to name one: "process[command=…]". Then in_all is
-  // false.
-  std::string needs_argument = {};
-  std::string file = {};           // that registers it, as the registry saw it
-  std::vector<Panel> panels = {};  // figures to draw of its runs
-  // Who computes it, where that is another program: asked of every component that is named, so it
-  // should remember. UsageError where an argument is missing or the other does not answer.
-  std::function<Foreign(const OptionValues& complete_options)> introduce = {};
-  std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};
-};
-using ProblemRegistry = Registry<ProblemEntry>;
-
 // An entry whose `make` is given as a function of the options struct and the draw.
 template <class Options>
 ProblemEntry problem_entry(ProblemEntry entry, ProblemParts (*make)(const Options&, const Draw&)) {
@@ -238,7 +204,5 @@ ProblemEntry problem_entry(ProblemEntry entry, ProblemParts (*make)(const Option
   };
   return entry;
 }
-
-void register_problems(ProblemRegistry& registry);  // generated: one call a file
 
 }  // namespace isoline::problems

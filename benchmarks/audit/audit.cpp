@@ -8,11 +8,16 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
+#include <optional>
+#include <vector>
 
 #include "benchmarks/audit/audit_problems.h"
-#include "benchmarks/audit/audit_subject.h"
+#include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolated_text.h"
 #include "core/json.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -21,6 +26,98 @@ constexpr double kAuditSeconds = 60;        // an optimizer; nearly all take a h
 constexpr std::int64_t kStepsOfPath = 5;    // of invariance: few, so that rounding stays small
 constexpr std::int64_t kStepsOfCount = 10;  // of the oracles
 constexpr std::int64_t kStepsOfApproach = 1000;
+
+// --- one optimizer under audit: runs of it on any problem, every oracle granted, and counted
+
+struct Path {
+  std::vector<Vector> x;  // (n) each, the start first
+  OracleCounts counts{};
+  std::int64_t iterations = 0;
+};
+
+class Subject {
+ public:
+  Subject(const Catalog& catalog, const OptimizerEntry& entry, OptionValues options)
+      : catalog_(catalog), entry_(entry), options_(std::move(options)) {}
+
+  std::string why_inapplicable(const Problem& problem) const;
+  OracleSet needs(const Problem& problem) const;
+
+  // As far as it comes: a method that throws has gone as far as its trace.
+  Path run(const Problem& problem, std::int64_t iterations) const;
+
+  // The first step that is one; nothing where there is none.
+  std::optional<Vector> first_step(const Problem& problem) const;
+
+ private:
+  const Catalog& catalog_;
+  const OptimizerEntry& entry_;
+  const OptionValues options_;
+};
+
+constexpr std::int64_t kStepsToMove = 8;  // in which a first step may be rejected
+
+OracleSet every_oracle() {
+  OracleSet all;
+  for (std::size_t kind = 0; kind < kOracles; ++kind) all.add(static_cast<Oracle>(kind));
+  return all;
+}
+
+// Keeps θ after every step; of a library's solver the trace keeps as many as there is room for.
+class Recorded final : public Optimizer {
+ public:
+  Recorded(Optimizer& method, std::vector<Vector>& path) : method_(method), path_(path) {}
+  void start(Meter& f, const Vector& theta) override {
+    if (!reports_iterations()) path_.push_back(theta);
+    method_.start(f, theta);
+  }
+  Status step(Meter& f, Vector& theta) override {
+    const Status status = method_.step(f, theta);
+    if (!reports_iterations()) path_.push_back(theta);
+    return status;
+  }
+  bool reports_iterations() const override { return method_.reports_iterations(); }
+
+ private:
+  Optimizer& method_;
+  std::vector<Vector>& path_;
+};
+
+std::string Subject::why_inapplicable(const Problem& problem) const {
+  return optimizers::why_inapplicable(entry_, options_, problem);
+}
+
+OracleSet Subject::needs(const Problem& problem) const {
+  return needs_of(entry_, options_, problem);
+}
+
+Path Subject::run(const Problem& problem, std::int64_t iterations) const {
+  const auto trace = std::make_unique<Trace>();  // large
+  Path path;
+  try {
+    const auto method = entry_.make(options_, catalog_.optimizers);
+    Recorded recorded(*method, path.x);
+    Meter meter(problem, {.iterations = iterations, .target = 0}, every_oracle(), *trace);
+    Checkpoint checkpoint;
+    drive(recorded, meter, problem.start(), checkpoint);
+  } catch (const std::exception&) {  // what it did until then is judged
+  }
+  path.counts = trace->last.counts;
+  path.iterations = trace->last.iteration;
+  if (path.x.empty())
+    for (int i = 0; i < trace->points; ++i)
+      path.x.emplace_back(Eigen::Map<const Vector>(trace->path_x[i], trace->path_inputs));
+  return path;
+}
+
+std::optional<Vector> Subject::first_step(const Problem& problem) const {
+  if (!why_inapplicable(problem).empty()) return std::nullopt;
+  for (const Vector& x : run(problem, kStepsToMove).x)
+    if (x != problem.start()) return x - problem.start();
+  return std::nullopt;
+}
+
+// --- measurements
 
 Vector gradient_at_start(const Problem& problem) {
   Point at;
@@ -162,6 +259,37 @@ void audit_teacher(const Subject& subject, AuditedOptimizer& audited) {
   count_oracles(subject, taught_problem(), audited);
 }
 
+// --- fits
+
+struct Line {
+  Real slope = kUnknown, residual = kUnknown;
+};
+
+// Least squares, summed one by one: vectorized sums would depend on where the points lie in memory.
+Line line_through(const std::vector<Real>& x, const std::vector<Real>& y) {
+  const auto count = static_cast<Real>(x.size());
+  const Real x_mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
+  const Real y_mean = std::accumulate(y.begin(), y.end(), 0.0) / count;
+  Real spread = 0, shared = 0, squares = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    spread += (x[i] - x_mean) * (x[i] - x_mean);
+    shared += (x[i] - x_mean) * (y[i] - y_mean);
+  }
+  if (spread == 0) return {};
+  const Real slope = shared / spread;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    squares += std::pow(y[i] - y_mean - slope * (x[i] - x_mean), 2);
+  return {slope, std::sqrt(squares / count)};
+}
+
+std::vector<Real> decades(const std::vector<Real>& values) {
+  std::vector<Real> logarithms;
+  for (const Real value : values) logarithms.push_back(std::log10(value));
+  return logarithms;
+}
+
+bool is_positive(Real value) { return std::isfinite(value) && value > 0; }
+
 }  // namespace
 
 AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name) {
@@ -204,6 +332,38 @@ std::string audit_text(const std::vector<AuditedOptimizer>& all) {
 
 void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem::path& path) {
   write_json(path, audit_to_json(all));
+}
+
+PowerLaw power_law(const std::vector<Real>& scales, std::vector<Real> values) {
+  PowerLaw law{.values = std::move(values)};
+  if (!std::ranges::all_of(law.values, is_positive)) return law;
+  const Line line = line_through(decades(scales), decades(law.values));
+  law.exponent = line.slope;
+  law.residual = line.residual;
+  return law;
+}
+
+Approach approach_of(const std::vector<Real>& errors, Real floor) {
+  constexpr Real kNear = 0.1;  // what has not come ten times nearer shows no order
+  Approach approach;
+  if (errors.size() < 2 || !is_positive(errors.front())) return approach;
+  std::vector<Real> before, after;
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    approach.steps = static_cast<std::int64_t>(i);
+    approach.is_exact = errors[i] <= floor;
+    if (approach.is_exact) break;
+    if (!(errors[i] < errors[i - 1])) continue;  // a rejected step, or the wrong way
+    before.push_back(errors[i - 1]);
+    after.push_back(errors[i]);
+  }
+  const Real last =
+      approach.is_exact ? errors[static_cast<std::size_t>(approach.steps)] : errors.back();
+  approach.remaining = std::isfinite(last) ? last / errors.front() : kUnknown;
+  if (before.size() < 2 || !(approach.remaining <= kNear)) return approach;
+  const Line line = line_through(decades(before), decades(after));
+  approach.order = line.slope;
+  approach.residual = line.residual;
+  return approach;
 }
 
 }  // namespace isoline::benchmarks

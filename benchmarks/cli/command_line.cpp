@@ -5,30 +5,49 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <deque>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
 
-#include "benchmarks/cli/notes.h"
-#include "benchmarks/cli/session.h"
-#include "benchmarks/cli/verb_arguments.h"
-#include "benchmarks/cli/verb_table.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
+#include "core/spec.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {
 namespace {
 
+constexpr const char* kAbout =
+    "Isoline compares optimizers on physical inverse problems: every problem of a registry "
+    "against\n"
+    "every optimizer of a registry, one JSON record a run, and a report.";
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  isoline run                            the default suite, then its report\n"
+    "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
+    "  isoline run quick --optimizer adam     the cells of a suite that have this optimizer\n"
+    "  isoline describe sip                   formula, options, needs and source\n"
+    "  isoline check rosenbrock               are its derivatives right?\n"
+    "  isoline audit gd adam sip              scaling, invariance, order: measured\n"
+    "  isoline compare results/old results/new    what is worse than before?\n"
+    "  isoline claims notebook                is what the notebook prints reproduced?\n"
+    "  isoline help run                       the options of a verb, with examples\n\n"
+    "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable,\n"
+    "130 interrupted.";
+
 std::string refuse_empty(std::string& text) { return text.empty() ? "it must not be empty" : ""; }
 
-// A function a type keeps CLI11's templates out of the verbs, where they would be laid out anew at
-// each call.
+// One function per type keeps CLI11's templates out of the verbs, where they would be laid out anew
+// at each call.
 template <class Value>
 [[gnu::noinline]] CLI::Option* option(CLI::App& verb, const char* name, Value& value,
                                       const char* about) {
   return verb.add_option(name, value, about)->check(CLI::Validator(refuse_empty, ""));
 }
 
-// A number that `read` reads by its law, of the option's name and the text.
+// A number that `read` reads, given the option's name and the text.
 template <class Value, class Read>
 CLI::Option* number(CLI::App& verb, const char* name, const char* type, Value& value,
                     const char* about, const Read& read) {
@@ -39,126 +58,66 @@ CLI::Option* number(CLI::App& verb, const char* name, const char* type, Value& v
 }
 
 template <class Value>
-void whole_number(CLI::App& verb, const char* name, Value& value, const char* about, WholeLaw law) {
+void whole_number(CLI::App& verb, const char* name, Value& value, const char* about,
+                  WholeRange range) {
   CLI::Option* made = number(verb, name, "INT", value, about,
-                             [law](auto& of, auto& text) { return read_whole(of, text, law); });
-  if (value >= law.low) made->default_str(std::to_string(value));
+                             [range](auto& of, auto& text) { return read_whole(of, text, range); });
+  if (value >= range.low) made->default_str(std::to_string(value));
 }
 
-class ParsedArgument final : public Argument {
- public:
-  explicit ParsedArgument(CLI::Option& option) : option_(option) {}
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number value{};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  return value;
+}
 
-  const Argument& required() const override {
-    option_.required();
-    return *this;
-  }
-  const Argument& shown() const override {
-    option_.capture_default_str();
-    return *this;
-  }
-  const Argument& shown(const std::string& standard) const override {
-    option_.default_str(standard);
-    return *this;
-  }
-  const Argument& one_of(const std::vector<std::string>& names) const override {
-    const auto refuse = [names](const std::string& given) {
-      const bool is_known = std::ranges::find(names, given) != names.end();
-      return is_known ? "" : unknown_name("value", given, names);
-    };
-    option_.check(refuse);
-    return *this;
-  }
-  const Argument& between_commas() const override {
-    option_.delimiter(',')->allow_extra_args(false);
-    return *this;
-  }
-  const Argument& one_each() const override {
-    option_.allow_extra_args(false);
-    return *this;
-  }
-  const Argument& joined() const override {
-    option_.join(',');
-    return *this;
-  }
-  const Argument& needs(const Argument& other) const override {
-    option_.needs(option_of(other));
-    return *this;
-  }
-  const Argument& excludes(const Argument& other) const override {
-    option_.excludes(option_of(other));
-    return *this;
-  }
-
- private:
-  static CLI::Option* option_of(const Argument& argument) {
-    return &static_cast<const ParsedArgument&>(argument).option_;
-  }
-  CLI::Option& option_;
+struct Unit {
+  std::string_view name;
+  double bytes;
 };
+constexpr double kKilo = 1024;
+constexpr std::array<Unit, 4> kUnits = {{{"k", kKilo},
+                                         {"m", kKilo* kKilo},
+                                         {"g", kKilo* kKilo* kKilo},
+                                         {"t", kKilo* kKilo* kKilo* kKilo}}};
 
-class ParsedVerb final : public VerbArguments {
- public:
-  explicit ParsedVerb(CLI::App& verb) : verb_(verb) {}
+// The unit that the text ends with, which is taken off: "", "b", "g", "gb" or "gib".
+double unit_of(std::string& text) {
+  for (const std::string_view end : {"ib", "b"})
+    if (text.ends_with(end)) {
+      text.resize(text.size() - end.size());
+      break;
+    }
+  for (const auto& [name, bytes] : kUnits)
+    if (text.ends_with(name)) {
+      text.resize(text.size() - name.size());
+      return bytes;
+    }
+  return 1;
+}
 
-  const Argument& text(const char* name, std::string& value, const char* about) override {
-    return kept(option(verb_, name, value, about));
-  }
-  const Argument& texts(const char* name, std::vector<std::string>& values,
-                        const char* about) override {
-    return kept(option(verb_, name, values, about));
-  }
-  const Argument& flag(const char* name, bool& value, const char* about) override {
-    return kept(verb_.add_flag(name, value, about));
-  }
-  void whole(const char* name, int& value, const char* about, WholeLaw law) override {
-    whole_number(verb_, name, value, about, law);
-  }
-  void whole(const char* name, std::int64_t& value, const char* about, WholeLaw law) override {
-    whole_number(verb_, name, value, about, law);
-  }
-  const Argument& real(const char* name, double& value, const Range& range,
-                       const char* about) override {
-    return kept(number(verb_, name, "FLOAT", value, about,
-                       [range](auto& of, auto& text) { return read_real(of, text, range); }));
-  }
-  void seed(const char* name, std::uint64_t& value, const char* about) override {
-    number(verb_, name, "UINT", value, about, read_seed)->default_str(std::to_string(value));
-  }
-  void time(const char* name, double& seconds, const char* about) override {
-    number(verb_, name, "TIME", seconds, about, read_time);
-  }
-  void memory(const char* name, std::int64_t& bytes, const char* about) override {
-    number(verb_, name, "SIZE", bytes, about, read_bytes);
-  }
-
- private:
-  const Argument& kept(CLI::Option* option) { return arguments_.emplace_back(*option); }
-
-  CLI::App& verb_;
-  std::deque<ParsedArgument> arguments_;  // they stay where they are
-};
-
-std::vector<std::string> names_of(const CLI::App& verb) {
+std::vector<std::string> option_names(const CLI::App& verb) {
   std::vector<std::string> names;
   for (const CLI::Option* option : verb.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   return names;
 }
 
-// Of an option with no value, or with two where one is taken.
-std::string sentence_on_values(const CLI::App& verb, const std::string& name) {
+// For an option without a value, or with two values where it takes one.
+std::string value_complaint(const CLI::App& verb, const std::string& name) {
   const CLI::Option* option = verb.get_option_no_throw(name);
   const bool is_repeated = option != nullptr && option->count() > 1;
   return name + (is_repeated ? " is given more than once" : " needs a value");
 }
 
-// Of what CLI11 could place nowhere the first.
-std::string sentence_on(const CLI::App& verb, const std::string& unexpected) {
+// For the first argument that CLI11 could not place.
+std::string argument_complaint(const CLI::App& verb, const std::string& unexpected) {
   if (!unexpected.starts_with('-'))
     return fmt::format("{} takes no further argument, got '{}'", verb.get_name(), unexpected);
   const std::string name = unexpected.substr(0, unexpected.find('='));
-  const std::string nearest = nearest_name(name, names_of(verb));
+  const std::string nearest = nearest_name(name, option_names(verb));
   return fmt::format("unknown option {}{}", name,
                      nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
 }
@@ -171,73 +130,58 @@ bool is_a(const CLI::ParseError& error) {
 class CommandLine {
  public:
   // `runs`: or only reads.
-  CommandLine(const std::string& program, Session& session, bool runs);
+  CommandLine(const std::string& program, std::vector<Verb> verbs, Session& session, bool runs);
   int read(int count, char** arguments);  // and runs; the exit code
-  const RunArguments& run() const { return *table_.run; }
 
  private:
-  void add(const Verb& verb);
-  void add_help();
-  void add_version();
+  void declare(const Verb& verb);
   void require_verb(const std::string& name) const;
-  std::vector<std::string> verbs() const;
   std::string help_text() const;
-  std::string sentence_of(const CLI::ParseError& error) const;
+  std::string complaint(const CLI::ParseError& error) const;
 
   const std::string program_;
+  std::vector<Verb> verbs_;
   Session& session_;
   const bool runs_;
-  const VerbTable table_ = verb_table();
   CLI::App app_;
-  std::string helped_;  // the verb that help is wanted of; empty: of the program
+  std::string helped_;  // the argument of `help`; empty: the program
   int exit_code_ = kGood;
 };
 
-CommandLine::CommandLine(const std::string& program, Session& session, bool runs)
-    : program_(program), session_(session), runs_(runs), app_(kAbout, program) {
+CommandLine::CommandLine(const std::string& program, std::vector<Verb> verbs, Session& session,
+                         bool runs)
+    : program_(program),
+      verbs_(std::move(verbs)),
+      session_(session),
+      runs_(runs),
+      app_(kAbout, program) {
   app_.footer(kExamples);
   app_.set_version_flag("--version", "isoline " + version());
   app_.require_subcommand(1);
   app_.get_formatter()->label("SUBCOMMAND", "VERB");
-  for (const Verb& verb : table_.verbs) add(verb);
-  add_help();
-  add_version();
-  table_.completion->verbs = verbs();
-  for (CLI::App* verb : app_.get_subcommands({})) verb->group("Verbs");
+  for (Verb& verb : verbs_) {
+    if (verb.name == "help") {
+      verb.declare = [this](VerbArguments& arguments) {
+        arguments.text("VERB", helped_, "The verb (default: the program)");
+      };
+      verb.run = [this](Session&) {
+        say(stdout, help_text());
+        return kGood;
+      };
+    }
+    declare(verb);
+  }
 }
 
-void CommandLine::add(const Verb& verb) {
-  CLI::App& declared = *app_.add_subcommand(verb.name, verb.about);
-  ParsedVerb parsed(declared);
-  verb.declare(parsed);
-  declared.footer(notes_of(verb.name));
+void CommandLine::declare(const Verb& verb) {
+  CLI::App& declared = *app_.add_subcommand(verb.name, verb.summary);
+  VerbArguments arguments(declared, session_);
+  if (verb.declare) verb.declare(arguments);
+  declared.footer(verb_notes(verb))->group("Verbs");
   declared.callback([this, &verb] {
+    if (!helped_.empty()) require_verb(helped_);
     if (runs_) exit_code_ = verb.run(session_);
   });
-}
-
-void CommandLine::add_help() {
-  CLI::App& help = *app_.add_subcommand("help", "Print the help of the program or of a verb");
-  option(help, "VERB", helped_, "The verb (default: the program)");
-  help.footer(notes_of("help"));
-  help.callback([this] {
-    if (!helped_.empty()) require_verb(helped_);
-    if (runs_) say(stdout, help_text());
-  });
-}
-
-void CommandLine::add_version() {
-  CLI::App& version_of = *app_.add_subcommand("version", "Print the version");
-  version_of.footer(notes_of("version"));
-  version_of.callback([this] {
-    if (runs_) say(stdout, fmt::format("isoline {}\n", version()));
-  });
-}
-
-std::vector<std::string> CommandLine::verbs() const {
-  std::vector<std::string> names;
-  for (const CLI::App* verb : app_.get_subcommands({})) names.push_back(verb->get_name());
-  return names;
 }
 
 // By the formatter: App::help() would tell of the verb `help` itself.
@@ -248,12 +192,13 @@ std::string CommandLine::help_text() const {
 }
 
 void CommandLine::require_verb(const std::string& name) const {
-  const std::vector<std::string> known = verbs();
+  std::vector<std::string> known;
+  for (const Verb& verb : verbs_) known.push_back(verb.name);
   require(std::ranges::find(known, name) != known.end(),
           [&] { return unknown_name("verb", name, known); });
 }
 
-std::string CommandLine::sentence_of(const CLI::ParseError& error) const {
+std::string CommandLine::complaint(const CLI::ParseError& error) const {
   const std::vector<const CLI::App*> parsed =
       app_.get_subcommands([](const CLI::App* verb) { return verb->parsed(); });
   const CLI::App& verb = parsed.empty() ? app_ : *parsed.back();
@@ -262,9 +207,9 @@ std::string CommandLine::sentence_of(const CLI::ParseError& error) const {
   if (parsed.empty() && unexpected.empty())
     text = fmt::format("name a verb, such as run; `{} help` lists them", program_);
   else if (!unexpected.empty() && (parsed.empty() || is_a<CLI::ExtrasError>(error)))
-    text = sentence_on(verb, unexpected.front());
+    text = argument_complaint(verb, unexpected.front());
   else if (is_a<CLI::ArgumentMismatch>(error))
-    text = sentence_on_values(verb, text.substr(0, text.find(':')));
+    text = value_complaint(verb, text.substr(0, text.find(':')));
   const std::string name = parsed.empty() ? "" : " " + verb.get_name();
   return fmt::format("{} (see {}{} --help)", text, program_, name);
 }
@@ -275,7 +220,7 @@ int CommandLine::read(int count, char** arguments) {
     app_.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return runs_ ? app_.exit(error) : kGood;  // --help, --version
-    throw UsageError(sentence_of(error));
+    throw UsageError(complaint(error));
   }
   return exit_code_;
 }
@@ -283,23 +228,196 @@ int CommandLine::read(int count, char** arguments) {
 }  // namespace
 
 int parse_and_run(const std::string& program, int count, char** arguments, Session& session) {
-  return CommandLine(program, session, true).read(count, arguments);
+  return CommandLine(program, all_verbs(), session, true).read(count, arguments);
 }
 
 void parse_only(const std::string& program, int count, char** arguments) {
   Session none("", {});
-  CommandLine(program, none, false).read(count, arguments);
+  CommandLine(program, all_verbs(), none, false).read(count, arguments);
 }
 
-RunArguments read_run_arguments(const std::string& program, const std::vector<std::string>& words) {
-  std::vector<std::string> all = {program, "run"};
+void read_arguments(const std::string& program, const Verb& verb,
+                    const std::vector<std::string>& words, Session& session) {
+  std::vector<std::string> all = {program, verb.name};
   all.insert(all.end(), words.begin(), words.end());
   std::vector<char*> arguments;
   for (std::string& word : all) arguments.push_back(word.data());
-  Session none("", {});
-  CommandLine line(program, none, false);
-  line.read(static_cast<int>(arguments.size()), arguments.data());
-  return line.run();
+  CommandLine(program, {verb}, session, false)
+      .read(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::vector<Verb> all_verbs() {
+  VerbRegistry registry("verb");
+  register_verbs(registry);
+  std::vector<Verb> verbs;
+  for (const auto& [name, verb] : registry) verbs.push_back(verb);
+  std::ranges::stable_sort(verbs, {}, &Verb::help_position);
+  verbs.push_back({.name = "help",
+                   .summary = "Print the help of the program or of a verb",
+                   .examples = "  isoline help\n  isoline help run"});
+  verbs.push_back({.name = "version",
+                   .summary = "Print the version",
+                   .examples = "  isoline version",
+                   .run = [](Session&) {
+                     say(stdout, fmt::format("isoline {}\n", version()));
+                     return kGood;
+                   }});
+  return verbs;
+}
+
+std::string verb_notes(const Verb& verb) {
+  const std::string examples = "Examples:\n" + verb.examples;
+  return verb.notes.empty() ? examples : examples + "\n\n" + verb.notes;
+}
+
+std::string program_examples() { return kExamples; }
+
+// --- arguments
+
+Argument Argument::required() const {
+  option_->required();
+  return *this;
+}
+
+Argument Argument::shown() const {
+  option_->capture_default_str();
+  return *this;
+}
+
+Argument Argument::shown(const std::string& standard) const {
+  option_->default_str(standard);
+  return *this;
+}
+
+Argument Argument::one_of(const std::vector<std::string>& names) const {
+  const auto refuse = [names](const std::string& given) {
+    const bool is_known = std::ranges::find(names, given) != names.end();
+    return is_known ? "" : unknown_name("value", given, names);
+  };
+  option_->check(refuse);
+  return *this;
+}
+
+Argument Argument::between_commas() const {
+  option_->delimiter(',')->allow_extra_args(false);
+  return *this;
+}
+
+Argument Argument::one_each() const {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
+Argument Argument::joined() const {
+  option_->join(',');
+  return *this;
+}
+
+Argument Argument::needs(const Argument& other) const {
+  option_->needs(other.option_);
+  return *this;
+}
+
+Argument Argument::excludes(const Argument& other) const {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Argument VerbArguments::text(const char* name, std::string& value, const char* about) {
+  return Argument(*option(verb_, name, value, about));
+}
+
+Argument VerbArguments::texts(const char* name, std::vector<std::string>& values,
+                              const char* about) {
+  return Argument(*option(verb_, name, values, about));
+}
+
+Argument VerbArguments::flag(const char* name, bool& value, const char* about) {
+  return Argument(*verb_.add_flag(name, value, about));
+}
+
+void VerbArguments::whole(const char* name, int& value, const char* about, WholeRange range) {
+  whole_number(verb_, name, value, about, range);
+}
+
+void VerbArguments::whole(const char* name, std::int64_t& value, const char* about,
+                          WholeRange range) {
+  whole_number(verb_, name, value, about, range);
+}
+
+Argument VerbArguments::real(const char* name, double& value, const Range& range,
+                             const char* about) {
+  return Argument(*number(verb_, name, "FLOAT", value, about,
+                          [range](auto& of, auto& text) { return read_real(of, text, range); }));
+}
+
+void VerbArguments::seed(const char* name, std::uint64_t& value, const char* about) {
+  number(verb_, name, "UINT", value, about, read_seed)->default_str(std::to_string(value));
+}
+
+void VerbArguments::time(const char* name, double& seconds, const char* about) {
+  number(verb_, name, "TIME", seconds, about, read_time);
+}
+
+void VerbArguments::memory(const char* name, std::int64_t& bytes, const char* about) {
+  number(verb_, name, "SIZE", bytes, about, read_bytes);
+}
+
+void VerbArguments::plugins() {
+  texts("--plugin", session_.plugins(),
+        "Shared library whose problems and optimizers join those of `isoline list`; may be given "
+        "more than once")
+      .one_each();
+}
+
+// --- numbers
+
+std::int64_t read_whole(const std::string& option, const std::string& text, WholeRange range) {
+  const auto value = number_in<std::int64_t>(text);
+  require(value && *value >= range.low && *value <= range.high, [&] {
+    return fmt::format("{} must be a whole number from {} to {}, got '{}'", option, range.low,
+                       count_text(static_cast<std::uint64_t>(range.high)), text);
+  });
+  return *value;
+}
+
+std::uint64_t read_seed(const std::string& option, const std::string& text) {
+  const auto value = number_in<std::uint64_t>(text);
+  require(value.has_value(), [&] {
+    return fmt::format("{} must be a whole number from 0 to {}, got '{}'", option,
+                       std::numeric_limits<std::uint64_t>::max(), text);
+  });
+  return *value;
+}
+
+double read_real(const std::string& option, const std::string& text, const Range& range) {
+  const auto value = number_in<double>(text);
+  require(value && contains(range, *value), [&] {
+    return fmt::format("{} must be a number in {}, got '{}'", option, text_of(range), text);
+  });
+  return *value;
+}
+
+double read_time(const std::string& option, const std::string& text) {
+  try {
+    return parse_duration(text);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+std::int64_t read_bytes(const std::string& option, const std::string& text) {
+  constexpr double kLeast = 16 * kKilo * kKilo, kMost = kKilo * kUnits.back().bytes;
+  std::string amount = text;
+  for (char& letter : amount)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  const double unit = unit_of(amount);
+  const auto value = number_in<double>(amount);
+  const double bytes = value ? *value * unit : -1;
+  require(bytes >= kLeast && bytes <= kMost, [&] {
+    return fmt::format("{} must be from 16MB to 1024TB, such as 2GB, got '{}'", option, text);
+  });
+  return static_cast<std::int64_t>(bytes);
 }
 
 }  // namespace isoline::benchmarks

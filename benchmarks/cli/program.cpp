@@ -1,20 +1,59 @@
 // From the arguments of main() to an exit code.
 #include "benchmarks/cli/program.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <new>
 
 #include "benchmarks/cli/command_line.h"
-#include "benchmarks/cli/session.h"
-#include "benchmarks/cli/verbs.h"
 #include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/plugins.h"
+#include "benchmarks/run/isolated_text.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"
 #include "core/status.h"
 #include "core/text.h"
 #include "core/threads.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+// Once in a process of its own: what crashes while it is loaded is told, and costs nothing else.
+void require_loadable(const std::string& path) {
+  constexpr double kSeconds = 30;
+  const auto load = [&] {
+    Catalog alone;
+    try {
+      add_plugin(alone, path);
+    } catch (const UsageError&) {  // which this process then meets itself
+    }
+    return std::string();
+  };
+  const IsolatedText loaded = isolated_text(load, kSeconds);
+  require(loaded.text.has_value(),
+          [&] { return fmt::format("{}: it cannot be loaded: {}", path, loaded.failure); });
+}
+
+}  // namespace
+
+Session::Session(std::string command, std::function<Catalog()> make)
+    : command_(std::move(command)), make_(std::move(make)) {}
+
+const Catalog& Session::catalog() {
+  if (catalog_) return *catalog_;
+  Catalog made = make_();
+  for (const std::string& path : plugins_) {
+    require_loadable(path);
+    add_plugin(made, path);
+  }
+  catalog_ = std::make_shared<const Catalog>(std::move(made));
+  return *catalog_;
+}
+
+}  // namespace isoline::benchmarks
 
 namespace isoline {
 namespace {

@@ -11,6 +11,8 @@
 #include "benchmarks/plan/catalog.h"
 #include "core/clock.h"
 #include "core/spec.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks::micro {
 

@@ -8,6 +8,8 @@
 #include "benchmarks/plan/best.h"
 #include "benchmarks/plan/build_parts.h"
 #include "core/digest.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -1,10 +1,16 @@
-// The two registries together: what a benchmark can be made of.
+// What a benchmark can be made of: the registries of problems and optimizers, and the files of the
+// tree that are built into the program. Without Eigen: a file that makes a problem or runs an
+// optimizer includes problems/problem.h or optimizers/optimizer.h besides.
 #pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
 
 #include "core/records/request.h"
 #include "core/spec.h"
-#include "optimizers/optimizer.h"
-#include "problems/problem.h"
+#include "optimizers/optimizer_entry.h"
+#include "problems/problem_entry.h"
 
 namespace isoline::benchmarks {
 
@@ -37,5 +43,13 @@ Component complete_optimizer(const Catalog& catalog, const Spec& spec);
 // With the best loss known for f_L, where it declares none.
 Problem make_problem(const Catalog& catalog, const Component& problem, std::uint64_t seed);
 bool declares_minimum(const Catalog& catalog, const Component& problem, std::uint64_t seed);
+
+// The files of the tree, by name without ".json".
+const std::map<std::string, std::string_view>& builtin_suites();
+const std::map<std::string, std::string_view>& builtin_rates();
+const std::map<std::string, std::string_view>& builtin_claims();
+const std::map<std::string, std::string_view>& builtin_schemas();
+
+std::string_view embedded_best();  // benchmarks/best.json
 
 }  // namespace isoline::benchmarks

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/options.h"

@@ -9,9 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <unordered_set>
 
-#include "benchmarks/plan/filter.h"
-#include "benchmarks/plan/plan_size.h"
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
@@ -194,6 +192,178 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
   Expansion expansion(catalog, rates, most);
   for (const MatrixBlock& block : suite.blocks) expansion.add(block);
   return std::move(expansion).requests();
+}
+
+// Selectors and filters over the catalog.
+
+using optimizers::Family;
+namespace {
+
+// What a step costs, which decides the grids that a method can be given.
+std::string_view cost_class(const OptimizerEntry& entry) {
+  if (entry.family == Family::nlopt_derivative_free) return "derivative-free";
+  constexpr Index kUnlimited = std::numeric_limits<Index>::max();
+  const bool is_limited = entry.most_unknowns < kUnlimited || entry.most_rank < kUnlimited;
+  return is_limited ? "factorizing" : "matrix-free";
+}
+
+bool is_selector(const std::string& name) { return name == "*" || name.starts_with('@'); }
+
+// A spec with its options as its component would have them.
+struct Wanted {
+  std::string name;
+  OptionValues options;
+};
+
+template <class Registered>
+std::vector<Wanted> wanted_in(const Registered& registry, const std::string& text) {
+  std::vector<Wanted> all;
+  for (const Spec& spec : parse_specs(text)) {
+    Wanted wanted{.name = spec.name, .options = {}};
+    if (!is_selector(spec.name)) {
+      const auto& table = registry.at(spec.name).options;
+      const OptionValues complete = complete_options(table, spec.name, options_of(spec));
+      for (const auto& [name, value] : options_of(spec))
+        wanted.options.set(name, complete.at(name));
+    }
+    all.push_back(std::move(wanted));
+  }
+  return all;
+}
+
+bool is_among(const std::vector<Wanted>& all, const Component& component,
+              const OptimizerEntry* entry) {
+  return all.empty() || std::ranges::any_of(all, [&](const Wanted& wanted) {
+           if (is_selector(wanted.name))
+             return wanted.name == "*" || (entry && is_selected(*entry, wanted.name));
+           return wanted.name == component.name &&
+                  std::ranges::all_of(wanted.options, [&](const NamedOption& each) {
+                    const OptionValue* has = component.options.find(each.name);
+                    return has && *has == each.value;
+                  });
+         });
+}
+
+}  // namespace
+
+bool is_selected(const OptimizerEntry& entry, const std::string& selector) {
+  return selector == "*" || selector == fmt::format("@{}", name_of(entry.family)) ||
+         selector == fmt::format("@{}", cost_class(entry));
+}
+
+std::vector<Request> filtered(const Catalog& catalog, std::vector<Request> requests,
+                              const std::string& problems, const std::string& optimizers) {
+  const auto of_problems =
+      problems.empty() ? std::vector<Wanted>() : wanted_in(catalog.problems, problems);
+  const auto of_optimizers =
+      optimizers.empty() ? std::vector<Wanted>() : wanted_in(catalog.optimizers, optimizers);
+  std::erase_if(requests, [&](const Request& request) {
+    return !is_among(of_problems, request.problem, nullptr) ||
+           !is_among(of_optimizers, request.optimizer,
+                     &catalog.optimizers.at(request.optimizer.name));
+  });
+  require(!requests.empty(), [&] {
+    return fmt::format("no cell of the plan has {}{}{}", problems,
+                       problems.empty() || optimizers.empty() ? "" : " with ", optimizers);
+  });
+  return requests;
+}
+
+// The size of a plan: the settings of its sweeps times each other, times its seeds.
+
+namespace {
+
+// Components with the settings of each.
+class Settings {
+ public:
+  void add(std::string name, std::uint64_t settings) {
+    all_.push_back({std::move(name), settings});
+    total_ = sum_of(total_, settings);
+  }
+  void add_each(const std::string& text) {
+    for (SweepSize& size : sweep_sizes(text)) add(std::move(size.name), size.settings);
+  }
+  std::uint64_t total() const { return total_; }
+
+  // "400 settings of sine", "17 problems", "401 settings of 2 problems, 400 of them of sine"
+  std::string words(const char* kinds) const {
+    const SweepSize& most = *std::ranges::max_element(all_, {}, &SweepSize::settings);
+    if (all_.size() == 1) return fmt::format("{} settings of {}", count_text(total_), most.name);
+    if (total_ == all_.size()) return fmt::format("{} {}", count_text(total_), kinds);
+    return fmt::format("{} settings of {} {}, {} of them of {}", count_text(total_), all_.size(),
+                       kinds, count_text(most.settings), most.name);
+  }
+
+ private:
+  std::vector<SweepSize> all_;
+  std::uint64_t total_ = 0;
+};
+
+bool is_excepted(const std::vector<std::string>& excepted, const std::string& name) {
+  return std::ranges::find(excepted, name) != excepted.end();
+}
+
+Settings problems_of(const Catalog& catalog, const MatrixBlock& block) {
+  Settings settings;
+  for (const std::string& text : block.problems) {
+    if (text != "*") {
+      settings.add_each(text);
+      continue;
+    }
+    for (const auto& [name, entry] : catalog.problems)
+      if (entry.in_all && !is_excepted(block.except_problems, name)) settings.add(name, 1);
+  }
+  return settings;
+}
+
+Settings optimizers_of(const Catalog& catalog, const MatrixBlock& block) {
+  Settings settings;
+  for (const std::string& text : block.optimizers) {
+    if (text != "*" && !text.starts_with('@')) {
+      settings.add_each(text);
+      continue;
+    }
+    for (const auto& [name, entry] : catalog.optimizers)
+      if (entry.in_all && is_selected(entry, text) && !is_excepted(block.except_optimizers, name))
+        settings.add(name, 1);
+  }
+  return settings;
+}
+
+PlanSize size_of(const Catalog& catalog, const MatrixBlock& block) {
+  const Settings problems = problems_of(catalog, block);
+  const Settings optimizers = optimizers_of(catalog, block);
+  PlanSize size{
+      .cells = product_of(block.seeds.size(), product_of(problems.total(), optimizers.total())),
+      .largest = ""};
+  const auto add = [&](std::uint64_t count, const std::string& words) {
+    if (count > 1) size.largest += (size.largest.empty() ? "" : " × ") + words;
+  };
+  if (size.cells == 0) return size;
+  add(block.seeds.size(), count_text(block.seeds.size()) + " seeds");
+  add(problems.total(), problems.words("problems"));
+  add(optimizers.total(), optimizers.words("optimizers"));
+  return size;
+}
+
+}  // namespace
+
+PlanSize size_of(const Catalog& catalog, const Suite& suite) {
+  PlanSize all;
+  std::uint64_t most = 0;
+  for (const MatrixBlock& block : suite.blocks) {
+    PlanSize size = size_of(catalog, block);
+    all.cells = sum_of(all.cells, size.cells);
+    if (size.cells < most) continue;
+    most = size.cells;
+    all.largest = std::move(size.largest);
+  }
+  return all;
+}
+
+std::string too_large(const PlanSize& size, std::uint64_t most) {
+  return fmt::format("the plan has {} cells, more than {}: {}", count_text(size.cells),
+                     count_text(most), size.largest);
 }
 
 }  // namespace isoline::benchmarks

@@ -1,7 +1,8 @@
 // A suite or a matrix of one's own: which problems meet which optimizers, on which seeds, with what
-// budget. Expands into requests.
+// budget. Its selectors, its expansion into requests, and its size.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace isoline::benchmarks {
 
 using Json = nlohmann::json;
 
-// One block of a suite. Problems and optimizers are specs or selectors (benchmarks/plan/filter.h).
+// One block of a suite. Problems and optimizers are specs or selectors.
 struct MatrixBlock {
   std::vector<std::string> problems, optimizers;
   std::vector<std::string> except_problems, except_optimizers;  // names
@@ -46,5 +47,26 @@ inline constexpr std::uint64_t kMostCells = 1'000'000;
 // UsageError, before anything is made, where the plan has more than `most` cells.
 std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Rates& rates,
                             std::uint64_t most = kMostCells);
+
+// "*" for all, "@family" for the optimizers of a family; "@matrix-free", "@factorizing" (a dense
+// factorization of size n) and "@derivative-free" by what a step costs.
+bool is_selected(const OptimizerEntry& entry, const std::string& selector);
+
+// The cells whose problem and optimizer are among those named: specs, of which a component must
+// have the options that are given, or selectors of optimizers; an empty text names all. UsageError
+// where a name is unknown, or no cell is left.
+std::vector<Request> filtered(const Catalog& catalog, std::vector<Request> requests,
+                              const std::string& problems, const std::string& optimizers);
+
+// How large a plan is, counted by multiplication before anything of it is made.
+struct PlanSize {
+  std::uint64_t cells = 0;  // at most: a cell that two blocks have is run once
+  std::string largest;  // the factors of the largest block: "50,000 seeds × 400 settings of sine"
+};
+
+PlanSize size_of(const Catalog& catalog, const Suite& suite);
+
+// "the plan has 20,000,000 cells, more than 1,000,000: 50,000 seeds × 400 settings of sine"
+std::string too_large(const PlanSize& size, std::uint64_t most);
 
 }  // namespace isoline::benchmarks

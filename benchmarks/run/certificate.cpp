@@ -6,7 +6,9 @@
 #include <set>
 
 #include "benchmarks/run/isolated_text.h"
+#include "optimizers/optimizer.h"
 #include "problems/conformance.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 namespace {

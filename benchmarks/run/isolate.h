@@ -1,6 +1,7 @@
 // One run in a process of its own: whatever it does to itself, this process goes on.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -8,12 +9,12 @@
 #include <initializer_list>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/limits.h"
 #include "benchmarks/run/process_group.h"
-#include "core/array.h"
 #include "core/trace.h"
 
 namespace isoline::benchmarks {
@@ -61,10 +62,10 @@ struct Returned {
   std::atomic<std::int64_t> size{0};  // 0: nothing was returned, or more than there is room for
   double theta[kMost];                // (n)
 
-  void keep(VectorRef value) {
+  void keep(std::span<const double> value) {
     if (value.size() > kMost) return;
-    Eigen::Map<Vector>(theta, value.size()) = value;
-    size = value.size();
+    std::ranges::copy(value, theta);
+    size = static_cast<std::int64_t>(value.size());
   }
 };
 
@@ -121,7 +122,7 @@ class Worker {
   const CapturedOutput& output() const { return output_; }
   // What the child said that it returned, to be judged by another process, which inherits the
   // memory where it is started after this worker was made.
-  void keep_returned(VectorRef theta) { returned_->keep(theta); }  // called by the child
+  void keep_returned(std::span<const double> theta) { returned_->keep(theta); }  // by the child
   const double* returned() const { return returned_->theta; }
   Index returned_size() const;                            // 0: nothing
   int descriptor() const { return group_.descriptor(); }  // readable when the child has ended

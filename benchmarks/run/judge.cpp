@@ -16,6 +16,8 @@
 #include "benchmarks/run/child_process.h"
 #include "core/clock.h"
 #include "core/threads.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -10,6 +10,8 @@
 #include "core/clock.h"
 #include "core/json.h"
 #include "core/threads.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -107,7 +107,7 @@ class Runner {
             Vector returned;
             execute(catalog_, *request, trace, checkpoint_of(*request), &returned,
                     options_.perturbation);
-            workers_[i].keep_returned(returned);
+            workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
           },
           limits_of(*request, options_.limits, predictions_.of(*request)), request->threads);
     }

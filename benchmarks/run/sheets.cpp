@@ -16,6 +16,8 @@
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/plan.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "benchmarks/plan/catalog.h"
+#include "problems/problem.h"
 #include "core/records/npy.h"
 
 namespace isoline::benchmarks {

@@ -12,6 +12,8 @@
 #include "core/json.h"
 #include "core/ladder.h"
 #include "core/options.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 

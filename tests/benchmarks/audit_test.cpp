@@ -11,10 +11,12 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/audit/audit_problems.h"
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/json.h"
 #include "core/records/schema.h"
+#include "optimizers/optimizer.h"
 #include "problems/conformance.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 

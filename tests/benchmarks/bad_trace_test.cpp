@@ -117,7 +117,7 @@ TEST(BadTrace, OfASizeThatCannotBeReturnsNothing) {
   const auto sizes_after = [&](std::int64_t size) {
     worker.start(
         [&](Trace& trace) {
-          worker.keep_returned(Vector::Constant(3, 7));
+          worker.keep_returned(std::vector<Real>(3, 7));
           const_cast<Returned*>(reinterpret_cast<const Returned*>(worker.returned() - 1))->size =
               size;
           trace.status = Status::budget;

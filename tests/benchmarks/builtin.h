@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
-#include "benchmarks/plan/resources.h"
 #include "benchmarks/plan/suite.h"
 
 namespace isoline::benchmarks {

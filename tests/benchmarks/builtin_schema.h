@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/json.h"
 
 namespace isoline::benchmarks {

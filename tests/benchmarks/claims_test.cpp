@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/claim_cells.h"
-#include "benchmarks/plan/resources.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 

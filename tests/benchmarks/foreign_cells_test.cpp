@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/build_parts.h"
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/processes.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"

@@ -12,6 +12,8 @@
 #include <new>
 
 #include "benchmarks/plan/catalog.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 

@@ -137,7 +137,7 @@ TEST_F(Judging, AJudgeThatHangsIsGivenUp) {
   constexpr double kPatience = 0.2;
   times_made() = 1;
   std::vector<Worker> workers(1);
-  workers[0].keep_returned(Vector::Ones(1));
+  workers[0].keep_returned(std::vector<Real>{1});
   Judges judges(catalog, workers, kPatience);
   const Request request = asked("trap", {{"deed", "hang"}}, "gd", {});
   judges.ask(0, request);
@@ -153,7 +153,7 @@ TEST_F(Judging, ManyPointsOfOneProblemAreJudgedByOneProcess) {
   Judges judges(catalog, workers, 100);
   const Request request = asked("trap", {{"deed", "crash-once"}}, "gd", {});
   for (std::size_t slot = 0; slot < workers.size(); ++slot) {
-    workers[slot].keep_returned(Vector::Constant(1, static_cast<Real>(slot)));
+    workers[slot].keep_returned(std::vector<Real>{static_cast<Real>(slot)});
     judges.ask(slot, request);
   }
   std::vector<Verdict> all;

@@ -57,8 +57,7 @@ void add_audit(const ResultFolder& folder, RandomStream& random) {
   std::vector<AuditedOptimizer> all;
   for (int i = 0; i < 6; ++i)
     if (random.uniform() < 0.6)
-      all.push_back(
-          audit_of(std::string(1, static_cast<char>('a' + i)), i));
+      all.push_back(audit_of(std::string(1, static_cast<char>('a' + i)), i));
   folder.add_file("audit.json", audit_to_json(all).dump(1) + "\n");
 }
 

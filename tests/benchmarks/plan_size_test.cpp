@@ -1,8 +1,7 @@
 // How large a plan is, is known before anything of it is made.
-#include "benchmarks/plan/plan_size.h"
-
 #include <gtest/gtest.h>
 
+#include "benchmarks/plan/suite.h"
 #include "core/errors.h"
 #include "core/spec.h"
 #include "core/text.h"

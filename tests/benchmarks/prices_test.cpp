@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
 #include "core/records/schema.h"

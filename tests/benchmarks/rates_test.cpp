@@ -7,13 +7,15 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/tune.h"
 #include "core/json.h"
 #include "core/options.h"
 #include "core/records/schema.h"
 #include "core/spec.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/builtin_schema.h"
 

@@ -3,9 +3,11 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/json.h"
 #include "core/records/schema.h"
+#include "optimizers/optimizer.h"
+#include "problems/problem.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {

@@ -12,7 +12,9 @@
 
 #include "benchmarks/run/run_plan.h"
 #include "core/files.h"
+#include "optimizers/optimizer.h"
 #include "problems/dense_physics.h"
+#include "problems/problem.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {

@@ -8,8 +8,7 @@
 #include <set>
 #include <tuple>
 
-#include "benchmarks/plan/filter.h"
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "core/spec.h"

@@ -3,12 +3,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
 #include "core/records/schema.h"
+#include "optimizers/optimizer.h"
 #include "problems/dense_physics.h"
+#include "problems/problem.h"
 #include "reports/report.h"
 #include "tests/benchmarks/matrix.h"
 

@@ -7,13 +7,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/resources.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
 #include "core/records/schema.h"
+#include "optimizers/optimizer.h"
 #include "problems/dense_physics.h"
+#include "problems/problem.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "benchmarks/plan/plan_size.h"
 #include "core/json.h"
 #include "tests/fuzz/targets.h"
 

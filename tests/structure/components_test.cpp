@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "benchmarks/plan/catalog.h"
+#include "networks/network.h"
 #include "tests/structure/sources.h"
 
 namespace isoline::benchmarks {

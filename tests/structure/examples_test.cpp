@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "benchmarks/cli/command_line.h"
-#include "benchmarks/cli/notes.h"
 #include "core/errors.h"
 
 namespace isoline::benchmarks {
@@ -31,9 +30,9 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
-std::vector<std::string> examples_in(const std::string& notes) {
+std::vector<std::string> examples_in(const std::string& help) {
   std::vector<std::string> examples;
-  std::istringstream text(notes);
+  std::istringstream text(help);
   for (std::string line; std::getline(text, line);)
     if (line.starts_with("  isoline ")) examples.push_back(line.substr(2));
   return examples;
@@ -51,15 +50,14 @@ void expect_read(const std::string& example) {
 }
 
 TEST(Examples, InTheHelpOfEveryVerbAreRead) {
-  for (const char* verb :
-       {"run",   "report",   "compare",    "baseline", "replay",  "merge",    "best",  "claims",
-        "list",  "describe", "check",      "audit",    "new",     "validate", "tune",  "train",
-        "infer", "completion", "help",     "version", "export"}) {
-    const std::vector<std::string> examples = examples_in(notes_of(verb));
-    EXPECT_FALSE(examples.empty()) << verb;
+  const std::vector<Verb> verbs = all_verbs();
+  EXPECT_GT(verbs.size(), 15U);
+  for (const Verb& verb : verbs) {
+    const std::vector<std::string> examples = examples_in(verb.examples);
+    EXPECT_FALSE(examples.empty()) << verb.name;
     for (const std::string& example : examples) expect_read(example);
   }
-  for (const std::string& example : examples_in(kExamples)) expect_read(example);
+  for (const std::string& example : examples_in(program_examples())) expect_read(example);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(Specs, WhetherAComponentLearnsIsDecidedOnce) {
       "core/records/request.cpp",   // the decision
       "problems/",                  // the option
       "benchmarks/plan/rates.cpp",  // a row that names the mode, or does not
-      "benchmarks/cli/train",       // implied there
+      "benchmarks/verbs/train",     // implied there
       "tests/"};
   for (const Source& source : sources()) {
     bool is_allowed = false;

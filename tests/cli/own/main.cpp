@@ -6,6 +6,7 @@
 #include "benchmarks/cli/program.h"
 #include "isoline_build_info.h"
 #include "problems/dense_physics.h"
+#include "problems/problem.h"
 
 namespace isoline {
 namespace {

@@ -1,0 +1,179 @@
+// The words of a command line as cells, and the cells as shards.
+#include "benchmarks/cli/planned_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "benchmarks/plan/suite.h"
+#include "benchmarks/run/certificate.h"
+#include "benchmarks/run/progress.h"
+#include "benchmarks/run/run_plan.h"
+#include "benchmarks/shard/split.h"
+#include "core/spec.h"
+#include "core/text.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::counted;
+namespace {
+
+namespace fs = std::filesystem;
+
+void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
+  verb.flag("--no-report", given.no_report, "Write no report");
+  verb.flag("--keep-output", given.keeps_output,
+            "Keep in each record what its cell wrote to the terminal, up to 64 KiB");
+  verb.flag(
+      "--fields", given.keeps_fields,
+      "Keep x of problems on a grid, at six iterations, for every seed: else for seed 0 alone");
+  verb.flag("--spectrum", given.keeps_spectra,
+            "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
+            "cells that are done without them are repeated");
+}
+
+void override_blocks(const RunArguments& given, Suite& suite) {
+  const std::uint64_t most_seeds = given.allow_large ? kMostWhereLarge : kMostSeeds;
+  for (MatrixBlock& block : suite.blocks) {
+    if (!given.seeds.empty()) block.seeds = parse_seeds(given.seeds, most_seeds);
+    if (given.iterations > 0) block.budget.iterations = given.iterations;
+    if (given.work > 0) block.budget.work = given.work;
+    if (given.target >= 0) block.budget.target = given.target;
+    if (given.seconds > 0) block.budget.seconds = given.seconds;
+    if (given.threads > 0) block.threads = given.threads;
+  }
+}
+
+}  // namespace
+
+void declare_cells(VerbArguments& verb, RunArguments& given) {
+  verb.text("SUITE", given.suite,
+            "Name of a suite, or path of one (default: quick); --problem and --optimizer keep the "
+            "cells that have these");
+  verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
+  verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
+  verb.text("--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
+  verb.whole("--iterations", given.iterations, "Most iterations of a cell");
+  verb.whole("--work", given.work, "Most work of a cell, in forward solves");
+  verb.time("--time", given.seconds,
+            "Most time of a cell: 10s, 2m; a cell that uses twice that of a processor is killed");
+  verb.real("--target", given.target, between(0, 1),
+            "Stop at f_L + TARGET s, where s is the scale of the loss; where x is sought, at "
+            "TARGET of its error (default: 1e-10)");
+  verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
+  verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
+  verb.flag("--allow-large", given.allow_large, "Plan more than a million cells");
+  verb.plugins();
+}
+
+void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
+  verb.text("--out", given.out,
+            "Result folder (default: results/SUITE; for a matrix of your own or a part of a suite, "
+            "a name made of its cells, the same for the same plan)");
+  verb.flag("--force", given.force, "Repeat cells that are done");
+  verb.flag("--reuse", given.reuse, "Keep cells that another build has done");
+  verb.texts("--retry", given.retry,
+             "Repeat cells that ended with such a status: failed,crashed,timeout,memory")
+      .between_commas();
+}
+
+void declare_run(VerbArguments& verb, RunArguments& given) {
+  declare_cells(verb, given);
+  verb.whole("--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
+  verb.flag("--exclusive", given.exclusive, "One cell at a time, for tables of wall time");
+  verb.whole("--repeat", given.repeat, "Timings wanted of each cell", {1, 1000});
+  verb.memory("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)");
+  declare_what_is_done(verb, given);
+  declare_what_is_kept(verb, given);
+  verb.text("--shard", given.shard,
+            "Run the third of sixteen parts, 3/16, into shards/3-of-16 of the result folder; auto: "
+            "the part of this task of a SLURM array, or what ISOLINE_SHARD says");
+  const Argument dry = verb.flag("--dry-run", given.is_dry,
+                                 "Print the plan: cells, cached, inapplicable, predicted time");
+  verb.flag("--all", given.lists_all, "With --dry-run: list every cell, not the first 20")
+      .needs(dry);
+  verb.flag("--in-process", given.in_process,
+            "Run the cells in this process, for a debugger: no isolation, no limits, no records")
+      .excludes(dry);
+  verb.flag("--quiet", given.quiet, "Print failures only");
+}
+
+PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
+  const bool is_limited = !given.problem.empty() || !given.optimizer.empty();
+  const bool is_suite = !given.suite.empty() || !is_limited;
+  Suite suite;
+  if (is_suite) {
+    suite = read_suite(given.suite.empty() ? "quick" : given.suite);
+  } else {
+    suite.name = "custom";
+    suite.blocks = {{.problems = {given.problem.empty() ? "*" : given.problem},
+                     .optimizers = {given.optimizer.empty() ? "*" : given.optimizer}}};
+  }
+  override_blocks(given, suite);
+  Rates rates = Rates::named(given.rates);
+  const std::uint64_t most = given.allow_large ? kMostWhereLarge : kMostCells;
+  const PlanSize size = size_of(catalog, suite);
+  require(size.cells <= most, [&] {
+    return too_large(size, most) + (given.allow_large ? "" : "; --allow-large lifts the limit");
+  });
+  PlannedRun all{suite.name, expand(catalog, suite, rates, most), given.out, std::move(rates)};
+  if (is_suite && is_limited)
+    all.requests = filtered(catalog, std::move(all.requests), given.problem, given.optimizer);
+  if (!all.folder.empty()) return all;
+  const std::string title = is_suite ? suite.name : "";
+  all.folder = fs::path("results") / (is_limited ? folder_name_of(all.requests, title) : title);
+  return all;
+}
+
+std::set<Status> statuses_of(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const std::string_view name : kStatusNames)
+    if (name != name_of(Status::running)) known.emplace_back(name);
+  std::set<Status> statuses;
+  for (const std::string& name : names) {
+    require(std::ranges::find(known, name) != known.end(),
+            [&] { return "--retry: " + unknown_name("status", name, known); });
+    statuses.insert(*status_of(name));
+  }
+  return statuses;
+}
+
+std::string preview_text(const PreviewCounts& counts, int jobs) {
+  return fmt::format("{}: {} cached, {} inapplicable, {} to run, about {} with {} at a time",
+                     counted(counts.cells, "cell"), counts.cached, counts.inapplicable,
+                     counts.missing, duration_text(counts.seconds / jobs), jobs);
+}
+
+void print_counts(const Preview& shown, int jobs) {
+  say(stdout, preview_text(counts_of(shown.cells), jobs) + "\n");
+  if (shown.likened > 0)
+    say(stdout,
+        fmt::format("{} of problems not probed: predicted like others of the same problem\n",
+                    counted(shown.likened, "setting")));
+}
+
+Preview preview_of(const PlannedRun& all, const RunArguments& given,
+                   const std::vector<std::string>& earlier, const std::vector<fs::path>& folders,
+                   Session& session) {
+  require_sound(session.catalog(), all.requests);
+  std::vector<fs::path> timed = result_folders(all.folder);
+  for (const std::string& folder : earlier) {
+    const std::vector<fs::path> there = result_folders(folder);
+    require(!there.empty(), [&] { return folder + ": no such result folder"; });
+    timed.insert(timed.end(), there.begin(), there.end());
+  }
+  return preview(session.catalog(), all.requests, folders, EarlierTimes(glances_at(timed)),
+                 {.force = given.force, .reuse = given.reuse, .retry = statuses_of(given.retry)});
+}
+
+ShardPlan shard_plan(const PlannedRun& all, std::size_t count, Preview& shown) {
+  ShardPlan plan{.weights = keep_predictions(all.folder, shown),
+                 .shards = std::vector<PreviewCounts>(count)};
+  const std::vector<double> weights = weights_of(all.requests, all.folder);
+  const std::vector<std::size_t> shards = split(all.requests, weights, count);
+  for (std::size_t i = 0; i < shards.size(); ++i) plan.shards[shards[i]].add(shown.cells[i]);
+  return plan;
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,136 @@
+// Progress, outcomes and reports as the terminal shows them.
+#include "benchmarks/cli/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/run/progress.h"
+#include "benchmarks/run/runner.h"
+#include "core/shell.h"
+#include "core/text.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::compare_optimizers;
+using reports::counted;
+using reports::Document;
+using reports::document_of;
+using reports::judge;
+using reports::Judgement;
+using reports::rerun_arguments;
+using reports::Study;
+using reports::terminal_table;
+using reports::write_report;
+namespace {
+
+namespace fs = std::filesystem;
+
+// The binary itself: a debugger can't follow the launcher.
+std::string program_path() {
+  std::error_code unknown;
+  const fs::path path = fs::read_symlink("/proc/self/exe", unknown);
+  return shell_word(unknown ? "isoline" : path.string());
+}
+
+// As the system names it: "core", or a program that takes it.
+std::string core_pattern() {
+  std::string pattern;
+  std::getline(std::ifstream("/proc/sys/kernel/core_pattern"), pattern);
+  return pattern.empty() ? "core" : pattern;
+}
+
+// The next steps after a crash: its record and the parts of it that say most, the command that
+// repeats it in one process, under a debugger or for a core file, and where the core file would be.
+std::string debugging_advice(const Crash& crash, const fs::path& folder) {
+  const std::string command =
+      fmt::format("{} run {} --in-process", program_path(), rerun_arguments(crash.request));
+  return fmt::format(
+      "to debug {}:\n"
+      "  record      {}: \"message\" says how it ended, \"output\" what it wrote last\n"
+      "  alone       {}\n"
+      "  debugger    gdb --args {}\n"
+      "  core file   ulimit -c unlimited; {}\n"
+      "              the system writes it to: {}\n",
+      title_of(crash.request), (folder / crash.record).string(), command, command, command,
+      printable(core_pattern()));
+}
+
+}  // namespace
+
+Listener progress_on_terminal(const char* what) {
+  if (Progress::style_of(STDERR_FILENO) != Progress::Style::live) return {};
+  return [what, line = std::shared_ptr<Progress>()](std::size_t done, std::size_t all) mutable {
+    if (line == nullptr)
+      line = std::make_shared<Progress>(Progress::Style::live, what, std::int64_t(all), 0);
+    line->reached(std::int64_t(done));
+    line->show();
+  };
+}
+
+void print_failures(const Outcome& outcome, const std::filesystem::path& folder) {
+  constexpr std::size_t kMost = 20;
+  for (std::size_t i = 0; i < std::min(kMost, outcome.failures.size()); ++i)
+    say(stderr, fmt::format("{}\n", outcome.failures[i]));
+  if (outcome.failures.size() > kMost)
+    say(stderr, fmt::format("… and {} more\n", outcome.failures.size() - kMost));
+  if (outcome.crash) say(stderr, debugging_advice(*outcome.crash, folder));
+}
+
+void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, bool quiet) {
+  print_failures(outcome, folder);
+  for (const std::string& name : outcome.conflicts)
+    say(stderr, fmt::format("{}: its repetition gave another result\n", name));
+  for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
+  if (!outcome.missing.empty())
+    say(stderr, fmt::format("{} of {} vanished during the run, the first that of {}; the same "
+                            "command runs what is missing\n",
+                            counted(outcome.missing.size(), "record"), outcome.planned,
+                            outcome.missing.front()));
+  if (outcome.reused_from_other_builds > 0)
+    say(stderr,
+        fmt::format("{} of {} reused were run by another build\n", outcome.reused_from_other_builds,
+                    counted(std::size_t(outcome.reused), "cell")));
+  if (quiet) return;
+  std::string counts;
+  for (const auto& [status, count] : outcome.statuses)
+    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));
+  say(stdout, fmt::format("{}: {} run, {} reused ({}) in {}\n",
+                          counted(std::size_t(outcome.planned), "cell"), outcome.run,
+                          outcome.reused, counts, duration_text(outcome.seconds)));
+}
+
+int exit_code_of(const Outcome& outcome) {
+  if (outcome.is_interrupted) {
+    say(stderr, "interrupted; the same command goes on where it stopped\n");
+    return kInterrupted;
+  }
+  if (outcome.interrupted > 0) {
+    say(stderr, fmt::format("{} killed from outside; the same command runs what is missing\n",
+                            counted(std::size_t(outcome.interrupted), "cell")));
+    return kInterrupted;
+  }
+  const bool is_whole = outcome.missing.empty();
+  return is_whole && outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
+}
+
+std::vector<Judgement> judged(const std::vector<Claim>& claims, const std::vector<Record>& runs) {
+  return judge(json_of(claims), runs);
+}
+
+void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,
+                     const Reporting& how) {
+  std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
+  std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
+  Document document = document_of(compare_optimizers(study, how.yardstick), std::move(claims));
+  document.out = out.string();
+  write_report(document, out);
+  if (!how.is_quiet)
+    say(stdout,
+        fmt::format("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string()));
+}
+
+}  // namespace isoline::benchmarks

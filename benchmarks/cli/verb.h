@@ -1,0 +1,112 @@
+// A verb of the command line: each file of benchmarks/verbs defines register_NAME(VerbRegistry&),
+// and CMake lists them. Its arguments are declared without the library that parses them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/options.h"
+#include "core/registry.h"
+#include "core/status.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace isoline::benchmarks {
+
+struct Catalog;
+
+// What the verbs share: the catalog, made when first needed, with what the libraries of --plugin
+// bring, and the command that records name.
+class Session {
+ public:
+  Session(std::string command, std::function<Catalog()> make);
+  std::vector<std::string>& plugins() { return plugins_; }  // paths
+  const Catalog& catalog();
+  const std::string& command() const { return command_; }
+
+ private:
+  std::string command_;
+  std::function<Catalog()> make_;
+  std::vector<std::string> plugins_;
+  std::shared_ptr<const Catalog> catalog_;
+};
+
+// One argument; each function returns it again, with one property more.
+class Argument {
+ public:
+  explicit Argument(CLI::Option& option) : option_(&option) {}
+  Argument required() const;
+  Argument shown() const;  // its default, in the help
+  Argument shown(const std::string& standard) const;
+  Argument one_of(const std::vector<std::string>& names) const;
+  Argument between_commas() const;
+  Argument one_each() const;  // value, each time that it is given
+  Argument joined() const;    // by commas, where it is given more than once
+  Argument needs(const Argument& other) const;
+  Argument excludes(const Argument& other) const;
+
+ private:
+  CLI::Option* option_;
+};
+
+struct WholeRange {
+  std::int64_t low = 1, high = kMostAmount;
+};
+inline constexpr WholeRange kJobs{1, 1024}, kThreads{1, 256}, kShards{1, 100'000};
+
+// The arguments of one verb. A name without dashes is that of a place.
+class VerbArguments {
+ public:
+  VerbArguments(CLI::App& verb, Session& session) : verb_(verb), session_(session) {}
+  Argument text(const char* name, std::string& value, const char* about);
+  Argument texts(const char* name, std::vector<std::string>& values, const char* about);
+  Argument flag(const char* name, bool& value, const char* about);
+  // A default within the range stands in the help.
+  void whole(const char* name, int& value, const char* about, WholeRange range = {});
+  void whole(const char* name, std::int64_t& value, const char* about, WholeRange range = {});
+  Argument real(const char* name, double& value, const Range& range, const char* about);
+  void seed(const char* name, std::uint64_t& value, const char* about);
+  void time(const char* name, double& seconds, const char* about);
+  void memory(const char* name, std::int64_t& bytes, const char* about);
+  void plugins();  // --plugin, of the session
+
+ private:
+  CLI::App& verb_;
+  Session& session_;
+};
+
+struct Verb {
+  std::string name;
+  int help_position = 0;  // the help lists verbs in ascending order
+  std::string summary;
+  std::string examples;  // lines that begin with "  isoline "
+  std::string notes = {};
+  std::function<void(VerbArguments&)> declare = {};
+  std::function<int(Session&)> run = {};  // its exit code
+};
+using VerbRegistry = Registry<Verb>;
+
+// A verb whose arguments are a struct with defaults.
+template <class Arguments>
+Verb verb_of(Verb verb, void (*declare)(VerbArguments&, Arguments&),
+             int (*run)(const Arguments&, Session&)) {
+  const auto given = std::make_shared<Arguments>();
+  verb.declare = [declare, given](VerbArguments& arguments) { declare(arguments, *given); };
+  verb.run = [run, given](Session& session) { return run(*given, session); };
+  return verb;
+}
+
+void register_verbs(VerbRegistry& registry);  // generated: one call per file
+
+// All verbs, in the order of the help; `help` and `version` are the last.
+std::vector<Verb> all_verbs();
+
+inline constexpr const char* kFolders = "Result folders of `isoline run`";
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,64 @@
+// isoline audit [OPTIMIZER...]: what its properties are, measured instead of asserted.
+#include "benchmarks/audit/audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "benchmarks/cli/verb.h"
+#include "core/text.h"
+#include "reports/report.h"
+
+namespace isoline::benchmarks {
+
+using reports::kAllRows;
+using reports::kFewRows;
+using reports::properties_section;
+using reports::terminal_section;
+
+namespace {
+
+struct AuditArguments {
+  std::vector<std::string> names;
+  std::string out;
+  bool as_json = false, lists_all = false;
+};
+
+void declare(VerbArguments& verb, AuditArguments& given) {
+  verb.texts("OPTIMIZER", given.names, "Names of optimizers (default: all)");
+  verb.text("--out", given.out, "Folder to write audit.json to, as reports read it");
+  verb.flag("--all", given.lists_all, "Print every table whole, not the first 20 lines");
+  verb.flag("--json", given.as_json, "Print JSON");
+  verb.plugins();
+}
+
+int run(const AuditArguments& given, Session& session) {
+  const Catalog& catalog = session.catalog();
+  for (const std::string& name : given.names) catalog.optimizers.at(name);  // or says which exist
+  const std::vector<AuditedOptimizer> all =
+      audit_all(catalog, given.names.empty() ? catalog.optimizers.ready().names() : given.names);
+  if (!given.out.empty()) {
+    std::filesystem::create_directories(given.out);
+    write_audit(all, std::filesystem::path(given.out) / "audit.json");
+  }
+  say(stdout, given.as_json ? audit_text(all)
+                            : terminal_section(properties_section(all),
+                                               given.lists_all ? kAllRows : kFewRows));
+  const bool has_flags = std::ranges::any_of(
+      all, [](const AuditedOptimizer& audited) { return !audited.flags.empty(); });
+  return has_flags ? kWorse : kGood;
+}
+
+}  // namespace
+
+void register_audit(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "audit",
+       .help_position = 170,
+       .summary = "Measure optimizers' scaling, invariance, order, consistency and oracles",
+       .examples = "  isoline audit gd adam sip\n  isoline audit --out results/quick --all"},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,96 @@
+// isoline baseline RESULTS: what later results are compared with, as one small file.
+#include "reports/compare/baseline.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/run/perturbed_runs.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/text.h"
+#include "reports/read/study.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::baseline_json;
+using reports::counted;
+using reports::read_study;
+using reports::Study;
+
+namespace {
+
+struct BaselineArguments {
+  std::vector<std::string> folders;
+  std::string out;
+  int perturbations = 2, jobs = 0;
+};
+
+void declare(VerbArguments& verb, BaselineArguments& given) {
+  verb.texts("RESULTS", given.folders, "Result folders of `isoline run`").required();
+  verb.text("--out", given.out, "The file (default: standard output)");
+  verb.whole("--perturbations", given.perturbations,
+             "Runs of each cell from a start that differs in the last bit", {0, 100});
+  verb.whole("--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
+  verb.plugins();
+}
+
+// Studies of the same cells from perturbed starts, one a perturbation; fewer where interrupted.
+std::vector<Study> perturbed_studies(const BaselineArguments& given, Session& session,
+                                     const Study& study) {
+  const RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
+                           .progress = Progress::style_of(STDERR_FILENO),
+                           .command = session.command()};
+  std::vector<Study> perturbed;
+  for (int number = 1; number <= given.perturbations; ++number) {
+    auto records = perturbed_records(session.catalog(), study.runs, number, options);
+    if (!records) break;
+    perturbed.emplace_back().runs = std::move(*records);
+  }
+  return perturbed;
+}
+
+int run(const BaselineArguments& given, Session& session) {
+  Study study = read_study({given.folders.begin(), given.folders.end()});
+  std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
+  require(!study.runs.empty(), "there are no records to remember");
+  const std::vector<Study> perturbed = perturbed_studies(given, session, study);
+  if (perturbed.size() < static_cast<std::size_t>(given.perturbations)) {
+    say(stderr, "interrupted; no baseline was written\n");
+    return kInterrupted;
+  }
+  const std::string text = baseline_json(study, perturbed);
+  if (given.out.empty()) {
+    say(stdout, text);
+    return kGood;
+  }
+  const std::filesystem::path folder = std::filesystem::path(given.out).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder);
+  write_text(given.out, text);
+  say(stdout, fmt::format("{}: {}\n", given.out, counted(study.runs.size(), "cell")));
+  return kGood;
+}
+
+}  // namespace
+
+void register_baseline(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "baseline",
+       .help_position = 50,
+       .summary = "Keep what later results are compared with, as one small file",
+       .examples = "  isoline baseline results/quick --out baseline.json\n"
+                   "  isoline compare baseline.json results/quick",
+       .notes =
+           "A line a cell: status, digest of the trace, final figures, work to 1e-1, 1e-3 and 1e-6.\n"
+           "Each cell is run again from starts that differ in the last bit. A cell whose figures then\n"
+           "move by more than a tenth of the tolerance of a comparison is chaotic: it is judged by status and\n"
+           "by which of 1e-1, 1e-3 and 1e-6 it reaches, so that rounding alone makes nothing worse.\n"
+           "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on every\n"
+           "x86-64-v3 machine."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,82 @@
+// isoline best DIR... --out FILE: the best losses of runs, where no least loss is declared.
+#include "benchmarks/plan/best.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/catalog.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/json.h"
+#include "core/text.h"
+
+namespace isoline::benchmarks {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BestArguments {
+  std::vector<std::string> folders;
+  std::string out = "benchmarks/best.json";
+};
+
+void declare(VerbArguments& verb, BestArguments& given) {
+  verb.texts("DIR", given.folders, kFolders).required();
+  verb.text("--out", given.out, "Table of best losses; of two losses the lesser is kept").shown();
+}
+
+std::vector<Record> records_under(const std::vector<std::string>& folders) {
+  std::vector<Record> records;
+  for (const fs::path folder : folders) {
+    require(fs::exists(folder / "runs"),
+            [&] { return fmt::format("{}: no such result folder", folder.string()); });
+    for (const auto& entry : fs::directory_iterator(folder / "runs"))
+      if (entry.path().extension() == ".json") records.push_back(read_record(entry.path()));
+  }
+  return records;
+}
+
+// Rows stand each on a line, so that a change of the table is read in its difference.
+std::string best_losses_text(const Json& table) {
+  std::string rows;
+  for (const Json& row : table.at("rows")) rows += (rows.empty() ? "" : ",\n") + json_text(row);
+  return fmt::format("{{\"schema\": {}, \"rows\": [\n{}\n]}}\n", json_text(table.at("schema")),
+                     rows);
+}
+
+int run(const BestArguments& given, Session& session) {
+  BestLosses best;
+  if (fs::exists(given.out)) best = BestLosses::from_json(read_json(given.out), given.out);
+  std::map<std::string, bool> declares;  // by problem, whether it knows its least loss
+  std::size_t improved = 0;
+  for (const Record& record : records_under(given.folders)) {
+    const Component& problem = record.request.problem;
+    if (!session.catalog().problems.contains(problem.name)) continue;
+    const auto [known, is_new] = declares.try_emplace(problem.spec, false);
+    if (is_new) known->second = declares_minimum(session.catalog(), problem, record.request.seed);
+    if (!known->second) improved += best.add(record);
+  }
+  write_text(given.out, best_losses_text(best.to_json()));
+  say(stdout, fmt::format("{}: best losses new or improved: {}\n", given.out, improved));
+  return kGood;
+}
+
+}  // namespace
+
+void register_best(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "best",
+       .help_position = 100,
+       .summary = "Keep the best losses of runs, where no least loss is declared",
+       .examples = "  isoline best results/quick --out benchmarks/best.json",
+       .notes =
+           "Runs measure their targets from the best loss known where a problem declares none. The table\n"
+           "is built into the program, and is part of the build that a record names."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

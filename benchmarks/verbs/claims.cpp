@@ -1,0 +1,139 @@
+// isoline claims [ID...]: runs what published claims need, and judges them.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "benchmarks/cli/terminal.h"
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/run/run_plan.h"
+#include "core/json.h"
+#include "core/text.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::claim_section;
+using reports::claims_json;
+using reports::claims_section;
+using reports::claims_summary;
+using reports::counted;
+using reports::joined;
+using reports::Judgement;
+using reports::kFewRows;
+using reports::read_study;
+using reports::terminal_claim;
+using reports::terminal_section;
+using reports::Verdict;
+namespace {
+
+struct ClaimArguments {
+  std::vector<std::string> names;
+  std::string out = "results/claims";
+  int jobs = 0;
+  bool is_list = false, as_json = false, no_run = false, with_long = false, lists_all = false;
+};
+
+void declare(VerbArguments& verb, ClaimArguments& given) {
+  verb.texts("ID", given.names, "Claims, or groups of them (default: all)");
+  verb.text("--out", given.out, "Result folder that holds the runs").shown();
+  verb.whole("--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
+  verb.flag("--list", given.is_list, "List the claims, and run nothing");
+  verb.flag("--all", given.lists_all, "List every claim, not the first 20");
+  verb.flag("--json", given.as_json, "Print JSON");
+  verb.flag("--no-run", given.no_run, "Judge by the runs that are there");
+  verb.flag("--long", given.with_long, "Run also what takes hours");
+}
+
+std::string listed_by_groups(const std::vector<Claim>& claims, std::size_t most) {
+  std::string text, group;
+  for (const Claim& claim : std::span(claims).first(most)) {
+    if (claim.group != group) text += claim.group + "\n";
+    group = claim.group;
+    text += fmt::format("  {:38} {}\n", claim.id, claim.sentence);
+  }
+  return text;
+}
+
+int list_claims(const std::vector<Claim>& claims, const ClaimArguments& given) {
+  if (given.as_json) {
+    say(stdout, fmt::format("{}\n", json_text(json_of(claims), 2)));
+    return kGood;
+  }
+  std::vector<std::string> groups;
+  for (const Claim& claim : claims)
+    if (groups.empty() || groups.back() != claim.group) groups.push_back(claim.group);
+  const std::size_t shown = given.lists_all ? claims.size() : std::min(kFewRows, claims.size());
+  say(stdout, fmt::format("{} in {}: {}\n\n{}", counted(claims.size(), "claim"),
+                          counted(groups.size(), "group"), joined(groups),
+                          listed_by_groups(claims, shown)));
+  if (shown < claims.size())
+    say(stdout, fmt::format("… and {} more; --all lists them\n", claims.size() - shown));
+  return kGood;
+}
+
+Outcome run_missing(const ClaimArguments& given, const std::vector<Claim>& claims,
+                    Session& session) {
+  RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
+                     .command = session.command()};
+  if (!given.as_json) options.progress = Progress::style_of(STDERR_FILENO);
+  const Outcome outcome =
+      run_plan(session.catalog(), "claims", cells_of(claims, given.with_long), given.out, options);
+  print_failures(outcome, given.out);
+  if (!given.as_json && outcome.run > 0)
+    say(stderr, fmt::format("{} run, {} reused in {}\n", counted(std::size_t(outcome.run), "cell"),
+                            outcome.reused, duration_text(outcome.seconds)));
+  return outcome;
+}
+
+// One claim with all that decides it; of several the verdicts.
+std::string terminal_text_of(const std::vector<Judgement>& judgements, bool lists_all) {
+  if (judgements.size() == 1) return terminal_claim(claim_section(judgements[0]));
+  const std::string text = lists_all ? terminal_section(claims_section(judgements))
+                                     : terminal_section(claims_summary(judgements), kFewRows);
+  return text + "`isoline claims ID` shows one of them with the figures that decide it.\n";
+}
+
+int exit_code_of(const std::vector<Judgement>& judgements) {
+  const auto has = [&](auto&& is_so) {
+    return std::ranges::any_of(judgements, is_so, &Judgement::verdict);
+  };
+  if (has([](Verdict verdict) { return verdict == Verdict::not_reproduced; })) return kWorse;
+  return has(reports::is_decided) ? kGood : kNotComparable;
+}
+
+int run(const ClaimArguments& given, Session& session) {
+  const std::vector<Claim> claims =
+      chosen_claims(builtin_claims_of(session.catalog()), given.names);
+  if (given.is_list) return list_claims(claims, given);
+  Outcome outcome;
+  if (!given.no_run) outcome = run_missing(given, claims, session);
+  const std::vector<Judgement> judgements = judged(claims, read_study({given.out}).runs);
+  say(stdout, given.as_json ? json_text(claims_json(judgements), 2) + "\n"
+                            : terminal_text_of(judgements, given.lists_all));
+  const int of_runs = exit_code_of(outcome);
+  return of_runs == kGood ? exit_code_of(judgements) : of_runs;
+}
+
+}  // namespace
+
+void register_claims(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "claims",
+       .help_position = 110,
+       .summary = "Judge what papers claim by runs; what is missing is run first",
+       .examples =
+           "  isoline claims --list                        what is claimed, and where\n"
+           "  isoline claims exponential                   one group of claims\n"
+           "  isoline claims sip-better-in-x-worse-in-loss     one claim, with all that decides it\n"
+           "  isoline claims --no-run --out results/quick      what the runs of a suite decide",
+       .notes =
+           "A claim is reproduced where what is measured lies within the source's own error of reading,\n"
+           "partly where only the direction holds.\n"
+           "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 none can be compared."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,91 @@
+// isoline compare BASE NEW: what is worse than before, and what is better.
+#include <fmt/format.h>
+
+#include "benchmarks/cli/terminal.h"
+#include "benchmarks/cli/verb.h"
+#include "core/errors.h"
+#include "core/text.h"
+#include "reports/compare/gate.h"
+
+namespace isoline::benchmarks {
+
+using reports::compare_results;
+using reports::gate_json;
+using reports::gate_markdown;
+using reports::gate_terminal;
+using reports::GateOptions;
+using reports::GateResult;
+using reports::kMostTimed;
+using reports::read_allowed;
+
+namespace {
+
+struct CompareArguments {
+  std::string before, after;
+  double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
+  std::vector<std::string> timed;
+  std::string allowed;  // a list of cells that NEW may lack
+  bool is_common_only = false, as_markdown = false, as_json = false, lists_all = false;
+};
+
+void declare(VerbArguments& verb, CompareArguments& given) {
+  verb.text("BASE", given.before, "Result folder or baseline").required();
+  verb.text("NEW", given.after, "Result folder").required();
+  verb.real("--tolerance", given.tolerance, between(0, 1),
+            "Relative tolerance of figures (default: equal bit for bit)");
+  verb.texts("--time-cells", given.timed,
+             "Cells (digests, or their beginnings) whose time is judged, 20 at most")
+      .between_commas();
+  verb.real("--noise", given.noise, between(0, 10),
+            "Least band of noise of times, relative (default: 0.1)");
+  verb.text("--allow", given.allowed,
+            "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
+  verb.flag("--common", given.is_common_only, "Let NEW lack any cell of BASE");
+  verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
+  const Argument json = verb.flag("--json", given.as_json, "Print JSON");
+  verb.flag("--markdown", given.as_markdown, "Print Markdown").excludes(json);
+}
+
+int run(const CompareArguments& given, Session&) {
+  require(given.timed.size() <= kMostTimed, [&] {
+    return fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed,
+                       given.timed.size());
+  });
+  GateOptions options{.timed = given.timed, .is_common_only = given.is_common_only};
+  if (given.tolerance >= 0) options.tolerance = given.tolerance;
+  if (given.noise >= 0) options.least_noise = given.noise;
+  if (!given.allowed.empty()) options.allowed = read_allowed(given.allowed);
+  options.listener = progress_on_terminal("reading records");
+  const GateResult result = compare_results(given.before, given.after, options);
+  say(stdout, given.as_json       ? gate_json(result)
+              : given.as_markdown ? gate_markdown(result)
+                                  : gate_terminal(result, given.lists_all));
+  const bool is_fault = result.exit_code == kWorse || result.exit_code == kNotComparable;
+  if (is_fault && (given.as_json || given.as_markdown))
+    say(stderr, fmt::format("{}\n", result.verdict));  // the terminal's text begins with it
+  return result.exit_code;
+}
+
+}  // namespace
+
+void register_compare(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "compare",
+       .help_position = 40,
+       .summary = "Compare two results and list regressions",
+       .examples =
+           "  isoline compare results/old results/new\n"
+           "  isoline compare baseline.json results/quick --tolerance 1e-6 --all\n"
+           "  isoline compare results/old results/new --markdown     for the summary of a job",
+       .notes =
+           "Exit codes: 0 no worse and no better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
+           "4 not comparable: a clock ended a cell, its record is in doubt, or it is of another build\n"
+           "and --tolerance is not given. Cells are paired by what was asked of them, with seed and\n"
+           "budget, so that a changed default is compared, and named.\n"
+           "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
+           "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise that\n"
+           "the repetitions show. Without --time-cells the 20 slowest such cells of BASE are judged."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,159 @@
+// isoline describe NAME: what a component is, in words.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/run/sheets.h"
+#include "core/json.h"
+#include "core/options.h"
+#include "core/spec.h"
+#include "core/text.h"
+#include "networks/network_entry.h"
+
+namespace isoline::benchmarks {
+
+using networks::network_registry;
+using networks::NetworkEntry;
+namespace {
+
+struct DescribeArguments {
+  std::string name;
+  bool as_json = false;
+};
+
+void declare(VerbArguments& verb, DescribeArguments& given) {
+  verb.text("NAME", given.name, "A name of `isoline list`, or a spec").required();
+  verb.flag("--json", given.as_json, "Print JSON");
+  verb.plugins();
+}
+
+// What was asked for, found in the catalog.
+struct Described {
+  Sheet sheet;
+  OptionTable table;
+  OptionValues options;  // as given, the rest at their defaults
+};
+
+Described described_as_problem(const Catalog& catalog, const Spec& spec) {
+  const Component problem = complete_problem(catalog, spec);
+  return {problem_sheet(catalog, problem), catalog.problems.at(spec.name).options, problem.options};
+}
+
+Described described_as_optimizer(const Catalog& catalog, const Spec& spec) {
+  const Component optimizer = complete_optimizer(catalog, spec);
+  return {optimizer_sheet(catalog, optimizer), catalog.optimizers.at(spec.name).options,
+          optimizer.options};
+}
+
+Described described(const Catalog& catalog, const Spec& spec) {
+  const bool is_problem = catalog.problems.contains(spec.name);
+  const bool is_optimizer = catalog.optimizers.contains(spec.name);
+  if (is_problem && is_optimizer) try {  // a door has one name for both, and the other side knows
+      return described_as_optimizer(catalog, spec);
+    } catch (const UsageError&) {
+      return described_as_problem(catalog, spec);
+    }
+  if (is_problem) return described_as_problem(catalog, spec);
+  if (is_optimizer) return described_as_optimizer(catalog, spec);
+  std::vector<std::string> known = catalog.problems.names();
+  for (const auto& names : {catalog.optimizers.names(), network_registry().names()})
+    known.insert(known.end(), names.begin(), names.end());
+  const std::string nearest = nearest_name(spec.name, known);
+  throw UsageError(fmt::format("no problem, optimizer or network '{}'; {}", spec.name,
+                               nearest.empty() ? "`isoline list` names them all"
+                                               : fmt::format("did you mean '{}'?", nearest)));
+}
+
+std::string allowed_values(const OptionField& field) {
+  if (!field.choices.empty()) {
+    Choices named = field.choices;
+    std::erase(named, "");  // a choice of nothing has no name
+    return fmt::format("{}", fmt::join(named, "|"));
+  }
+  const bool is_number =
+      std::holds_alternative<Real>(field.standard) || std::holds_alternative<Index>(field.standard);
+  return is_number ? text_of(field.range) : "";
+}
+
+void print_options(const OptionTable& table, const OptionValues& values) {
+  say(stdout, table.empty() ? "\nOptions     none\n" : "\nOptions\n");
+  for (const OptionField& field : table) {
+    const std::string value = text_of(values.at(field.name)), standard = text_of(field.standard);
+    say(stdout,
+        fmt::format("  {:20} {:>12}  {:22} {}{}\n", field.name, value, allowed_values(field),
+                    field.doc, value == standard ? "" : fmt::format(" (default: {})", standard)));
+  }
+}
+
+void print(const NetworkEntry& network, const OptionValues& options, bool as_json) {
+  if (as_json) {
+    const Json json{{"kind", "network"},      {"name", network.name},
+                    {"title", network.title}, {"source", network.source},
+                    {"note", network.note},   {"options", describe_options(network.options)}};
+    return say(stdout, fmt::format("{}\n", json_text(json, 2)));
+  }
+  say(stdout, fmt::format("{}: {} (network)\n\nSource      {}\n", network.name, network.title,
+                          network.source));
+  if (!network.note.empty()) say(stdout, fmt::format("Note        {}\n", network.note));
+  print_options(network.options, options);
+}
+
+const char* aim_text(Aim aim) {
+  return aim == Aim::x ? "x: a run is solved where it finds the x that was sought"
+                       : "loss: a run is solved where its loss is small, whatever its x";
+}
+
+void print(const Sheet& sheet) {
+  const bool is_problem = sheet.kind == "problem";
+  say(stdout, fmt::format("{}: {} ({})\n\n  {}\n\nSource      {}\n", sheet.name, sheet.title,
+                          sheet.kind, sheet.formula, sheet.source));
+  if (!sheet.note.empty()) say(stdout, fmt::format("Note        {}\n", sheet.note));
+  if (is_problem)
+    say(stdout,
+        fmt::format("Size        {} unknowns, {} residuals\nInverse     {}\nAim         {}\n",
+                    sheet.unknowns, sheet.residuals, sheet.inverse,
+                    aim_text(sheet.aim.value_or(Aim::loss))));
+  else
+    say(stdout, fmt::format("Family      {}\n", sheet.family));
+  say(stdout,
+      fmt::format("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", ")));
+  if (!is_problem)
+    say(stdout, fmt::format("Tuned by    {}\n", sheet.tunable.empty() ? "nothing" : sheet.tunable));
+  if (!is_problem)
+    say(stdout, fmt::format("Privileges  {}\n",
+                            sheet.privileges.empty()
+                                ? "none"
+                                : fmt::format("{}", fmt::join(sheet.privileges, "; "))));
+}
+
+int run(const DescribeArguments& given, Session& session) {
+  const Spec spec = parse_spec(given.name);
+  if (network_registry().contains(spec.name)) {
+    const NetworkEntry& network = network_registry().at(spec.name);
+    print(network, complete_options(network.options, spec.name, options_of(spec)), given.as_json);
+    return kGood;
+  }
+  const Described found = described(session.catalog(), spec);
+  if (given.as_json) {
+    say(stdout, fmt::format("{}\n", json_text(to_json(found.sheet), 2)));
+    return kGood;
+  }
+  print(found.sheet);
+  print_options(found.table, found.options);
+  return kGood;
+}
+
+}  // namespace
+
+void register_describe(VerbRegistry& registry) {
+  registry.add(
+      verb_of({.name = "describe",
+               .help_position = 150,
+               .summary = "Show the formula, options, needs and source of a component",
+               .examples = "  isoline describe sip\n  isoline describe 'sine[xi=32]' --json"},
+              declare, run));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,94 @@
+// isoline export DIR... --format csv|coco|bencher --out PATH: results in the forms of others.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "benchmarks/cli/terminal.h"
+#include "benchmarks/cli/verb.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/text.h"
+#include "reports/exports/exports.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::bencher_json;
+using reports::coco_export;
+using reports::CocoExport;
+using reports::Comparison;
+using reports::counted;
+using reports::curves_csv;
+using reports::ExportedFile;
+using reports::joined;
+using reports::read_study;
+using reports::Study;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportArguments {
+  std::vector<std::string> folders;
+  std::string format = "csv", out;
+};
+
+void declare(VerbArguments& verb, ExportArguments& given) {
+  verb.texts("DIR", given.folders, kFolders).required();
+  verb.text("--format", given.format,
+            "csv: a row a kept point; coco: data folders for its post-processing; bencher: Bencher "
+            "Metric Format")
+      .one_of({reports::kExportNames.begin(), reports::kExportNames.end()})
+      .shown();
+  verb.text("--out", given.out, "Where to write: a file; of coco a new folder").required();
+}
+
+void write_file(const fs::path& out, const std::string& text) {
+  if (out.has_parent_path()) fs::create_directories(out.parent_path());
+  write_text(out, text);
+}
+
+void write_folder(const fs::path& out, const CocoExport& coco) {
+  std::error_code unknown;
+  require(!is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
+          [&] { return fmt::format("{} exists already: export into a new folder", out.string()); });
+  for (const ExportedFile& file : coco.files) write_file(out / file.name, file.text);
+  for (const std::string& sentence : coco.left_out)
+    say(stderr, fmt::format("left out: {}\n", sentence));
+}
+
+int run(const ExportArguments& given, Session&) {
+  const Study study = read_study(given.folders, progress_on_terminal("reading records"));
+  require(!study.runs.empty(), [&] {
+    return fmt::format("no records in {}: `isoline run --out FOLDER` writes them",
+                       joined(given.folders));
+  });
+  const Comparison comparison = compare_optimizers(study);
+  if (given.format == "coco")
+    write_folder(given.out, coco_export(comparison));
+  else
+    write_file(given.out,
+               given.format == "csv" ? curves_csv(comparison) : bencher_json(comparison));
+  say(stdout,
+      fmt::format("{}: {} as {}\n", given.out, counted(study.runs.size(), "run"), given.format));
+  return kGood;
+}
+
+}  // namespace
+
+void register_export(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "export",
+       .help_position = 120,
+       .summary = "Write curves as CSV, as data of COCO, or as metrics of Bencher",
+       .examples =
+           "  isoline export results/quick --out curves.csv             a row a kept point of each run\n"
+           "  isoline export results/quick --format coco --out exdata   for COCO's post-processing\n"
+           "  isoline export results.tar.gz --format bencher --out metrics.json",
+       .notes =
+           "Numbers read back as the same numbers; inf, -inf and nan are written so. Bencher's format has no\n"
+           "infinity: what half of the runs never reach is left out there, and reached-1e-6 tells how many do."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

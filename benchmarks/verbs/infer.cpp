@@ -1,0 +1,90 @@
+// isoline infer NETWORK --input FILE --output FILE: applies a trained network to observations.
+#include <fmt/format.h>
+
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/trained.h"
+#include "core/errors.h"
+#include "core/records/npy.h"
+#include "core/text.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::counted;
+
+namespace {
+
+struct InferArguments {
+  std::string network, input, output;
+  std::int64_t memory_bytes = 0;  // 0: as a cell's
+  double seconds = 600;
+};
+
+void declare(VerbArguments& verb, InferArguments& given) {
+  verb.text("NETWORK", given.network, "File of the trained network").required();
+  verb.text("--input", given.input,
+            "Observations, one a row: .npy of shape (samples, numbers) or (samples, N, N), or .csv")
+      .required();
+  verb.text("--output", given.output, "Where to write the inferred x: .npy or .csv").required();
+  verb.time("--time", given.seconds, "Most time: 10s, 2m (default: 10m)");
+  verb.memory("--memory", given.memory_bytes, "Most memory (default: 4GB)");
+}
+
+// Reads, infers and writes; the sentence about it.
+std::string inferred(const InferArguments& given, const Catalog& catalog) {
+  const TrainedNetwork network = read_network(given.network);
+  const NumberArray input = read_numbers(given.input);
+  const Component component =
+      complete_problem(catalog, network.problem.name, network.problem.options);
+  require(component.is_learned,
+          [&] { return given.network + " is no trained network: its problem has none"; });
+  const Problem problem = make_problem(catalog, component, network.seed);
+  try {
+    require_fitting(network, problem);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", given.network, error.what()));
+  }
+  const NumberArray output = infer(problem, network, input, given.input);
+  write_numbers(given.output, output);
+  return fmt::format("{}: {} inferred by {} trained on {} for {}", given.output,
+                     counted(std::size_t(output.shape[0]), "sample"), network.optimizer.spec,
+                     network.problem.spec, counted(std::size_t(network.iterations), "iteration"));
+}
+
+// How the process that infers tells its parent whose fault it was.
+constexpr char kSaid = '+', kMistaken = '-';
+
+// In a process of its own, under limits: whatever a file holds costs that process alone.
+int run(const InferArguments& given, Session& session) {
+  const Catalog& catalog = session.catalog();
+  const auto work = [&] {
+    try {
+      return kSaid + inferred(given, catalog);
+    } catch (const UsageError& mistake) {
+      return std::string(1, kMistaken) + mistake.what();
+    }
+  };
+  const std::int64_t memory = given.memory_bytes > 0 ? given.memory_bytes : Limits{}.memory_bytes;
+  const auto [text, failure] = isolated_text(work, given.seconds, memory);
+  if (!text || text->empty()) {
+    say(stderr, fmt::format("isoline: {} was not written: {}\n", given.output,
+                            text ? "the process gave no answer" : failure));
+    return kWorse;
+  }
+  require(text->front() != kMistaken, [&] { return text->substr(1); });
+  say(stdout, text->substr(1) + "\n");
+  return kGood;
+}
+
+}  // namespace
+
+void register_infer(VerbRegistry& registry) {
+  registry.add(verb_of({.name = "infer",
+                        .help_position = 220,
+                        .summary = "Apply a network that `isoline train` wrote to observations",
+                        .examples = "  isoline infer net.json --input observed.csv --output x.csv"},
+                       declare, run));
+}
+
+}  // namespace isoline::benchmarks

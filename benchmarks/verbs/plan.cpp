@@ -1,0 +1,122 @@
+// isoline plan: what a run would do, how long it may take, and how it divides into shards.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "benchmarks/cli/planned_run.h"
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/run/progress.h"
+#include "benchmarks/run/runner.h"
+#include "benchmarks/shard/split.h"
+#include "core/records/json_view.h"
+#include "core/text.h"
+
+namespace isoline::benchmarks {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PlanArguments {
+  RunArguments run;
+  std::vector<std::string> earlier;  // result folders
+  int shards = 0;                    // 0: the whole
+  bool as_json = false;
+};
+
+void declare(VerbArguments& verb, PlanArguments& given) {
+  declare_cells(verb, given.run);
+  verb.whole("--jobs", given.run.jobs, "Cells at a time (default: one a core)", kJobs);
+  declare_what_is_done(verb, given.run);
+  verb.whole("--shards", given.shards,
+             "Divide the plan into so many parts of about the same time, and keep the predictions "
+             "that they go by in predicted.json of the result folder",
+             kShards);
+  verb.texts("--from", given.earlier, "Earlier result folders, whose times predict these")
+      .between_commas();
+  verb.flag("--all", given.run.lists_all, "List every shard, not the first 20");
+  verb.flag("--json", given.as_json, "Print JSON");
+}
+
+std::string counts_json(const PreviewCounts& counts) {
+  return fmt::format(
+      "\"cells\": {}, \"cached\": {}, \"inapplicable\": {}, \"missing\": {}, \"seconds\": {}",
+      counts.cells, counts.cached, counts.inapplicable, counts.missing, counts.seconds);
+}
+
+void print_json(const PlannedRun& all, const Preview& shown, const ShardPlan& plan, int jobs) {
+  std::string text =
+      fmt::format("{{{}, \"jobs\": {}, \"folder\": {}, \"shards\": [",
+                  counts_json(counts_of(shown.cells)), jobs, json_of_text(all.folder.string()));
+  for (std::size_t i = 0; i < plan.shards.size(); ++i)
+    text += fmt::format("{}{{\"shard\": \"{}\", {}}}", i == 0 ? "" : ", ",
+                        Shard{i + 1, plan.shards.size()}.text(), counts_json(plan.shards[i]));
+  say(stdout, text + "]}\n");
+}
+
+std::string weights_text(Weights weights, const PlannedRun& all, std::size_t timed) {
+  const std::string file = predicted_file(all.folder).string();
+  switch (weights) {
+    case Weights::written:
+      return fmt::format("predictions: {}, {} by earlier runs and {} by declared prices", file,
+                         timed, all.requests.size() - timed);
+    case Weights::kept:
+      return fmt::format("predictions: {}, as it was written before", file);
+    case Weights::declared:
+      break;
+  }
+  return "predictions: none, since shards were run here without; they are divided by declared work";
+}
+
+void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& plan,
+                  const PlanArguments& given, int jobs) {
+  constexpr std::size_t kMost = 20;
+  const std::size_t count = plan.shards.size();
+  const std::size_t listed = given.run.lists_all ? count : std::min(kMost, count);
+  for (std::size_t i = 0; i < listed; ++i)
+    say(stdout, fmt::format("shard {:>9}  {}\n", Shard{i + 1, count}.text(),
+                            preview_text(plan.shards[i], jobs)));
+  if (listed < count) say(stdout, fmt::format("… and {} more; --all lists them\n", count - listed));
+  const auto longest = std::ranges::max_element(plan.shards, {}, &PreviewCounts::seconds);
+  say(stdout,
+      fmt::format("the longest shard takes about {}\n", duration_text(longest->seconds / jobs)));
+  say(stdout, weights_text(plan.weights, all, shown.timed) + "\n");
+}
+
+int run(const PlanArguments& given, Session& session) {
+  const PlannedRun all = planned_run(given.run, session.catalog());
+  const int jobs = given.run.jobs > 0 ? given.run.jobs : one_a_core();
+  const auto count = static_cast<std::size_t>(given.shards);
+  const auto folders = count > 0 ? result_folders(all.folder) : std::vector<fs::path>{all.folder};
+  Preview shown = preview_of(all, given.run, given.earlier, folders, session);
+  const ShardPlan plan = count > 0 ? shard_plan(all, count, shown) : ShardPlan();
+  if (given.as_json) {
+    print_json(all, shown, plan, jobs);
+    return kGood;
+  }
+  print_counts(shown, jobs);
+  say(stdout, fmt::format("result folder: {}\n", all.folder.string()));
+  if (count > 0) print_shards(all, shown, plan, given, jobs);
+  return kGood;
+}
+
+}  // namespace
+
+void register_plan(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "plan",
+       .help_position = 20,
+       .summary = "Tell what a run would do, how long it may take, and how it divides into shards",
+       .examples =
+           "  isoline plan quick                           cells, what of them is done, predicted time\n"
+           "  isoline plan quick --shards 16 --from results/before     sixteen parts of the same time\n"
+           "  isoline plan quick --shards 16 --json        for the matrix of a workflow",
+       .notes =
+           "A cell is predicted by what it, or its like with other seeds, took in the records below the\n"
+           "result folder and those of --from; else by declared prices times a measured forward solve.\n"
+           "With --shards the predictions are written to predicted.json, once: `isoline run --shard` divides\n"
+           "the plan by it alone, so that every task finds the same parts whenever it begins."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,283 @@
+// isoline tune: a table of rates from a recorded grid.
+#include "benchmarks/run/tune.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "benchmarks/cli/terminal.h"
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/suite.h"
+#include "core/files.h"
+#include "core/json.h"
+#include "core/spec.h"
+#include "core/text.h"
+#include "reports/formats/formats.h"
+#include "reports/formats/text_plot.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::counted;
+using reports::figure;
+using reports::Plot;
+using reports::reached_figure;
+using reports::Section;
+using reports::Table;
+
+namespace {
+
+struct TuneArguments {
+  std::string problem, optimizer, suite, grid, unit = "one", seeds = "100..102";
+  std::string table, folder = "results/tuning";
+  std::int64_t iterations = 100'000, work = 2000;
+  int jobs = 0;
+  bool as_json = false, lists_all = false;
+};
+
+void declare(VerbArguments& verb, TuneArguments& given) {
+  verb.text("SPEC,--problem", given.problem,
+            "Problems, as in `isoline run`; with --suite those to keep");
+  verb.text("--suite", given.suite, "The pairs of this suite, with its budgets");
+  verb.text("--optimizer", given.optimizer,
+            "Names of optimizers (default: all that have an option to tune)")
+      .joined();
+  verb.text("--grid", given.grid,
+            "Option and its values, low..high x count (default: the option that a method "
+            "declares, at seven values around its default and more at an edge)");
+  verb.text("--unit", given.unit,
+            "Unit of the grid: one, the problem's Cauchy step, or the published rate")
+      .one_of({"one", "cauchy", "published"})
+      .shown();
+  verb.text("--tuning-seeds", given.seeds, "Seeds, apart from those that judge").shown();
+  verb.whole("--work", given.work, "Most work of a run");
+  verb.whole("--iterations", given.iterations, "Most iterations of a run");
+  verb.whole("--jobs", given.jobs, "Runs at a time (default: one a core)", kJobs);
+  verb.text("--out", given.folder, "Folder of the records").shown();
+  verb.text("--table", given.table, "Table of rates to write or to add to");
+  verb.flag("--all", given.lists_all, "List every pair, not the first 20");
+  verb.flag("--json", given.as_json, "Print the rows of the table as JSON");
+  verb.plugins();
+}
+
+constexpr const char* kScore =
+    "median work to 1e-6 of the loss, or of x where the problem's aim is x; then the median of what "
+    "is left of it at the end";
+
+// The cells of a suite, but for the blocks that name their own table of rates.
+std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given) {
+  Suite suite = read_suite(given.suite);
+  std::erase_if(suite.blocks, [](const MatrixBlock& block) { return !block.rates.empty(); });
+  return filtered(catalog, expand(catalog, suite, Rates()), given.problem, given.optimizer);
+}
+
+std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& given) {
+  require(!given.problem.empty(),
+          "tune: name the problems, as SPEC or by --problem, or a --suite of them");
+  const MatrixBlock block{.problems = {given.problem},
+                          .optimizers = {given.optimizer.empty() ? "*" : given.optimizer},
+                          .budget = {.iterations = given.iterations, .work = given.work}};
+  return expand(catalog, {.name = "tuning", .title = "", .blocks = {block}}, Rates());
+}
+
+TuningPlan plan_of(const Catalog& catalog, const TuneArguments& given) {
+  TuningPlan plan{.seeds = parse_seeds(given.seeds)};
+  if (!given.grid.empty()) plan.grid = parse_grid(given.grid, given.unit);
+  const Rates rates = Rates::builtin();
+  std::set<std::pair<std::string, std::string>> known;
+  for (const Request& cell :
+       given.suite.empty() ? cells_named(catalog, given) : cells_of(catalog, given)) {
+    const std::string& name = cell.optimizer.name;
+    const optimizers::Tunable& tunable = catalog.optimizers.at(name).tunable;
+    if (tunable.option.empty() || !known.emplace(cell.problem.spec, name).second) continue;
+    const Rates::Row* row = rates.find(cell.problem, name);
+    plan.pairs.push_back({.problem = cell.problem,
+                          .optimizer = name,
+                          .budget = cell.budget,
+                          .options = row && !row->is_from_grid ? row->options : OptionValues()});
+  }
+  require(!plan.pairs.empty(), "tune: none of these methods has an option to tune");
+  return plan;
+}
+
+// The rows of the table that are not replaced, and the new ones, in order.
+Json joined(const Json& old_rows, const Json& new_rows) {
+  std::map<std::pair<std::string, std::string>, Json> rows;
+  for (const Json* some : {&old_rows, &new_rows})
+    for (const Json& row : *some) rows[{row.at("problem"), row.at("optimizer")}] = row;
+  Json all = Json::array();
+  for (const auto& [pair, row] : rows) all.push_back(row);
+  return all;
+}
+
+// Rows stand one a line, so that a change of one reads as one.
+std::string rates_text(const Json& grid, const Json& rows) {
+  std::string text = fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [",
+                                 json_text(grid));
+  const char* separator = "\n";
+  for (const Json& row : rows) {
+    text += separator + json_text(row);
+    separator = ",\n";
+  }
+  return text + "\n]}\n";
+}
+
+void write_table(const TuneArguments& given, const TuningPlan& plan, Json rows) {
+  if (std::filesystem::exists(given.table)) rows = joined(read_json(given.table).at("rows"), rows);
+  const Budget& budget = plan.pairs[0].budget;
+  Json grid{{"points", plan.grid ? plan.grid->values.size() : kGridValues},
+            {"seeds", given.seeds},
+            {"budget", {{"iterations", budget.iterations}, {"work", budget.work}}},
+            {"score", kScore}};
+  if (!plan.grid) grid["extensions"] = kMostExtensions;
+  write_text(given.table, rates_text(grid, rows));
+}
+
+bool is_failed(const TuningScore& score) {
+  return !std::isfinite(score.work) && !std::isfinite(score.left);
+}
+
+// A bar a value, by its place among the scores: the best highest, a dot where it failed.
+std::string bars(const TunedOption& tuned) {
+  constexpr std::array<const char*, 8> kBars = {"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  std::vector<TuningScore> ordered;
+  for (const TuningScore& score : tuned.scores)
+    if (!is_failed(score)) ordered.push_back(score);
+  std::ranges::sort(ordered, [](const auto& a, const auto& b) { return a < b; });
+  ordered.erase(std::ranges::unique(ordered).begin(), ordered.end());
+  std::string text;
+  for (const TuningScore& score : tuned.scores) {
+    const auto place =
+        static_cast<std::size_t>(std::ranges::find(ordered, score) - ordered.begin());
+    const std::size_t worst = std::max<std::size_t>(1, ordered.size() - 1);
+    text += is_failed(score) ? "·" : kBars[(worst - std::min(place, worst)) * 7 / worst];
+  }
+  return text;
+}
+
+// The other values whose scores equal the best's.
+std::vector<std::string> tied_values(const TunedOption& tuned) {
+  std::vector<std::string> ties;
+  for (std::size_t i = 0; i < tuned.values.size(); ++i)
+    if (i != tuned.best && tuned.scores[i] == tuned.scores[tuned.best])
+      ties.push_back(figure(tuned.values[i]));
+  return ties;
+}
+
+const char* edge_name(const TunedOption& tuned) {
+  if (!tuned.is_at_edge) return "";
+  return tuned.best == 0 ? "lowest" : "highest";
+}
+
+std::vector<reports::TableCell> tuning_row(const TunedOption& tuned) {
+  const TuningScore& best = tuned.scores[tuned.best];
+  std::string remark;
+  if (tuned.is_at_edge) remark = fmt::format("at the edge: the {} value tried", edge_name(tuned));
+  if (const auto ties = tied_values(tuned); !ties.empty())
+    remark += (remark.empty() ? "ties with " : "; ties with ") + reports::joined(ties);
+  if (is_failed(best)) remark = "every value failed: the one nearest to the default stays";
+  return {tuned.problem,
+          tuned.optimizer,
+          tuned.option,
+          figure(tuned.values[tuned.best]),
+          bars(tuned),
+          reached_figure(best.work),
+          reached_figure(best.left),
+          remark};
+}
+
+std::string tuning_summary(const TuningResult& result) {
+  std::size_t edges = 0, ties = 0;
+  for (const TunedOption& tuned : result.tuned) {
+    edges += tuned.is_at_edge;
+    ties += !tied_values(tuned).empty();
+  }
+  std::string text =
+      fmt::format("{} tuned: {} with the best at the edge of the grid, {} with a tie",
+                  counted(result.tuned.size(), "pair"), edges, ties);
+  if (result.inapplicable > 0) text += fmt::format("; {} not applicable", result.inapplicable);
+  return text + fmt::format(". {} in {}.", counted(std::size_t(result.outcome.run), "run"),
+                            duration_text(result.outcome.seconds));
+}
+
+// By what decides: the work where any value reaches the target, else what is left.
+Plot tuning_plot(const TunedOption& tuned) {
+  const bool is_reached = std::ranges::any_of(
+      tuned.scores, [](const TuningScore& score) { return std::isfinite(score.work); });
+  Plot plot{
+      .kind = Plot::Kind::lines,
+      .x_label = tuned.option,
+      .y_label = is_reached ? "median work to the target" : "median of what is left at the end",
+      .is_log_x = true,
+      .is_log_y = true};
+  reports::PlotSeries line{.name = fmt::format("{} × {}", tuned.problem, tuned.optimizer)};
+  for (std::size_t i = 0; i < tuned.values.size(); ++i) {
+    const Real value = is_reached ? tuned.scores[i].work : tuned.scores[i].left;
+    line.x.push_back(tuned.values[i]);
+    line.y.push_back(std::isfinite(value) && value > 0 ? value : std::nan(""));
+  }
+  plot.series.push_back(std::move(line));
+  return plot;
+}
+
+// How many pairs were tuned, at which edges the best stand and what ties; one line per pair, twenty
+// at most unless all are wanted, with a plot of its scores in a few characters; for a single pair a
+// larger plot.
+std::string tuning_text(const TuningResult& result, bool lists_all) {
+  Section section{.id = "tuning", .title = "Tuning", .otherwise = "No pair could be tuned."};
+  section.readings = {{"", tuning_summary(result)}};
+  Table table{.columns = {"problem", "optimizer", "option", "best", "grid", "work", "left", ""},
+              .align = "lllrlrrl",
+              .names = 2};
+  table.caption =
+      "Grid: a bar a value from the lowest to the highest, the best highest, · failed. Work: median "
+      "to the target, ✗ not reached; left: median of the loss, or of the error in x, at the end.";
+  for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
+  if (!table.rows.empty()) section.tables.push_back(std::move(table));
+  std::string text =
+      reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows);
+  const bool is_one = result.tuned.size() == 1 && result.tuned[0].values.size() > 1;
+  if (is_one) text += "\n" + reports::text_plot(tuning_plot(result.tuned[0]));
+  return text;
+}
+
+int run(const TuneArguments& given, Session& session) {
+  const Catalog& catalog = session.catalog();
+  const TuningPlan plan = plan_of(catalog, given);
+  RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
+                     .command = session.command()};
+  if (!given.as_json) options.progress = Progress::style_of(STDERR_FILENO);
+  const TuningResult result = tune(catalog, plan, given.folder, options);
+  if (result.outcome.is_interrupted) return exit_code_of(result.outcome);
+  print_failures(result.outcome, given.folder);
+  say(stdout,
+      given.as_json ? json_text(*result.rows, 2) + "\n" : tuning_text(result, given.lists_all));
+  if (!given.table.empty()) write_table(given, plan, *result.rows);
+  return kGood;
+}
+
+}  // namespace
+
+void register_tune(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "tune",
+       .help_position = 200,
+       .summary = "Choose one option of each method for each problem, with an equal budget for all",
+       .examples = "  isoline tune rosenbrock,heat --optimizer gd,adam --table rates.json\n"
+                   "  isoline tune square --optimizer gd --grid rate=1e-3..1x7 --unit cauchy\n"
+                   "  isoline tune --suite quick --optimizer adam --json",
+       .notes =
+           "The best value has the least median work to the target; of equals the one that leaves least, "
+           "then\nthe one nearest to the default. Values that tie with the best and a best value at the edge of "
+           "its\ngrid are named."},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks

@@ -1,0 +1,194 @@
+// isoline validate PATH...: are the records, plans, sheets, suites and rates what they claim to be?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "benchmarks/cli/terminal.h"
+#include "benchmarks/cli/verb.h"
+#include "benchmarks/merge/record_union.h"
+#include "benchmarks/plan/catalog.h"
+#include "core/errors.h"
+#include "core/files.h"
+#include "core/json.h"
+#include "core/records/record.h"
+#include "core/records/schema.h"
+#include "core/text.h"
+#include "core/threads.h"
+#include "reports/sections/words.h"
+
+namespace isoline::benchmarks {
+
+using reports::counted;
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ValidateArguments {
+  std::vector<std::string> paths;
+};
+
+void declare(VerbArguments& verb, ValidateArguments& given) {
+  verb.texts("PATH", given.paths, "Files, or folders to search for *.json").required();
+}
+
+// The schema of that name, read once a thread.
+const Schema* schema_of(const std::string& name) {
+  static thread_local std::map<std::string, Schema> known;
+  if (const auto at = known.find(name); at != known.end()) return &at->second;
+  const auto found = builtin_schemas().find(name);
+  if (found == builtin_schemas().end()) return nullptr;
+  return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
+}
+
+// What is wrong with a file; and what it is known by, where it is a record.
+struct Examined {
+  std::vector<std::string> violations;
+  std::optional<RecordIdentity> identity;
+};
+
+Examined examined_record(const Json& record, const std::string& path) {
+  Examined examined;
+  if (std::string violation = cell_violation(record); !violation.empty())
+    examined.violations.push_back(std::move(violation));
+  if (std::string violation = fields_violation(record, path); !violation.empty())
+    examined.violations.push_back(std::move(violation));
+  examined.identity = RecordIdentity{path, record.at("cell"), record.at("build")};
+  return examined;
+}
+
+// "isoline.run/1": what a document says it is.
+std::string claim_of(const Json& document) {
+  if (!document.is_object()) return "";
+  const auto claim = document.find("schema");
+  return claim != document.end() && claim->is_string() ? claim->get<std::string>() : "";
+}
+
+Examined examined_document(const Json& document, const std::string& path) {
+  if (document.is_object() && document.contains("$schema")) return {};  // a schema itself
+  const std::string claimed = claim_of(document);
+  if (claimed.empty()) return {{"it names no schema"}, {}};
+  const auto dot = claimed.find('.'), slash = claimed.find('/');
+  const std::string name = claimed.substr(dot + 1, slash - dot - 1);
+  const Schema* schema = schema_of(name);
+  if (schema == nullptr) return {{fmt::format("unknown schema '{}'", claimed)}, {}};
+  std::vector<std::string> violations = schema->violations(document);
+  const bool is_sound_record = violations.empty() && claimed == kRunSchema;
+  if (is_sound_record) return examined_record(document, path);
+  return {std::move(violations), {}};
+}
+
+// Of a record most is columns, and the schema's laws are on their elements alone: its outline is
+// sound where it is. Whatever is wrong is told of the whole.
+Examined examined(const std::string& path) {
+  try {
+    const std::string text = read_text(path);
+    const Json outline = outline_of(text, path);
+    if (claim_of(outline) == kRunSchema) {
+      Examined found = examined_document(outline, path);
+      if (found.violations.empty()) return found;
+    }
+    return examined_document(parse_json(text, path), path);
+  } catch (const std::exception& error) {
+    return {{error.what()}, {}};
+  }
+}
+
+// Records come by the hundred thousand, and a path for each would be a kilobyte.
+using Wrong = std::map<std::string, std::vector<std::string>>;
+
+// Whatever stands in a folder, or below it, under the name of JSON; no link leads to another
+// folder.
+void add_files(const fs::path& folder, std::vector<std::string>& files, Wrong& wrong) {
+  try {
+    for (const std::string& name : names_in(folder)) {
+      const fs::path path = folder / name;
+      std::error_code unknown;
+      const bool is_folder = fs::is_directory(fs::symlink_status(path, unknown));
+      if (is_folder) add_files(path, files, wrong);
+      if (name.ends_with(".json")) files.push_back(path.string());
+    }
+  } catch (const UsageError& error) {
+    wrong[folder.string()].emplace_back(error.what());
+  }
+}
+
+std::vector<std::string> files_under(const std::vector<std::string>& paths, Wrong& wrong) {
+  std::vector<std::string> files;
+  for (const fs::path path : paths) {
+    require(is_there(path),
+            [&] { return fmt::format("{}: no such file or folder", path.string()); });
+    std::error_code unknown;
+    if (fs::is_directory(path, unknown))
+      add_files(path, files, wrong);
+    else
+      files.push_back(path.string());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+// What SHA256SUMS of a result folder, as `sha256sum` writes it, lists and the folder lacks, and the
+// reverse for what reports read. `sha256sum -c` checks the digests and cannot find additional
+// files.
+void compare_with_manifest(const fs::path& folder, Wrong& wrong) {
+  const fs::path manifest = folder / "SHA256SUMS";
+  if (!is_there(manifest)) return;
+  constexpr std::size_t kDigest = 64;
+  std::set<fs::path> listed;
+  std::istringstream lines(read_text(manifest));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() <= kDigest + 2) continue;
+    const fs::path file = (folder / line.substr(kDigest + 2)).lexically_normal();
+    listed.insert(file);
+    if (!is_there(file))
+      wrong[manifest.string()].push_back(
+          fmt::format("{} is missing, and SHA256SUMS lists it", file.string()));
+  }
+  for (const char* part : {"runs", "components"}) {
+    if (!is_there(folder / part)) continue;
+    for (const std::string& name : names_in(folder / part))
+      if (const fs::path file = (folder / part / name).lexically_normal(); !listed.contains(file))
+        wrong[manifest.string()].push_back(fmt::format("{} is not in SHA256SUMS", file.string()));
+  }
+}
+
+int run(const ValidateArguments& given, Session&) {
+  Wrong wrong;
+  const std::vector<std::string> files = files_under(given.paths, wrong);
+  for (const std::string& path : given.paths) compare_with_manifest(path, wrong);
+  std::vector<Examined> all(files.size());
+  share(
+      files.size(), [&](std::size_t i) { all[i] = examined(files[i]); },
+      progress_on_terminal("files"));
+  std::vector<RecordIdentity> records;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!all[i].violations.empty()) wrong[files[i]] = std::move(all[i].violations);
+    if (all[i].identity) records.push_back(std::move(*all[i].identity));
+  }
+  for (DoubleRecord& record : double_records(std::move(records)))
+    wrong[record.file].push_back(std::move(record.violation));
+  for (const auto& [file, violations] : wrong)
+    for (const std::string& violation : violations)
+      say(stdout, fmt::format("{}: {}\n", file, violation));
+  say(stdout, fmt::format("{}, {} wrong\n", counted(files.size(), "file"), wrong.size()));
+  return wrong.empty() ? kGood : kWorse;
+}
+
+}  // namespace
+
+void register_validate(VerbRegistry& registry) {
+  registry.add(verb_of(
+      {.name = "validate",
+       .help_position = 190,
+       .summary = "Validate records, suites and all other JSON files of Isoline by their schemas",
+       .examples = "  isoline validate results/quick my-suite.json"},
+      declare, run));
+}
+
+}  // namespace isoline::benchmarks
