@@ -16,6 +16,7 @@ import argparse
 import array
 import ast
 import atexit
+import ctypes
 import http.client
 import http.server
 import json
@@ -31,6 +32,7 @@ import urllib.parse
 
 import isoline
 
+PR_SET_PDEATHSIG = 1  # of prctl(2)
 PATIENCE = 86_400  # seconds: how long a call may take is the affair of the cell
 
 
@@ -90,8 +92,10 @@ class Model:
         with socket.create_server(("127.0.0.1", 0)) as probe:
             port = probe.getsockname()[1]
         self.url = f"http://127.0.0.1:{port}"
-        self.process = subprocess.Popen(command, stdout=sys.stderr, start_new_session=True,
-                                        env=dict(os.environ, PORT=str(port)))
+        libc = ctypes.CDLL(None)
+        self.process = subprocess.Popen(
+            command, stdout=sys.stderr, env=dict(os.environ, PORT=str(port)),
+            preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL))  # it dies with this script
         atexit.register(self.end)
         deadline = time.monotonic() + startup
         while True:
@@ -107,10 +111,7 @@ class Model:
                 time.sleep(0.02)
 
     def end(self):
-        try:
-            os.killpg(self.process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
+        self.process.kill()
         self.process.wait()
 
     def ending(self):

@@ -8,6 +8,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 SERVER = pathlib.Path(__file__).parent / "model_server.py"
@@ -99,15 +100,18 @@ class Client(unittest.TestCase):
         self.assertIn(found["status"], ("target", "converged", "budget", "stalled"),
                       found["message"])
 
-    def test_a_server_that_fails_costs_its_cell_and_says_why(self):
+    def test_a_server_that_fails_is_refused_and_says_why(self):
         for kind, words in [("broken", "no module named meshing"), ("refusing", "mesh is tangled"),
                             ("short", "2 numbers")]:
             with self.subTest(kind=kind):
-                said = self.isoline("run", "--problem", spec(kind), "--optimizer", "adam", "--out",
-                                    kind, code=2)
-                texts = [pathlib.Path(path).read_text(encoding="utf-8")
-                         for path in glob.glob(f"{self.folder}/{kind}/runs/*.json")]
-                self.assertIn(words, said + "".join(texts))
+                self.assertIn(words, self.isoline("run", "--problem", spec(kind), "--optimizer",
+                                                  "adam", "--out", kind, code=1))
+
+    def test_a_server_that_dies_costs_its_cell_and_says_why(self):
+        said = self.isoline("run", "--problem", spec("mortal"), "--optimizer", "adam", "--out",
+                            "mortal", "--no-report", code=2)
+        (path,) = glob.glob(f"{self.folder}/mortal/runs/*.json")
+        self.assertIn("ended with code 3", said + pathlib.Path(path).read_text(encoding="utf-8"))
 
     def test_what_is_given_wrong_is_refused_in_one_sentence(self):
         for given, words in [("--start [1] --target [0,0]", "--start must have 2 numbers, got 1"),
@@ -118,6 +122,9 @@ class Client(unittest.TestCase):
 
     def test_no_server_outlives_its_cell(self):
         self.record(spec("plain"), "levenberg-marquardt")
+        deadline = time.monotonic() + 30
+        while processes_with(str(SERVER)) and time.monotonic() < deadline:
+            time.sleep(0.1)
         self.assertEqual(processes_with(str(SERVER)), [])
 
 

@@ -10,6 +10,7 @@ and the same with what other servers do, by the word that it is started with:
   late      listens after a second
   broken    dies before it listens
   short     gives one number where two are promised
+  mortal    ends at its fortieth Evaluate
   refusing  answers Evaluate by an error
 """
 
@@ -22,6 +23,7 @@ import time
 
 KIND = sys.argv[1] if len(sys.argv) > 1 else "plain"
 PARTS = KIND == "parts"
+asked_so_far = 0
 
 
 def residuals(x):
@@ -69,6 +71,10 @@ class Answers(http.server.BaseHTTPRequestHandler):
         x = joined(asked["input"])
         if KIND == "refusing":
             return {"error": {"type": "InvalidOutput", "message": "the mesh is tangled"}}, 500
+        global asked_so_far
+        asked_so_far += 1
+        if KIND == "mortal" and asked_so_far >= 40:
+            os._exit(3)
         if KIND == "chatty":
             print("x" * (1 << 20))
         y = residuals(x)
