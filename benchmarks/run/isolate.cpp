@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "benchmarks/run/child_process.h"
+#include "benchmarks/run/process_group.h"
 #include "core/clock.h"
 #include "core/foreign/child.h"
 #include "core/text.h"

@@ -15,7 +15,6 @@
 #include <string_view>
 #include <utility>
 
-#include "benchmarks/run/child_process.h"
 #include "benchmarks/run/isolate.h"
 #include "benchmarks/run/process_group.h"
 #include "core/clock.h"

@@ -13,7 +13,7 @@
 #include <map>
 #include <memory>
 
-#include "benchmarks/run/child_process.h"
+#include "benchmarks/run/process_group.h"
 #include "core/clock.h"
 #include "core/threads.h"
 #include "optimizers/optimizer.h"

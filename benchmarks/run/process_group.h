@@ -8,15 +8,96 @@
 
 #include <sys/types.h>
 
+#include <csignal>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "benchmarks/run/control_group.h"
-
 namespace isoline::benchmarks {
+
+struct ProcessFigures {
+  pid_t parent = 0;
+  double processor_seconds = 0;  // its own and that of children that it has waited for
+  std::int64_t resident_bytes = 0, address_space_bytes = 0;
+};
+std::optional<ProcessFigures> figures_of(pid_t process);  // nothing where it is gone
+
+// Its resident memory, of what it shares with others its share alone: 0 where that is not told.
+std::int64_t proportional_bytes(pid_t process);
+
+std::vector<pid_t> children_of(pid_t process);  // of all its threads, those that ended included
+std::vector<pid_t> processes_of_this_namespace();
+
+// A mark that a process gives itself and all that descends from it inherit, whatever session or
+// group they move to and whatever program they become; 0 where there is none.
+void mark_this_process(std::uint64_t mark);
+std::uint64_t mark_of(pid_t process);
+
+// A group of the kernel's own (cgroup v2), where this process may make one: what is in it is killed
+// at once, however fast it multiplies.
+
+class ControlGroup {
+ public:
+  // Below the control group of this process; nothing where there is none that may be divided.
+  static std::unique_ptr<ControlGroup> make(std::uint64_t mark);
+  ~ControlGroup();  // it is empty by then
+  ControlGroup(const ControlGroup&) = delete;
+  ControlGroup& operator=(const ControlGroup&) = delete;
+
+  void take(pid_t process) const;  // and all that it starts from then on
+  void kill() const;
+
+ private:
+  explicit ControlGroup(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  const std::filesystem::path folder_;
+};
+
+// Signals that wait while a child is made: one that it sends at once must find it in the table of
+// this process' children.
+
+class HeldSignals {
+ public:
+  HeldSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    sigprocmask(SIG_SETMASK, &all, &before_);
+  }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+  ~HeldSignals() { release(); }
+  void release() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
+// What every isolated child does with itself, and what its end by a signal means.
+
+// Of the calling process, over what it has already: beyond that an allocation throws.
+void limit_memory(std::int64_t bytes);
+
+[[noreturn]] void leave();  // with its output written, and nothing else done
+
+// A signal that somebody sends, a scheduler, a user or the kernel out of memory, as opposed to one
+// that a fault of its own raises.
+bool is_from_outside(int signal);
+
+std::string signal_name(int signal);  // "signal 11 (Segmentation fault)"
+
+// Of a child that was to answer and did not: "it was ended by signal …", "it left …".
+std::string end_of_answerer(int wait_status);
+
+// A child process and all that descends from it, as one: started, measured, asked to end, killed
+// and reaped together. What descends cannot get away by a session of its own or by outliving its
+// parent: this process is a subreaper, and every descendant carries the mark of its group.
+//
+// What has its user's rights can still end this process by SIGKILL; docs/running-a-matrix.md says
+// what holds and what does not.
 
 class ProcessGroup {
  public:

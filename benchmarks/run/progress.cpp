@@ -1,10 +1,11 @@
-// The progress line, its rate and its time left.
+// The pace of what has ended, over what is to come.
 #include "benchmarks/run/progress.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,25 @@
 #include "core/text.h"
 
 namespace isoline::benchmarks {
+
+void TimeLeft::finish(double predicted_seconds, double now) {
+  done_ += predicted_seconds;
+  last_ = now;
+}
+
+// Between two ends it counts down. The first few cells say little of the pace: predictions count as
+// much as a fiftieth of the run would.
+std::optional<double> TimeLeft::at(double now) const {
+  constexpr double kPrior = 0.02;
+  if (done_ <= 0 || expected_ <= 0) return std::nullopt;
+  const double prior = kPrior * expected_;
+  const double pace = (last_ + prior / jobs_) / (done_ + prior);
+  const double left = std::max(0.0, expected_ - done_) * pace;
+  return std::max(0.0, left - (now - last_));
+}
+
+// The progress line, its rate and its time left.
+
 namespace {
 
 constexpr double kLiveSeconds = 0.1, kPlainSeconds = 10;

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "benchmarks/plan/catalog.h"
-#include "problems/problem.h"
 #include "core/records/npy.h"
+#include "problems/problem.h"
 
 namespace isoline::benchmarks {
 

@@ -19,8 +19,8 @@
 
 #include "core/status.h"
 #include "core/threads.h"
-#include "reports/compare/allowed.h"
 #include "reports/compare/causes.h"
+#include "reports/compare/pairing.h"
 #include "reports/compare/timing.h"
 
 namespace isoline::reports {

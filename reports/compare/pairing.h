@@ -1,13 +1,33 @@
 // Which subject of NEW answers which of BASE, and which options and build parts differ.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "reports/compare/subject.h"
 
 namespace isoline::reports {
+
+inline constexpr const char* kAllowedSchema = "isoline.allowed/1";
+
+// Patterns hold for a name, or for a specification as asked or as given; '*' stands for any text.
+struct AllowedCells {
+  std::string problem = "*", optimizer = "*", reason;
+};
+using AllowedList = std::vector<AllowedCells>;
+
+AllowedList allowed_from_json(const Json& json);  // UsageError where it is no such list
+AllowedList read_allowed(const std::filesystem::path& file);
+
+// The first entry that names the subject; the list's end where none does.
+AllowedList::const_iterator entry_for(const AllowedList& list, const Subject& subject);
+
+bool matches(std::string_view pattern, std::string_view text);
+
+// Which subject of NEW answers which of BASE, and which options and build parts differ.
 
 struct Pairs {
   std::vector<std::pair<const Subject*, const Subject*>> both;  // in the order of BASE

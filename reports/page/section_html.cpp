@@ -2,9 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 
+#include "core/files.h"
+#include "core/records/audited.h"
 #include "reports/formats/escape.h"
+#include "reports/page/kinds.h"
 #include "reports/page/page.h"
+#include "reports/sections/claim_terms.h"
+#include "reports/sections/origins.h"
+#include "reports/sections/sections.h"
+#include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
@@ -113,6 +122,282 @@ std::string section_html(const Section& section) {
   }
   for (const Table& table : section.tables) html += table_html(table, section.title);
   return html;
+}
+
+// The claims of the page: the verdicts, and for each claim a part of its own that opens when its
+// row leads there.
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A path as a relative address.
+std::string address(const std::string& path) {
+  std::string out;
+  for (const char letter : path) {
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                          (letter >= '0' && letter <= '9') ||
+                          std::string_view("-._~/").find(letter) != std::string_view::npos;
+    out += is_plain ? std::string(1, letter) : fmt::format("%{:02X}", byte);
+  }
+  return out;
+}
+
+// From the page to a record; empty where it is not known where either lies.
+std::string record_link(const Document& document, const std::string& name) {
+  if (document.out.empty()) return "";
+  for (const fs::path folder : document.comparison.study->folders) {
+    std::error_code unknown;
+    const fs::path file = folder / "runs" / name;
+    if (!is_there(file)) continue;
+    const fs::path way = fs::proximate(file, document.out, unknown);
+    return unknown ? "" : address(way.generic_string());
+  }
+  return "";
+}
+
+void link_records(const Document& document, Section& claim) {
+  for (Table& table : claim.tables)
+    if (!table.columns.empty() && table.columns.back() == "record")
+      for (auto& row : table.rows) row.back().link = record_link(document, row.back().text);
+}
+
+std::string readings_html(const Section& claim) {
+  std::string html = "<dl>";
+  for (const Reading& reading : claim.readings)
+    html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
+  if (!claim.command.empty())
+    html += fmt::format(
+        "<dt>To repeat it<dd><code>{0}</code> <button class=copy type=button "
+        "data-command=\"{0}\" hidden>copy</button>",
+        html_text(claim.command));
+  return html + "</dl>\n";
+}
+
+std::string claim_html(const Document& document, const Judgement& judgement) {
+  Section claim = claim_section(judgement);
+  link_records(document, claim);
+  std::string html = fmt::format(
+      "<details class=claim id=\"{0}\" data-claim=\"{1}\"><summary><b>{2}</b> {3} "
+      "<code>{1}</code></summary><noscript>\n",
+      html_text(claim.id), html_text(judgement.id), html_text(marked_verdict(judgement)),
+      html_text(claim.title));
+  html += "<div class=decided>" + readings_html(claim) + "<div>";
+  for (const Plot& plot : claim.plots) html += plot_html(plot);
+  html += "</div></div>\n";
+  claim.readings.clear();
+  claim.plots.clear();
+  if (!claim.tables.empty()) html += section_html(claim);
+  return html + "<p><a href=\"#claims\">All verdicts</a></p></noscript></details>\n";
+}
+
+}  // namespace
+
+std::string claims_html(const Document& document) {
+  std::string html = section_html(document.section("claims"));
+  if (document.claims.empty()) return html;
+  html += "<h3>Each claim, and what decides it</h3>\n<div class=each-claim>";
+  for (const Judgement& judgement : document.claims) html += claim_html(document, judgement);
+  return html + "</div>";
+}
+
+// The table of all cells. Scripts sort and filter it; without scripts it is complete.
+
+namespace {
+
+std::string shown_html(const std::string& spec) { return html_text(shown_spec(spec)); }
+
+std::string spread_cell(const Spread& spread, const char* kind = "") {
+  if (spread.n == 0) return "<td>";
+  const std::string range = range_figure(spread, reached_figure);
+  return fmt::format("<td{}>{}{}", kind, reached_figure(spread.median),
+                     range.empty() ? "" : "<small>" + range + "</small>");
+}
+
+std::string time_cell(const Spread& seconds, bool is_timed_alone) {
+  const std::string range = range_figure(seconds, milliseconds);
+  return fmt::format("<td>{}{}{}", milliseconds(seconds.median),
+                     is_timed_alone || !seconds.is_solved() ? "" : "≈",
+                     range.empty() ? "" : "<small>" + range + "</small>");
+}
+
+// "0..2", where the seeds of a cell follow each other and were asked for alike; else the first.
+std::string seeds_of(const Comparison& c, const Cell& cell) {
+  const Request& first = c.runs[cell.runs.front()].record->request;
+  std::uint64_t next = first.seed;
+  for (const std::size_t run : cell.runs) {
+    const Request& request = c.runs[run].record->request;
+    const bool is_alike = request.optimizer.spec == first.optimizer.spec &&
+                          budget_options(request) == budget_options(first);
+    if (request.seed != next++ || !is_alike) return fmt::format("={}", first.seed);
+  }
+  const std::uint64_t last = next - 1;
+  return first.seed == last ? fmt::format("={}", last) : fmt::format("{}..{}", first.seed, last);
+}
+
+// What the command that repeats a cell has of its own, for scripts to put together: which budget,
+// the seeds, and the optimizer where its name in the row is not its spec.
+std::string again_cell(const Comparison& c, const Cell& cell, std::size_t s,
+                       std::vector<std::string>& budgets) {
+  const Request& request = c.runs[cell.runs[0]].record->request;
+  const std::string budget = budget_options(request), &spec = request.optimizer.spec;
+  const auto at = std::ranges::find(budgets, budget);
+  const auto place = at - budgets.begin();
+  if (at == budgets.end()) budgets.push_back(budget);
+  const bool is_shown = shown_spec(c.optimizers[s].brief) == spec;
+  return fmt::format("<td data-again=\"{} {}{}\">", place, seeds_of(c, cell),
+                     is_shown ? "" : " " + html_text(spec));
+}
+
+std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
+                       std::vector<std::string>& budgets) {
+  const Cell& cell = c.cell(p, s);
+  std::string row = fmt::format(
+      "<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, html_text(problem_name(c.problems[p])),
+      html_text(setting_text(c, p, s)), cell.privileges.empty() ? "" : "<sup>†</sup>");
+  if (!cell.is_measured()) {
+    row += cell.runs.empty() ? "<td>" : "<td>n/a";
+    for (int empty = 0; empty < 8; ++empty) row += "<td>";
+    return row + fmt::format("<td>{}<td>\n", cell.runs.empty()
+                                                 ? "missing"
+                                                 : "n/a: " + html_text(cell.inapplicable));
+  }
+  row += fmt::format("<td>{}", count_text(cell, kTightest));
+  const Measure by = c.yardstick.by == Measure::time ? Measure::work : c.yardstick.by;
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    row += spread_cell(cell.taken[by][t], cell.is_best[t] ? " class=best" : "");
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    row += time_cell(cell.taken[Measure::time][t], cell.is_timed_alone);
+  row += spread_cell(cell.loss) + spread_cell(cell.x_error);
+  return row +
+         fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, s, budgets));
+}
+
+}  // namespace
+
+std::string details_html(const Comparison& c) {
+  constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
+  if (c.problems.size() * c.optimizers.size() > kMost)
+    return fmt::format(
+        "<p class=lead>Of more than {} cells there is no table here: all of them stand "
+        "in report.csv.</p>",
+        kMost);
+  std::string rows;
+  std::vector<std::string> budgets;
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s, budgets);
+  std::vector<std::string> quoted;
+  for (const std::string& budget : budgets) quoted.push_back(json_quoted(budget));
+  std::string html = fmt::format(
+      "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th "
+      "scope=col>problem<th scope=col>"
+      "optimizer<th scope=col>runs<br>to {}",
+      html_text("[" + joined(quoted) + "]"), tau_name(c));
+  const std::string_view counted =
+      c.yardstick.by == Measure::time ? "work" : name_of(c.yardstick.by);
+  for (const std::string_view what : {counted, std::string_view("time, ms,")})
+    for (const Tolerance& tolerance : c.yardstick.tolerances)
+      html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);
+  html +=
+      "<th scope=col>final loss<th scope=col>error in x<th scope=col>how the runs ended<th "
+      "scope=col>again<tbody>\n";
+  return html + rows + "</table>";
+}
+
+// The grid of measured properties, a row a method, from which its card opens.
+
+namespace {
+
+enum class Answer { yes, no, unknown };
+
+Answer is_kept(Real deviation) {
+  if (std::isnan(deviation)) return Answer::unknown;
+  return deviation <= kInvariantDeviation ? Answer::yes : Answer::no;
+}
+
+Answer has_order(const Approach& approach, Real least) {
+  if (std::isnan(approach.remaining)) return Answer::unknown;
+  const bool is_regular = approach.residual <= kMostOrderResidual;
+  return (approach.is_exact && approach.steps == 1) || (is_regular && approach.order >= least)
+             ? Answer::yes
+             : Answer::no;
+}
+
+Answer is_in_one_step(const Approach& approach) {
+  if (std::isnan(approach.remaining)) return Answer::unknown;
+  return approach.is_exact && approach.steps == 1 ? Answer::yes : Answer::no;
+}
+
+struct Property {
+  const char *name, *meaning;
+  Answer (*answer)(const AuditedOptimizer& audited);
+};
+
+const Property kProperties[] = {
+    {"units of x", "the path in y is the same in other units of each component of x",
+     [](const AuditedOptimizer& a) { return is_kept(a.deviations[0]); }},
+    {"rotation of x", "the path in y is the same in rotated coordinates of x",
+     [](const AuditedOptimizer& a) { return is_kept(a.deviations[1]); }},
+    {"linear map of x", "the path in y is the same under any linear map of x",
+     [](const AuditedOptimizer& a) { return is_kept(a.deviations[2]); }},
+    {"units of y", "the path in x is the same in other units of each component of y",
+     [](const AuditedOptimizer& a) { return is_kept(a.deviations[3]); }},
+    {"rotation of y", "the path in x is the same in rotated coordinates of y",
+     [](const AuditedOptimizer& a) { return is_kept(a.deviations[4]); }},
+    {"linear map of y", "the path in x is the same under any linear map of y",
+     [](const AuditedOptimizer& a) { return is_kept(a.deviations[5]); }},
+    {"one step", "reaches a regular solution in one step",
+     [](const AuditedOptimizer& a) { return is_in_one_step(a.regular); }},
+    {"superlinear", "order 1.5 or more near a regular solution",
+     [](const AuditedOptimizer& a) { return has_order(a.regular, 1.5); }},
+    {"singular too", "order 1.5 or more where J is singular at the solution",
+     [](const AuditedOptimizer& a) { return has_order(a.singular, 1.5); }},
+    {"as declared", "asked for no oracle that its entry does not name",
+     [](const AuditedOptimizer& a) { return a.flags.empty() ? Answer::yes : Answer::no; }}};
+
+const AuditedOptimizer* audit_of(const Comparison& c, std::size_t s) {
+  const auto& all = c.study->audits;
+  const auto at = std::ranges::find(all, c.optimizers[s].method, &AuditedOptimizer::name);
+  return at == all.end() ? nullptr : &*at;
+}
+
+std::string answer_html(const Property& property, const AuditedOptimizer* audited) {
+  const Answer answer = audited == nullptr ? Answer::unknown : property.answer(*audited);
+  if (answer == Answer::yes) return "<td class=yes>✓";
+  return answer == Answer::no ? "<td class=no>✗" : "<td class=none>";
+}
+
+std::string row_html(const Comparison& c, std::size_t s) {
+  const OptimizerAxis& axis = c.optimizers[s];
+  std::string html = fmt::format(
+      "<tr data-s={0}><th scope=row><a href=\"#optimizer-{0}\">{1}{2}</a>{3}<td class=text>{4}", s,
+      swatch(), html_text(optimizer_name(axis)), marks_html(axis), kind_title(axis.mathematics()));
+  for (const Property& property : kProperties) html += answer_html(property, audit_of(c, s));
+  return html + fmt::format("<td class=text>{}<td class=text>{}\n",
+                            axis.sheet == nullptr ? "" : html_text(joined(axis.sheet->oracles)),
+                            html_text(joined(axis.privileges)));
+}
+
+}  // namespace
+
+std::string methods_html(const Comparison& c) {
+  std::string html =
+      "<table class=\"grid sortable\" id=methods-table><caption>Methods by rank; press a name for "
+      "its card</caption><thead><tr><th scope=col>method<th scope=col>kind";
+  std::string legend;
+  for (const Property& property : kProperties) {
+    html += fmt::format("<th scope=col>{}", property.name);
+    legend += fmt::format("{}<b>{}</b>: {}", legend.empty() ? "" : " · ", property.name,
+                          property.meaning);
+  }
+  html += "<th scope=col>asks for<th scope=col id=privileges>† privileged information<tbody>\n";
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) html += row_html(c, s);
+  return "<div class=\"scroll pane\" tabindex=0 role=region aria-label=Methods>" + html +
+         "</table></div><p class=legend>Measured on small problems whose answers are known, at "
+         "default options. " +
+         legend + ". Empty: not measured.</p>";
 }
 
 }  // namespace isoline::reports

@@ -1,4 +1,6 @@
-// Draws the plots of the statistics as static SVG; colours and dashes are in page/plots.css.
+// Axes as SVG.
+#include "reports/page/svg.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,15 +9,226 @@
 #include <limits>
 
 #include "reports/formats/escape.h"
-#include "reports/page/frame.h"
-#include "reports/page/lines_svg.h"
 #include "reports/page/page.h"
+#include "reports/sections/panels.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
-constexpr Real kWidth = 720, kNames = 190, kRow = 18, kTop = 26, kBelow = 40;
+Real share_of(Real value, Real low, Real high) {
+  if (!(high > low)) return 0;
+  return std::clamp((value - low) / (high - low), 0.0, 1.0);
+}
+
+std::string tick_text(Real value) {
+  constexpr Real kInFull = 9999;
+  if (value > kInFull) return fmt::format("1e{:.0f}", std::log10(value));
+  return figure(value);
+}
+
+}  // namespace
+
+Real Frame::x(Real value) const {
+  if (is_log_x)
+    return left +
+           width * share_of(std::log(std::max(value, x_low)), std::log(x_low), std::log(x_high));
+  return left + width * share_of(value, x_low, x_high);
+}
+
+Real Frame::y(Real value) const {
+  if (is_log_y)
+    return bottom() -
+           height * share_of(std::log(std::max(value, y_low)), std::log(y_low), std::log(y_high));
+  return bottom() - height * share_of(value, y_low, y_high);
+}
+
+std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
+  constexpr Real kMost = 8, kFewDoublings = 100;
+  constexpr int kBound =
+      64;  // of any axis: where a step is lost to rounding, none goes on for ever
+  std::vector<Real> ticks;
+  if (is_logarithmic) {
+    Real factor = high / low <= kFewDoublings ? 2 : 10;
+    const Real powers = std::log(high / low) / std::log(factor);
+    factor = std::pow(factor, std::max(1.0, std::ceil(powers / kMost)));
+    Real tick = std::pow(factor, std::ceil(std::log(low) / std::log(factor) - 1e-9));
+    while (tick <= high * (1 + 1e-9) && std::ssize(ticks) < kBound) {
+      ticks.push_back(tick);
+      tick *= factor;
+    }
+    return ticks;
+  }
+  const Real rough = (high - low) / kMost, power = std::pow(10.0, std::floor(std::log10(rough)));
+  Real step = 10 * power;
+  for (const Real digit : {5, 2, 1})
+    if (digit * power >= rough) step = digit * power;
+  const Real first = std::ceil(low / step - 1e-9);
+  for (int i = 0; i < kBound && (first + i) * step <= high + 1e-9 * step; ++i)
+    ticks.push_back((first + i) * step + 0.0);  // no −0
+  return ticks;
+}
+
+namespace {
+
+// 1, 2 and 5 times the powers of ten within two decades, else the powers alone.
+std::vector<Real> heights_of(const Frame& frame) {
+  constexpr Real kNear = 100;
+  if (!frame.is_log_y || frame.y_high > kNear * frame.y_low)
+    return ticks_of(frame.y_low, frame.y_high, frame.is_log_y);
+  std::vector<Real> ticks;
+  Real power = std::pow(10.0, std::floor(std::log10(frame.y_low)));
+  for (int decade = 0; decade <= 3; ++decade) {
+    for (const Real digit : {1, 2, 5})
+      if (digit * power >= frame.y_low && digit * power <= frame.y_high)
+        ticks.push_back(digit * power);
+    power *= 10;
+  }
+  return ticks;
+}
+
+}  // namespace
+
+std::string x_axis(const Frame& frame, const std::string& label) {
+  std::string svg;
+  for (const Real tick : ticks_of(frame.x_low, frame.x_high, frame.is_log_x))
+    svg += fmt::format(
+        "<path class=grid d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/><text x={0:.1f} y={3:.0f} "
+        "class=tick text-anchor=middle>{4}</text>",
+        frame.x(tick), frame.top, frame.bottom(), frame.bottom() + 14, tick_text(tick));
+  return svg + fmt::format("<text x={:.0f} y={:.0f} class=tick text-anchor=middle>{}</text>",
+                           frame.left + frame.width / 2, frame.bottom() + 30, html_text(label));
+}
+
+std::string y_axis(const Frame& frame, const std::string& label, bool is_share) {
+  std::string svg;
+  for (const Real tick : heights_of(frame)) {
+    if (is_share && std::lround(10 * tick) % 2 != 0) continue;
+    svg += fmt::format(
+        "<path class=grid d=\"M{0:.0f} {1:.1f}H{2:.0f}\"/><text x={3:.0f} y={4:.1f} class=tick "
+        "text-anchor=end>{5}</text>",
+        frame.left, frame.y(tick), frame.right(), frame.left - 6, frame.y(tick) + 4,
+        is_share ? percent(tick) : figure(tick));
+  }
+  return svg + fmt::format("<text x={:.0f} y={:.0f} class=tick>{}</text>", frame.left,
+                           frame.top - 8, html_text(label));
+}
+
+// Draws lines with their bands, and a bar where a published value says a line should be.
+
+namespace {
+
+// Narrow, so that its letters can be read on a telephone.
+constexpr Real kWidth = 480, kHeight = 300, kLeft = 58, kTop = 26, kRight = 18, kBelow = 40;
+constexpr std::size_t kFewPoints = 16;  // are marked
+
+Frame frame_of(const Plot& plot) {
+  const Window window = window_of(plot);
+  return {.left = kLeft,
+          .top = kTop,
+          .width = kWidth - kLeft - kRight,
+          .height = kHeight - kTop - kBelow,
+          .x_low = window.x_low,
+          .x_high = window.x_high,
+          .y_low = window.y_low,
+          .y_high = window.y_high,
+          .is_log_x = plot.is_log_x,
+          .is_log_y = plot.is_log_y};
+}
+
+// "M1 2L3 4", with a gap where there is no number.
+std::string path_of(const Frame& frame, const std::vector<Real>& x, const std::vector<Real>& y) {
+  std::string path;
+  bool is_down = false;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool is_number = !std::isnan(y[i]);
+    if (is_number)
+      path += fmt::format("{}{:.0f} {:.1f}", is_down ? 'L' : 'M', frame.x(x[i]), frame.y(y[i]));
+    is_down = is_number;
+  }
+  return path;
+}
+
+std::string band_of(const Frame& frame, const PlotSeries& line) {
+  std::vector<Real> x, y;
+  for (std::size_t i = 0; i < line.x.size(); ++i)
+    if (!std::isnan(line.low[i]) && !std::isnan(line.high[i])) {
+      x.push_back(line.x[i]);
+      y.push_back(line.high[i]);
+    }
+  for (std::size_t i = line.x.size(); i-- > 0;)
+    if (!std::isnan(line.low[i]) && !std::isnan(line.high[i])) {
+      x.push_back(line.x[i]);
+      y.push_back(line.low[i]);
+    }
+  return x.empty() ? "" : fmt::format("<path class=band d=\"{}Z\"/>", path_of(frame, x, y));
+}
+
+std::string line_svg(const Frame& frame, const PlotSeries& line, std::size_t place) {
+  std::string svg = fmt::format("<g class=c{}>", place % 8);
+  if (!line.low.empty() && line.low != line.high) svg += band_of(frame, line);
+  svg += fmt::format("<path class=line d=\"{}\"><title>{}</title></path>",
+                     path_of(frame, line.x, line.y), html_text(line.name));
+  for (std::size_t i = 0; i < line.x.size() && line.x.size() <= kFewPoints; ++i)
+    if (std::isfinite(line.y[i]))
+      svg += fmt::format("<circle cx={:.0f} cy={:.1f} r=3><title>{}: {}</title></circle>",
+                         frame.x(line.x[i]), frame.y(line.y[i]), html_text(line.name),
+                         figure(line.y[i]));
+  return svg + "</g>";
+}
+
+// A bar over the values that agree, crossed at the published one; a band along a line otherwise.
+std::string published_svg(const Frame& frame, const PlotSeries& goal) {
+  if (goal.x.size() > 1)
+    return fmt::format(
+        "<g class=goal>{}{}</g>", band_of(frame, goal),
+        goal.y.empty()
+            ? fmt::format("<path class=line d=\"M{0:.0f} {1:.0f}V{2:.0f}\"/>",
+                          frame.x(goal.x[goal.x.size() / 2]), frame.top, frame.bottom())
+            : fmt::format("<path class=line d=\"{}\"/>", path_of(frame, goal.x, goal.y)));
+  constexpr Real kHalf = 7, kCross = 12, kThinnest = 2;
+  const Real x = frame.x(goal.x[0]), top = frame.y(goal.high[0]);
+  return fmt::format(
+      "<g class=goal><rect class=band x={:.0f} y={:.1f} width={:.0f} height={:.1f} /><path "
+      "class=line d=\"M{:.0f} {:.1f}h{:.0f}\"/><title>published: {} ({} to {})</title></g>",
+      x - kHalf, top, 2 * kHalf, std::max(kThinnest, frame.y(goal.low[0]) - top), x - kCross,
+      frame.y(goal.y[0]), 2 * kCross, figure(goal.y[0]), figure(goal.low[0]), figure(goal.high[0]));
+}
+
+std::string legend_entry(const std::string& kind, const std::string& name) {
+  return fmt::format(
+      "<span class={}><svg class=swatch viewBox=\"0 0 26 8\" aria-hidden=true><path class=line "
+      "d=\"M0 4h26\"/></svg> {}</span> ",
+      kind, html_text(name));
+}
+
+}  // namespace
+
+std::string lines_svg(const Plot& plot) {
+  const Frame frame = frame_of(plot);
+  std::string svg =
+      fmt::format("<svg class=lines viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\">",
+                  kWidth, kHeight, html_text(plot.title + ". " + plot.caption));
+  svg += x_axis(frame, plot.x_label) + y_axis(frame, plot.y_label, false);
+  for (std::size_t i = plot.series.size(); i-- > 0;)  // the first on top
+    svg += line_svg(frame, plot.series[i], i);
+  for (const PlotSeries& goal : plot.published) svg += published_svg(frame, goal);
+  return svg + "</svg>";
+}
+
+std::string lines_legend(const Plot& plot) {
+  std::string html = "<p class=marks>";
+  for (std::size_t i = 0; i < plot.series.size(); ++i)
+    html += legend_entry(fmt::format("c{}", i % 8), plot.series[i].name);
+  if (!plot.published.empty()) html += legend_entry("goal", "published");
+  return html + "</p>";
+}
+
+// Draws the plots of the statistics as static SVG; colours and dashes are in page/plots.css.
+
+namespace {
+
+constexpr Real kPlotWidth = 720, kNames = 190, kRow = 18, kPlotTop = 26, kPlotBelow = 40;
 constexpr const char* kMarks[] = {"●", "■", "▲", "◆", "▼", "○", "□", "△"};
 
 // Shapes, so that colour is not needed to tell series apart.
@@ -72,8 +285,8 @@ std::string line_svg(const Frame& frame, const Plot& plot, std::size_t place) {
 std::string steps_svg(const Plot& plot) {
   const auto& x = plot.series[0].x;
   const Frame frame{.left = 46,
-                    .top = kTop,
-                    .width = kWidth - 46 - kNames - 20,
+                    .top = kPlotTop,
+                    .width = kPlotWidth - 46 - kNames - 20,
                     .height = 250,
                     .x_low = x.front(),
                     .x_high = x.back(),
@@ -107,8 +320,8 @@ Frame rows_frame(const Plot& plot) {
   if (plot.is_log_x) high = std::max(high, 10 * low);
   if (!(high > low)) high = low + 1;
   return {.left = kNames,
-          .top = kTop,
-          .width = kWidth - kNames - 20,
+          .top = kPlotTop,
+          .width = kPlotWidth - kNames - 20,
           .height = kRow * static_cast<Real>(plot.rows.size()),
           .x_low = low,
           .x_high = high,
@@ -174,8 +387,8 @@ std::string bars_svg(const Plot& plot) {
 
 Real height_of(const Plot& plot) {
   const Real rows = static_cast<Real>(plot.rows.size());
-  if (plot.kind == Plot::Kind::steps) return kTop + 250 + kBelow;
-  return kTop + kRow * rows + kBelow;
+  if (plot.kind == Plot::Kind::steps) return kPlotTop + 250 + kPlotBelow;
+  return kPlotTop + kRow * rows + kPlotBelow;
 }
 
 // What the marks of a plot mean, where its rows do not say.
@@ -197,7 +410,7 @@ std::string marks_html(const Plot& plot) {
 // Rows of methods close up where some are hidden: the scripts are told how high a row is.
 std::string closing_rows(const Plot& plot) {
   if (plot.rows.empty() || plot.rows[0].topic.method.empty()) return "";
-  return fmt::format(" class=dots data-row={:.0f} data-edge={:.0f}", kRow, kTop + kBelow);
+  return fmt::format(" class=dots data-row={:.0f} data-edge={:.0f}", kRow, kPlotTop + kPlotBelow);
 }
 
 }  // namespace
@@ -208,7 +421,7 @@ std::string plot_svg(const Plot& plot) {
   constexpr Draw kDraw[] = {steps_svg, dots_svg, bars_svg};  // by kind
   return fmt::format(
              "<svg{} viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\"><title>{}</title>",
-             closing_rows(plot), kWidth, height_of(plot),
+             closing_rows(plot), kPlotWidth, height_of(plot),
              html_text(plot.title + ". " + plot.reading), html_text(plot.title)) +
          kDraw[static_cast<std::size_t>(plot.kind)](plot) + "</svg>";
 }

@@ -35,10 +35,10 @@ Plots runtime_plot(const Comparison& comparison);
 
 // In the order of a report: what is declared above stands in it once it is named here.
 inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
-    profile_table, leader_table,   loss_without_x_table, condition_table, data_profile_table,
-    restart_table,        calls_table,     prices_table};
-inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {
-    profile_plot, log_ratio_plot, data_profile_plot, runtime_plot};
+    profile_table,      leader_table,  loss_without_x_table, condition_table,
+    data_profile_table, restart_table, calls_table,          prices_table};
+inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {profile_plot, log_ratio_plot,
+                                                                  data_profile_plot, runtime_plot};
 
 // Of the section on rates: without rows where no method ran both ways.
 Table tuned_and_defaults_table(const Comparison& comparison);

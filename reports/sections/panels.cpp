@@ -1,4 +1,4 @@
-// The kinds of panels: medians over seeds with their range, samples and pictures of the first seed.
+// The window of a plot of lines: all medians, and not so much of the bands that these lie flat.
 #include "reports/sections/panels.h"
 
 #include <fmt/format.h>
@@ -7,11 +7,77 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
+#include <span>
 
 #include "reports/read/curves.h"
 #include "reports/sections/words.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+namespace {
+
+struct Extent {
+  Real low = kNever, high = -kNever;
+  void take(Real value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+Extent extent_of(const Plot& plot, std::vector<Real> PlotSeries::*values, bool is_logarithmic) {
+  Extent extent;
+  for (const auto* all : {&plot.series, &plot.published})
+    for (const PlotSeries& line : *all)
+      for (const Real value : line.*values)
+        if (value > 0 || !is_logarithmic) extent.take(value);
+  return extent;
+}
+
+Extent extent_of_x(const Plot& plot) {
+  Extent extent = extent_of(plot, &PlotSeries::x, plot.is_log_x);
+  if (!(extent.high > extent.low)) extent = {0, std::max(1.0, 2 * extent.low)};
+  return extent;
+}
+
+Extent extent_of_y(const Plot& plot) {
+  Extent extent = extent_of(plot, &PlotSeries::y, plot.is_log_y);
+  const Extent medians = extent;
+  constexpr Real kFurther = 3;
+  const auto take_edge = [&](Real y) {
+    if (std::isnan(y) || medians.low > medians.high || (plot.is_log_y && !(y > 0))) return;
+    const Real span = medians.high - medians.low;
+    extent.take(plot.is_log_y ? std::clamp(y, medians.low / kFurther, kFurther * medians.high)
+                              : std::clamp(y, medians.low - span, medians.high + span));
+  };
+  for (const auto* all : {&plot.series, &plot.published})
+    for (const PlotSeries& line : *all) {
+      if (line.y.empty()) continue;
+      for (const Real y : line.low) take_edge(y);
+      for (const Real y : line.high) take_edge(y);
+    }
+  if (extent.low > extent.high) return {0.1, 1};
+  if (plot.is_log_y) return {extent.low / 1.15, 1.15 * extent.high};  // some air
+  // Figures that differ by rounding alone are drawn as one.
+  const Real span = extent.high - extent.low;
+  const Real size = std::max(std::abs(extent.low), std::abs(extent.high));
+  const Real air = span > 1e-9 * size ? 0.05 * span : size > 0 ? 0.5 * size : 0.5;
+  return {extent.low - air, extent.high + air};
+}
+
+}  // namespace
+
+Window window_of(const Plot& plot) {
+  const Extent x = extent_of_x(plot), y = extent_of_y(plot);
+  bool has_start = false;  // iteration 0 is drawn left of the first
+  for (const PlotSeries& line : plot.series)
+    has_start = has_start || (plot.is_log_x && !line.x.empty() && line.x.front() <= 0);
+  return {has_start ? x.low / 2 : x.low, x.high, y.low, y.high};
+}
+
+// The kinds of panels: medians over seeds with their range, samples and pictures of the first seed.
+
 namespace {
 
 constexpr std::size_t kPoints = 96;  // a line
@@ -230,6 +296,40 @@ Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
   if (panel.kind == "series") return series_figure(c, p, panel.quantity);
   if (panel.kind == "path") return path_figure(c, p, panel.quantity);
   return picture_figure(c, p);
+}
+
+// Pictures of a sample: what was observed, what each method inferred, and what was to be found.
+
+namespace {
+
+Picture picture_of(std::string title, std::span<const float> field, Index N) {
+  return {std::move(title), N, {field.begin(), field.end()}};
+}
+
+}  // namespace
+
+Figure picture_figure(const Comparison& c, std::size_t p) {
+  Figure out;
+  std::vector<Picture> inferred;
+  FieldFrames last;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    for (const std::size_t run : c.cell(p, s).runs) {
+      const Record* record = c.runs[run].record;
+      std::optional<FieldFrames> shown = c.study->fields_of(*record);
+      if (!shown || !shown->has_truth() || shown->shape[1] != shown->shape[2]) continue;
+      const std::span<const float> x = shown->x(shown->iterations.size() - 1);
+      inferred.push_back(picture_of(shown_spec(c.optimizers[s].label), x, shown->shape[1]));
+      last = std::move(*shown);
+      break;
+    }
+  if (inferred.empty()) return out;
+  out.pictures.push_back(picture_of("y*", last.target(), last.shape[1]));
+  for (Picture& picture : inferred) out.pictures.push_back(std::move(picture));
+  out.pictures.push_back(picture_of("x*", last.truth(), last.shape[1]));
+  out.reading =
+      "The first sample of the validation, as inferred after the last iteration of the first seed. "
+      "The x share the grey scale of x*.";
+  return out;
 }
 
 }  // namespace isoline::reports

@@ -5,8 +5,18 @@
 #include <vector>
 
 #include "reports/sections/figures.h"
+#include "reports/sections/section.h"
 
 namespace isoline::reports {
+
+struct Window {
+  Real x_low = 0, x_high = 1, y_low = 0, y_high = 1;
+};
+
+// As high as medians and what was published go, and of their bands no more than thrice that.
+Window window_of(const Plot& plot);
+
+// How each kind of panel is drawn from its runs.
 
 using Sweep = std::vector<std::pair<Real, std::size_t>>;  // value of the option, problem
 

@@ -7,7 +7,7 @@
 
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/catalog.h"
-#include "benchmarks/run/processes.h"
+#include "benchmarks/run/process_group.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"
 #include "core/records/schema.h"

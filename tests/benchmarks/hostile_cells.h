@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "benchmarks/run/processes.h"
+#include "benchmarks/run/process_group.h"
 #include "benchmarks/run/runner.h"
 #include "tests/benchmarks/hostile.h"
 #include "tests/temporary_folder.h"

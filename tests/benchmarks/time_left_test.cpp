@@ -1,9 +1,9 @@
 // How long a run still takes: what cells were predicted to take weighs them.
-#include "benchmarks/run/time_left.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "benchmarks/run/progress.h"
 
 namespace isoline::benchmarks {
 namespace {

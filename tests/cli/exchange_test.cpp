@@ -54,7 +54,8 @@ TEST(Exchange, AnImportedCurveStandsInTheTablesAndIsNeverVerified) {
       "echo '{\"schema\": \"isoline.import/1\", \"problem\": \"rosenbrock\", \"optimizer\": \"theirs\", "
       "\"seed\": 0, \"source\": \"a paper\", \"date\": \"2026-01-31\", \"columns\": {\"loss\": \"f\", "
       "\"forward\": \"nfev\"}}' > c.json");
-  const Finished imported = shell("python3 " ISOLINE_SOURCE_DIR "/clients/python/import_curve.py c.csv --out results");
+  const Finished imported =
+      shell("python3 " ISOLINE_SOURCE_DIR "/clients/python/import_curve.py c.csv --out results");
   ASSERT_EQ(imported.exit_code, 0) << imported.err;
   EXPECT_TRUE(contains(imported.out, "imported, never verified")) << imported.out;
   const Finished table = shell("./isoline report results");

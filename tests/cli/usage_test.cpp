@@ -14,10 +14,9 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run",    "plan",    "report", "compare", "baseline", "merge",      "submit",
-        "status", "best",    "claims", "list",    "describe", "check",      "audit",
-        "new",    "replay",  "tune",   "train",   "infer",    "completion", "help",
-        "version", "export", "validate"}) {
+       {"run",  "plan",   "report", "compare",    "baseline", "merge",   "submit", "status",
+        "best", "claims", "list",   "describe",   "check",    "audit",   "new",    "replay",
+        "tune", "train",  "infer",  "completion", "help",     "version", "export", "validate"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;

@@ -16,14 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::map<std::string, void (*)(std::string_view)> kTargets = {
-    {"spec", spec},
-    {"command_line", command_line},
-    {"suite", suite},
-    {"record", record},
-    {"claims", claims},
-    {"checkpoint", checkpoint},
-    {"network", network},
-    {"npy", npy},
+    {"spec", spec},     {"command_line", command_line}, {"suite", suite},     {"record", record},
+    {"claims", claims}, {"checkpoint", checkpoint},     {"network", network}, {"npy", npy},
     {"wire", wire}};
 
 const fs::path kCorpora = fs::path(ISOLINE_SOURCE_DIR) / "tests/fuzz/corpus";

@@ -1,6 +1,4 @@
 // What NEW lacks is worse, unless a list that gives reasons allows it.
-#include "reports/compare/allowed.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "reports/compare/gate.h"
+#include "reports/compare/pairing.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -1,9 +1,9 @@
 // Fields as bitmaps: colours that are even, bytes that say what cells hold.
-#include "reports/page/bitmap.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "reports/page/fields_html.h"
 
 namespace isoline::reports {
 namespace {

@@ -100,7 +100,8 @@ TEST(Causes, WhatRoundingExplainsIsOneNumber) {
   EXPECT_EQ(result.causes[0].worse.size(), 4U);
   EXPECT_EQ(result.causes[0].rounded(), 8U);
   EXPECT_TRUE(has(cause_group_text(result.causes[0]), "8 different by rounding alone ("));
-  EXPECT_TRUE(has(result.verdict, "worse: 4 cells of method-0, method-1, most in ")) << result.verdict;
+  EXPECT_TRUE(has(result.verdict, "worse: 4 cells of method-0, method-1, most in "))
+      << result.verdict;
 }
 
 TEST(Causes, RoundingAloneIsNamedInTheVerdictWithAllItsDigits) {

@@ -8,7 +8,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/schema.h"
-#include "reports/formats/text_plot.h"
+#include "reports/formats/terminal.h"
 #include "reports/report.h"
 #include "reports/sections/claim_plots.h"
 #include "tests/reports/fixture.h"

@@ -6,7 +6,6 @@
 #include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "reports/page/bitmap.h"
 #include "reports/page/fields_html.h"
 #include "reports/read/found_fields.h"
 #include "tests/reports/fixture.h"

@@ -6,8 +6,8 @@
 
 #include "reports/read/ranking.h"
 #include "reports/sections/evidence.h"
-#include "reports/sections/leading.h"
 #include "reports/sections/sections.h"
+#include "reports/sections/standings.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -7,7 +7,7 @@
 #include "core/records/schema.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
-#include "reports/sections/leading.h"
+#include "reports/sections/standings.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -6,7 +6,6 @@
 #include "reports/read/axes.h"
 #include "reports/read/ranking.h"
 #include "reports/report.h"
-#include "reports/sections/leading.h"
 #include "reports/sections/standings.h"
 #include "tests/reports/fixture.h"
 

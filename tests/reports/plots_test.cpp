@@ -6,8 +6,8 @@
 #include <regex>
 
 #include "core/json.h"
-#include "reports/page/frame.h"
 #include "reports/page/page.h"
+#include "reports/page/svg.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"

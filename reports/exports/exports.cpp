@@ -1,17 +1,65 @@
-// A study as data folders of COCO (Hansen et al. 2021, Optim. Methods Softw. 36:114–144), in the
-// format that its single-objective suite writes: an index, .info, and two tables a function and
-// dimension, .dat by targets and .tdat by evaluations, a block a run in both.
+// A study as Bencher Metric Format (bencher.dev, reference/bencher-metric-format).
+#include "reports/exports/exports.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
-#include "reports/exports/exports.h"
+#include "core/json.h"
+#include "core/oracle.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
+namespace {
+
+void add_measure(Json& measures, const std::string& name, const Spread& spread, Real unit = 1) {
+  if (spread.n == 0 || !std::isfinite(spread.median)) return;
+  Json& measure = measures[name];
+  measure["value"] = spread.median * unit;
+  if (std::isfinite(spread.low)) measure["lower_value"] = spread.low * unit;
+  if (std::isfinite(spread.high)) measure["upper_value"] = spread.high * unit;
+}
+
+Json measures_of(const Comparison& c, const Cell& cell) {
+  constexpr Real kNanoseconds = 1e9;  // the unit of Bencher's own measure "latency"
+  Json measures = Json::object();
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+    const std::string_view tau = c.yardstick.tolerances[t].name;
+    const Spread& work = cell.taken[Measure::work][t];
+    add_measure(measures, fmt::format("work-to-{}", tau), work);
+    add_measure(measures, fmt::format("iterations-to-{}", tau), cell.taken[Measure::iterations][t]);
+    measures[fmt::format("reached-{}", tau)]["value"] =
+        work.n == 0 ? 0.0 : static_cast<Real>(work.n - work.unsolved) / static_cast<Real>(work.n);
+  }
+  add_measure(measures, "loss", cell.loss);
+  add_measure(measures, "x-error", cell.x_error);
+  std::vector<Real> seconds;
+  for (const std::size_t run : cell.runs)
+    seconds.push_back(c.runs[run].record->summary.wall_seconds);
+  add_measure(measures, "latency", spread_of(std::move(seconds)), kNanoseconds);
+  return measures;
+}
+
+}  // namespace
+
+std::string bencher_json(const Comparison& c) {
+  Json benchmarks = Json::object();
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (const Cell& cell = c.cell(p, s); cell.is_measured())
+        benchmarks[fmt::format("{} × {}", c.problems[p].spec, c.optimizers[s].label)] =
+            measures_of(c, cell);
+  return json_text(benchmarks, 1) + "\n";
+}
+
+// A study as data folders of COCO (Hansen et al. 2021, Optim. Methods Softw. 36:114–144), in the
+// format that its single-objective suite writes: an index, .info, and two tables a function and
+// dimension, .dat by targets and .tdat by evaluations, a block a run in both.
+
 namespace {
 
 struct Point {
@@ -177,6 +225,76 @@ CocoExport coco_export(const Comparison& c) {
   }
   out.files.push_back({"functions.csv", functions});
   return out;
+}
+
+// The curves of a study as tidy CSV.
+
+namespace {
+
+// RFC 4180: quoted where a comma, a quote or a line end stands in it, quotes doubled. To the byte,
+// unlike the report's own table, which a spreadsheet opens: this one is for programs.
+std::string field_of(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  return quoted + '"';
+}
+
+std::string optional_figure(const std::optional<Real>& value) {
+  return value ? exact_figure(*value) : "";
+}
+
+// "true", "false", or nothing where it is not known.
+std::string verified_text(const Record& record, const std::string& tau) {
+  const auto at = record.verified.find(tau);
+  if (at == record.verified.end() || !at->second) return "";
+  return *at->second ? "true" : "false";
+}
+
+std::string head() {
+  std::string names =
+      "problem,optimizer,seed,status,cell,build,imported,verified_1e-1,verified_1e-3,verified_1e-6,"
+      "minimum,scale,x_scale,iteration,work";
+  for (const std::string_view oracle : kOracleNames) names += fmt::format(",{}", oracle);
+  return names + ",wall_seconds,processor_seconds,loss,x_error,gradient_norm,step_norm\r\n";
+}
+
+// What all rows of a run begin with.
+std::string who_of(const Record& record) {
+  const Request& request = record.request;
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", field_of(request.problem.spec),
+                     field_of(request.optimizer.spec), request.seed, name_of(record.status),
+                     record.cell, record.build, record.imported ? "true" : "false",
+                     verified_text(record, "1e-1"), verified_text(record, "1e-3"),
+                     verified_text(record, "1e-6"), optional_figure(record.minimum),
+                     optional_figure(record.scale), optional_figure(record.x_scale));
+}
+
+void add_rows(std::string& csv, const Record& record) {
+  const Curve& curve = record.curve;
+  const std::string who = who_of(record);
+  for (std::size_t i = 0; i < curve.iteration.size(); ++i) {
+    csv += fmt::format("{},{},{}", who, curve.iteration[i], curve.work[i]);
+    for (const std::string_view oracle : kOracleNames) {
+      const auto counts = curve.counts.find(std::string(oracle));
+      csv += fmt::format(",{}", counts == curve.counts.end() ? 0 : counts->second[i]);
+    }
+    for (const auto* column : {&curve.wall_seconds, &curve.processor_seconds, &curve.loss,
+                               &curve.x_error, &curve.gradient_norm, &curve.step_norm})
+      csv += "," + exact_figure((*column)[i]);
+    csv += "\r\n";
+  }
+  constexpr std::size_t kFigures = 8;  // of each point, its counts by oracle aside
+  if (curve.iteration.empty()) csv += who + std::string(kFigures + kOracles, ',') + "\r\n";
+}
+
+}  // namespace
+
+std::string curves_csv(const Comparison& comparison) {
+  std::string csv = head();
+  for (const Run& run : comparison.runs)
+    if (!run.is_repeated) add_rows(csv, *run.record);
+  return csv;
 }
 
 }  // namespace isoline::reports

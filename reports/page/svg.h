@@ -1,10 +1,12 @@
-// The frame of a drawing: a window in the data, a rectangle on the paper, and its axes as SVG.
+// Plots as static SVG: the frame with its axes, lines with what was published, and all kinds of the
+// statistics.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "core/real.h"
+#include "reports/sections/section.h"
 
 namespace isoline::reports {
 
@@ -24,5 +26,10 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic);
 
 std::string x_axis(const Frame& frame, const std::string& label);  // with a grid line a tick
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share);
+
+// Plots of lines as static SVG, with what was published drawn in.
+
+std::string lines_svg(const Plot& plot);
+std::string lines_legend(const Plot& plot);  // below it, as HTML
 
 }  // namespace isoline::reports
