@@ -4,6 +4,7 @@
 #include <fftw3.h>
 
 #include "core/errors.h"
+#include "core/threads.h"
 
 namespace isoline {
 namespace {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "core/array.h"
 
@@ -48,9 +47,5 @@ class SineTransform {
   Eigen::VectorXcd half_;  // (rows + 2) of its spectrum, which is −iX
   FourierPlan plan_;
 };
-
-// The version of FFTW, for who wants it without the arrays that transforms work on.
-
-std::string fourier_version();  // "3.3.10"
 
 }  // namespace isoline

@@ -37,6 +37,8 @@ struct LibraryKernel {
 };
 LibraryKernel library_kernel();
 
+std::string fourier_version();  // of FFTW: "3.3.10"; core/fourier.cpp has it
+
 // The kernel to ask OpenBLAS for: "SkylakeX" or "Haswell", where `own`, its choice, is below what
 // the processor has; else empty.
 std::string better_kernel(const Processor& processor, const std::string& own);

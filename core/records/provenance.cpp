@@ -11,7 +11,6 @@
 #include <unordered_map>
 
 #include "core/digest.h"
-#include "core/fourier.h"
 #include "core/records/record_fields.h"
 #include "core/threads.h"
 #include "isoline_build_flags.h"

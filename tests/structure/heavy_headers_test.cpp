@@ -27,6 +27,8 @@ const std::vector<HeavyHeader> kHeavyHeaders = {
     {"valijson/", ".*", 1, "schemas are checked in one file"},
     {"Eigen/", "reports/.*", 0, "a report holds plain numbers"},
     {"Eigen/", "core/records/.*", 0, "records and sheets hold plain numbers"},
+    {"Eigen/", "benchmarks/(cli|verbs)/.*", 3,
+     "check, infer and train compute; other verbs do not"},
     {"Eigen/SVD", kProduct, 0, "decompositions are LAPACK's, in core/decompose.cpp"},
     {"Eigen/Dense", ".*", 0, "the same"},
     {"fmt/ranges.h", ".*", 15, "texts that join lists; fmt/format.h does for all else"},
