@@ -20,7 +20,6 @@ int main(int count, char** arguments) {
   isoline::benchmarks::micro::register_round_trips();
   isoline::benchmarks::micro::register_unet();
   isoline::benchmarks::micro::register_spectral();
-  isoline::benchmarks::micro::register_bridging();
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -59,7 +59,6 @@ void register_isolation();
 void register_round_trips();
 void register_unet();
 void register_spectral();
-void register_bridging();
 
 // A problem by its spec, and a metered run of a method on it.
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/foreign/plugin_library.h"
+#include "problems/problem.h"
 #include "tests/plugin/libraries.h"
 
 namespace isoline::benchmarks {
