@@ -12,6 +12,7 @@
 #include "networks/network.h"
 
 namespace isoline::networks {
+namespace {
 
 template <class Scalar>
 class Perceptron final : public Network {
@@ -291,8 +292,6 @@ void Perceptron<Scalar>::layer_factors(BatchRef u, std::vector<LayerFactor>& out
     factor.cotangents = at.g.topRows(own.samples).transpose().template cast<Real>();
   }
 }
-
-namespace {
 
 struct Options {
   std::string layers = "32-64-32", activation = "relu", init = "torch", precision = "float";

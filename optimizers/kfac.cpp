@@ -22,6 +22,7 @@
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
+namespace {
 
 class KroneckerBlock {
  public:
@@ -95,8 +96,6 @@ class KroneckerBlock {
 // such form: each steps along its gradient, over λ and the mean of its curvature's diagonal under
 // the same draw. Running means as the paper's; its rescaling by the exact Gauss-Newton matrix,
 // momentum and adaptive λ are left out.
-
-namespace {
 
 constexpr Index kMostExact = 64;  // outputs, each of which costs a pullback
 

@@ -17,6 +17,7 @@
 #include "optimizers/spectral_step.h"
 
 namespace isoline::optimizers {
+namespace {
 
 struct DampedLeastSquares {
   enum class Way { automatic, orthogonal, cholesky };
@@ -43,8 +44,6 @@ struct DampedLeastSquares {
 };
 
 // Least squares under a diagonal damping, by orthogonal factorization or by Cholesky.
-
-namespace {
 
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
 

@@ -14,6 +14,7 @@
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
+namespace {
 
 struct WolfeSearch {
   Real c1 = 1e-4, c2 = 0.9;
@@ -78,6 +79,8 @@ struct WolfeSearch {
 // to train physics-informed networks to far smaller losses than BFGS. Full batch. The
 // line search is to the strong Wolfe conditions. H starts as 1, scaled at the first update as BFGS
 // is, Nocedal, Wright (2006), eq. 6.20.
+
+}  // namespace
 
 void update_self_scaled(Matrix& H, const Vector& s, const Vector& y, Real bend, Vector& Hy,
                         Vector& v) {

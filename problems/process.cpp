@@ -9,6 +9,7 @@
 #include "problems/problem.h"
 
 namespace isoline::problems {
+namespace {
 
 struct Box {
   Vector lower, upper;  // (k) each, or empty where x may be anything
@@ -28,8 +29,6 @@ struct Box {
 // A problem that another program computes, over frames on a private socket (docs/wire-format.md):
 // process[command="python3 mine.py"]. Each problem that is made has a program of its own, which
 // ends with it. A forward is asked for once a point; products there come from what it left behind.
-
-namespace {
 
 Inverse inverse_of(const std::string& kind) {
   if (kind == "exact") return Inverse::exact;

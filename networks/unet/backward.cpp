@@ -4,6 +4,7 @@
 #include "networks/unet/passes.h"
 
 namespace isoline::networks {
+namespace {
 
 // Sums over one task of g and g x̂, and of their tangents.
 template <class T>
@@ -102,8 +103,6 @@ void scatter(const UnitPass& pass, Index task, ThreadState& thread) {
 //   Ω = ⟨Σ_t ā āᵀ⟩ over samples,  Γ = ⟨g gᵀ⟩ over samples and places t,
 // ā = (a, 1) the patch around t, halo included, and g the cotangent of the convolution's output.
 // Sums over a task are in single precision, those over tasks in double, in order.
-
-namespace {
 
 using Floats = Eigen::Map<Eigen::MatrixXf>;
 

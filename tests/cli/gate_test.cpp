@@ -76,13 +76,13 @@ TEST_F(PlantedFault, InADefaultFailsTheGate) {
     record.build_parts["optimizer"] = "0123456789abcdef";
     record.build = "fedcba9876543210";
   });
-  expect_fault(kWorse, "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); adam in all 2");
+  expect_fault(kWorse, "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam, most in ");
   EXPECT_TRUE(contains(gate().out, "another source of the optimizers adam: 2 cells"));
 }
 
 TEST_F(PlantedFault, InAFormulaFailsTheGate) {
   change_records("gd", [](Record& record) { record.summary.loss *= 1 + 1e-5; });
-  expect_fault(kWorse, "worse: gd in all 2 cells, in ");
+  expect_fault(kWorse, "worse: 2 cells of gd, most in ");
 }
 
 TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {
