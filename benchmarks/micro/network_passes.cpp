@@ -313,9 +313,9 @@ class Unchanged final : public DensePhysics {  // y = x
 // ŷ(t) = (sin 6t, cos 9t) by 7 tanh neurons, 30 parameters, 256 samples.
 Problem toy() {
   auto network = make_network("mlp[layers=7,activation=tanh]", {.inputs = 1, .outputs = 2});
-  constexpr Index kSamples = 256;
-  const Matrix t = Vector::LinSpaced(kSamples, -1, 1).transpose();
-  Matrix target(2, kSamples);
+  constexpr Index kTimes = 256;
+  const Matrix t = Vector::LinSpaced(kTimes, -1, 1).transpose();
+  Matrix target(2, kTimes);
   target << (6 * t.array()).sin().matrix(), (9 * t.array()).cos().matrix();
   RandomStream stream(0, "toy", "network");
   const Vector start = network->start(stream);

@@ -60,7 +60,7 @@ std::map<std::string, std::string> libraries() {
   std::istringstream list(ISOLINE_LIBRARIES);  // "Name version;Name version"
   for (std::string library; std::getline(list, library, ';');)
     versions[library.substr(0, library.find(' '))] = library.substr(library.find(' ') + 1);
-  versions["OpenBLAS"] += " " + library_kernel().name;
+  versions["OpenBLAS"].append(" ").append(library_kernel().name);
   versions["FFTW"] = fourier_version();
   return versions;
 }

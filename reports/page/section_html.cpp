@@ -206,8 +206,6 @@ std::string claims_html(const Document& document) {
 
 namespace {
 
-std::string shown_html(const std::string& spec) { return html_text(shown_spec(spec)); }
-
 std::string spread_cell(const Spread& spread, const char* kind = "") {
   if (spread.n == 0) return "<td>";
   const std::string range = range_figure(spread, reached_figure);

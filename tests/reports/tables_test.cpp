@@ -65,8 +65,9 @@ TEST(Tables, NobodyHasTheLargestAreaWhereAllAreZero) {
   EXPECT_TRUE(has(profile_table(c).reading, "No method solves any")) << profile_table(c).reading;
   const Document document = document_of(compare_optimizers(study));
   for (const Plot& plot : document.section("statistics").plots)
-    if (plot.id != "plot-runtime")  // whose first target is the start, which all meet
+    if (plot.id != "plot-runtime") {  // whose first target is the start, which all meet
       EXPECT_FALSE(has(plot.reading, "a and 1 more")) << plot.id << ": " << plot.reading;
+    }
 }
 
 TEST(Tables, RestartsSayThatTheyDrawOtherInstances) {
