@@ -76,7 +76,8 @@ TEST_F(PlantedFault, InADefaultFailsTheGate) {
     record.build_parts["optimizer"] = "0123456789abcdef";
     record.build = "fedcba9876543210";
   });
-  expect_fault(kWorse, "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam, most in ");
+  expect_fault(kWorse,
+               "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam, most in ");
   EXPECT_TRUE(contains(gate().out, "another source of the optimizers adam: 2 cells"));
 }
 
