@@ -81,15 +81,6 @@ std::string shell_word(std::string_view word) {
   return quoted + "'";
 }
 
-std::string shell_command(std::span<const char* const> words) {
-  std::string command;
-  for (const char* word : words) {
-    if (!command.empty()) command += ' ';
-    command += shell_word(word);
-  }
-  return command;
-}
-
 std::vector<std::string> shell_words(std::string_view command) {
   WordReader reader(command);
   std::vector<std::string> words;

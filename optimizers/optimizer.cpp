@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/privilege.h"
 #include "core/spec.h"
 
 namespace isoline::optimizers {
@@ -15,17 +16,18 @@ OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options,
 }
 
 std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse) {
-  std::vector<std::string> words;
+  std::vector<std::string> names;
+  const auto add = [&](Privilege privilege) { names.emplace_back(name_of(privilege)); };
   if (granted.contains(Oracle::hessian) || granted.contains(Oracle::curvature))
-    words.emplace_back("exact Hessian");
+    add(Privilege::exact_hessian);
   if (granted.contains(Oracle::inverse)) {
-    if (inverse == Inverse::exact) words.emplace_back("exact inverse of the physics");
-    if (inverse == Inverse::damped) words.emplace_back("damped inverse of the physics");
-    if (inverse == Inverse::approximate) words.emplace_back("approximate inverse of the physics");
-    if (inverse == Inverse::estimate) words.emplace_back("estimate by how the data were made");
+    if (inverse == Inverse::exact) add(Privilege::exact_inverse);
+    if (inverse == Inverse::damped) add(Privilege::damped_inverse);
+    if (inverse == Inverse::approximate) add(Privilege::approximate_inverse);
+    if (inverse == Inverse::estimate) add(Privilege::estimate);
   }
-  if (granted.contains(Oracle::truth)) words.emplace_back("ground truth");
-  return words;
+  if (granted.contains(Oracle::truth)) add(Privilege::ground_truth);
+  return names;
 }
 
 std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& options,

@@ -52,8 +52,6 @@ struct SpectralFilter {
   }
 };
 
-// σ: gradient descent.
-inline SpectralFilter gradient_filter() { return {.kappa = -1}; }
 // σ^(−κ), discarded up to the cut-off, or clamped to it.
 inline SpectralFilter power_filter(Real kappa, Real cutoff) {
   return {.kappa = kappa, .cutoff = cutoff};

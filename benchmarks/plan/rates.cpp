@@ -17,7 +17,7 @@ namespace isoline::benchmarks {
 namespace {
 
 bool is_in(const std::string& table, const std::string& origin) {
-  return table.empty() ? !origin.ends_with("-tuned.json") : origin == table + ".json";
+  return table.empty() ? kind_of_rates(origin) != RatesKind::tuned : origin == table + ".json";
 }
 
 bool is_same(const OptionValue& value, const std::string& wanted) {

@@ -43,8 +43,6 @@ Plan plan_from_text(const std::string& text, const std::string& origin) {
   }
 }
 
-Plan plan_from_json(const Json& json) { return plan_from_text(json_text(json), "it"); }
-
 Json plan_schema() {
   Json schema;
   Form<Plan>::law(JsonPlace(schema));

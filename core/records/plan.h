@@ -36,7 +36,6 @@ struct Plan {
 inline constexpr const char* kPlanSchema = "isoline.plan/1";
 
 Json to_json(const Plan& plan);
-Plan plan_from_json(const Json& json);  // UsageError where it is none
 Plan plan_from_text(const std::string& text, const std::string& origin);
 
 Json plan_schema();  // what benchmarks/schemas/plan.json holds

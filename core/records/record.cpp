@@ -73,8 +73,6 @@ Record record_from_text(const std::string& text, const std::string& origin) {
   }
 }
 
-Record record_from_json(const Json& json) { return record_from_text(json_text(json), "it"); }
-
 Record read_record(const std::string& path) {
   return record_from_text(read_text(path, kMostRecordBytes), path);
 }

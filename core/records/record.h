@@ -116,7 +116,6 @@ struct Record {
 Json to_json(const Record& record);
 // UsageError where it is no such record, or its columns differ in length; the origin is named where
 // it is no JSON.
-Record record_from_json(const Json& json);
 Record record_from_text(const std::string& text, const std::string& origin);
 Record read_record(const std::string& path);
 

@@ -40,6 +40,11 @@ std::string CellNames::of(std::uint64_t seed) const {
   return digest(before_ + std::to_string(seed) + after_);
 }
 
+RatesKind kind_of_rates(const std::string& file) {
+  if (file.empty()) return RatesKind::none;
+  return file.ends_with("-tuned.json") ? RatesKind::tuned : RatesKind::published;
+}
+
 std::string cell_digest(const Request& request) { return CellNames(request).of(request.seed); }
 
 Request named(Request request) {

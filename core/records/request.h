@@ -46,6 +46,11 @@ struct Request {
   std::string cell;         // the digest of what is asked; `named` fills it in
 };
 
+// How the values of a table of rates were found, by the name of its file: a grid of this project's
+// writes NAME-tuned.json, every other table is as published, by its paper or by its user.
+enum class RatesKind { none, published, tuned };
+RatesKind kind_of_rates(const std::string& file);
+
 std::string cell_digest(const Request& request);
 
 // The cells of requests that differ in their seeds alone: what they share is written once.

@@ -11,7 +11,6 @@ using Pair = double __attribute__((vector_size(16)));
 using LooseFour = double __attribute__((vector_size(32), aligned(8), may_alias));
 using LoosePair = double __attribute__((vector_size(16), aligned(8), may_alias));
 
-inline Pair pair_at(const Real* from) { return *reinterpret_cast<const LoosePair*>(from); }
 inline Four four_at(const Real* from) { return *reinterpret_cast<const LooseFour*>(from); }
 inline void put(const Four& values, Real* to) { *reinterpret_cast<LooseFour*>(to) = values; }
 inline void add(const Four& values, Real* to) { *reinterpret_cast<LooseFour*>(to) += values; }
@@ -135,10 +134,6 @@ inline void put_ways(const Four& ways, int* to) {
 // for the transpose of a sum with one neighbour is the sum with the opposite one.
 
 enum class Side { left, right, below, above };
-constexpr Side opposite(Side side) {
-  constexpr Side kOpposite[] = {Side::right, Side::left, Side::above, Side::below};
-  return kOpposite[static_cast<int>(side)];
-}
 
 // out = a q + b (q of the neighbour on that side), or out += that. `out` is never q.
 void weigh(Index N, Real a, Real b, Side side, VectorRef q, VectorOut out);

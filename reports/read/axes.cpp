@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "core/privilege.h"
 #include "core/spec.h"
 
 namespace isoline::reports {
@@ -107,8 +108,7 @@ std::map<std::string, std::string> names_by_spec(const Study& study, Component R
 std::string given_by(const std::set<std::string>& privileges) {
   std::string text;
   for (const std::string& privilege : privileges) {
-    const bool is_inverse = privilege.find("inverse of the physics") != std::string::npos;
-    const std::string given = is_inverse ? "P⁻¹" : privilege;
+    const std::string given = is_inverse_of_physics(privilege) ? "P⁻¹" : privilege;
     if (text.find(given) == std::string::npos) text += (text.empty() ? "" : " and ") + given;
   }
   return text;
@@ -124,11 +124,12 @@ OptimizerLabels::OptimizerLabels(const Study& study)
   for (const Record& record : study.runs) {
     const Component& optimizer = record.request.optimizer;
     const std::string& problem = record.request.problem.spec;
-    if (record.request.rates.ends_with("-tuned.json")) {
+    const RatesKind rates = kind_of_rates(record.request.rates);
+    if (rates == RatesKind::tuned) {
       tuned_.emplace(problem, optimizer.spec);
       continue;
     }
-    if (!record.request.rates.empty()) by_name_.insert(optimizer.name);
+    if (rates == RatesKind::published) by_name_.insert(optimizer.name);
     if (seen.emplace(problem, optimizer.spec).second) ++specs[{problem, optimizer.name}];
   }
   for (const auto& [where, count] : specs)
@@ -161,7 +162,7 @@ void OptimizerLabels::find_both_ways(const Study& study) {
     const auto pair = std::pair(record.request.problem.spec, optimizer.name);
     if (optimizer.spec == optimizer.name)
       plain.insert(pair);
-    else if (!record.request.rates.empty() && !record.request.rates.ends_with("-tuned.json"))
+    else if (kind_of_rates(record.request.rates) == RatesKind::published)
       rated_.insert(pair);
     if (rated_.contains(pair) && optimizer.spec != optimizer.name) {
       settings[pair].insert(optimizer.spec);

@@ -98,14 +98,6 @@ std::vector<Reached> ladder_of(const Run& run, const Prices& prices, Aim aim) {
                     [&](std::size_t j) { return goal(run, rung(j)); });
 }
 
-std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t count) {
-  std::vector<Real> all(count, kNever);
-  const std::vector<Reached> ladder = ladder_of(run, prices, run.aim);
-  for (std::size_t j = 0; j < std::min(count, ladder.size()); ++j)
-    all[j] = ladder[j].by(Measure::cost);
-  return all;
-}
-
 void fill_reached(Run& run, const BestKnown& best, const Prices& prices,
                   const Yardstick& yardstick) {
   const Record& record = *run.record;

@@ -50,9 +50,6 @@ std::vector<Reached> ladder_of(const Run& run, const Prices& prices, Aim aim);
 void fill_reached(Run& run, const BestKnown& best, const Prices& prices = {},
                   const Yardstick& yardstick = {});
 
-// Costs at the first `count` targets of its aim, infinite where it did not meet them.
-std::vector<Real> target_costs(const Run& run, const Prices& prices, std::size_t count);
-
 // What each of the targets took, over seeds: what the page's slider of tolerance reads.
 struct TargetMedians {
   // By measure: of the targets of finite median, as many of each.

@@ -53,7 +53,7 @@ TEST(Records, OfTheWholeRegistryConformToTheSchemaAndSurviveTheRoundTrip) {
   for (const Record& record : matrix().records) {
     const Json json = to_json(record);
     EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>{}) << title_of(record);
-    EXPECT_EQ(to_json(record_from_json(json)), json) << title_of(record);
+    EXPECT_EQ(to_json(record_from_text(json_text(json), "it")), json) << title_of(record);
   }
 }
 

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/json.h"
+#include "core/privilege.h"
 
 namespace isoline {
 namespace {
@@ -42,13 +44,13 @@ Record sample() {
 
 TEST(Record, SurvivesTheRoundTrip) {
   const Json written = Json::parse(to_json(sample()).dump());
-  EXPECT_EQ(to_json(record_from_json(written)), written);
+  EXPECT_EQ(to_json(record_from_text(json_text(written), "it")), written);
 }
 
 TEST(Record, OfAnOlderVersionHasNoCountsAtItsHits) {
   Json older = to_json(sample());
   older["hits"].erase("counts");
-  EXPECT_TRUE(record_from_json(older).hits->counts.empty());
+  EXPECT_TRUE(record_from_text(json_text(older), "it").hits->counts.empty());
   EXPECT_EQ(without_timings(older), without_timings(to_json(sample())));
 }
 
@@ -57,19 +59,19 @@ TEST(Record, WhatIsNoRecordIsAUsageError) {
   for (const char* missing : {"schema", "cell", "request", "status", "curve", "summary"}) {
     Json broken = json;
     broken.erase(missing);
-    EXPECT_THROW(record_from_json(broken), UsageError) << missing;
+    EXPECT_THROW(record_from_text(json_text(broken), "it"), UsageError) << missing;
   }
   json["status"] = "splendid";
-  EXPECT_THROW(record_from_json(json), UsageError);
+  EXPECT_THROW(record_from_text(json_text(json), "it"), UsageError);
 }
 
 TEST(Provenance, IsSharedInMemoryByTheRecordsOfOneBuild) {
   Json json = to_json(sample());
-  const Record first = record_from_json(json);
+  const Record first = record_from_text(json_text(json), "it");
   json["provenance"]["run"]["concurrent_jobs"] = 5;
-  const Record second = record_from_json(json);
+  const Record second = record_from_text(json_text(json), "it");
   json["provenance"]["commit"] = "abc";
-  const Record third = record_from_json(json);
+  const Record third = record_from_text(json_text(json), "it");
   EXPECT_EQ(first.provenance.build, second.provenance.build);
   EXPECT_NE(first.provenance.build, third.provenance.build);
   EXPECT_EQ(third.provenance.build->commit, "abc");
@@ -81,13 +83,13 @@ TEST(Provenance, WhatAnotherVersionSaysBesidesSurvives) {
   Json json = to_json(sample());
   json["provenance"]["host"] = {{"load", 1.25}};
   json["provenance"]["run"]["queue"] = "night";
-  EXPECT_EQ(to_json(record_from_json(json)), json);
+  EXPECT_EQ(to_json(record_from_text(json_text(json), "it")), json);
 }
 
 TEST(Provenance, OfAProgramThatSaysNothingIsEmpty) {
   Json json = to_json(sample());
   json["provenance"] = Json::object();
-  const Record record = record_from_json(json);
+  const Record record = record_from_text(json_text(json), "it");
   EXPECT_EQ(record.provenance.build->version, "");
   EXPECT_FALSE(record.provenance.build->is_dirty.has_value());
   EXPECT_EQ(to_json(record), json);
@@ -138,6 +140,19 @@ TEST(Cell, HasTheNameThatEarlierVersionsGaveIt) {
   learned["budget"]["work"] = nullptr;  // a merge takes it for an erasure
   EXPECT_EQ(request_from_json(learned).cell, "6fb30fb6a3608d73");
   EXPECT_TRUE(request_from_json(learned).problem.is_learned);
+}
+
+TEST(Rates, AreTunedWhereAGridOfOursWroteThem) {
+  EXPECT_EQ(kind_of_rates(""), RatesKind::none);
+  EXPECT_EQ(kind_of_rates("learn.json"), RatesKind::published);
+  EXPECT_EQ(kind_of_rates("learn-tuned.json"), RatesKind::tuned);
+  EXPECT_EQ(kind_of_rates("learn-tuned.json.old"), RatesKind::published);
+}
+
+TEST(Privileges, AreInversesWhereThePhysicsAreInverted) {
+  for (const std::string_view name : kPrivilegeNames)
+    EXPECT_EQ(is_inverse_of_physics(name), name.find("inverse of") != name.npos) << name;
+  EXPECT_FALSE(is_inverse_of_physics("it was told of an inverse of the physics"));
 }
 
 // A component may gain an option that is empty by default: its cells keep their names.

@@ -31,7 +31,7 @@ void for_some_points(const std::function<void(const Problem&, const Vector&)>& c
 }
 
 // Of which a Gram matrix, too, gives the step to 1e-8, wherever the spectrum lies.
-const SpectralFilter kFilters[] = {gradient_filter(),           power_filter(0, 1e-3),
+const SpectralFilter kFilters[] = {power_filter(-1, 0),         power_filter(0, 1e-3),
                                    power_filter(0.25, 1e-3),    power_filter(0.5, 1e-3),
                                    power_filter(0.75, 1e-3),    truncated_inverse_filter(1e-3),
                                    tikhonov_filter(1e-3),       decaying_filter(0.5, 1e-6),
@@ -148,7 +148,7 @@ TEST(SpectralStep, ANetworkOfDenseLayersIsTreatedLayerByLayerWhereJIsWide) {
 TEST(SpectralStep, LanczosComesAsNearAsItSays) {
   for_some_points([](const Problem& problem, const Vector& theta) {
     for (const SpectralFilter& filter :
-         {gradient_filter(), power_filter(0, 1e-2), power_filter(0.5, 1e-2),
+         {power_filter(-1, 0), power_filter(0, 1e-2), power_filter(0.5, 1e-2),
           decaying_filter(0.5, 1e-4), decaying_filter(1, 1e-4)}) {
       const Vector reference = step_of(problem, theta, Way::svd, filter).step;
       expect_near(step_of(problem, theta, Way::lanczos, filter, {.tolerance = 1e-3}).step,
@@ -170,7 +170,7 @@ TEST(SpectralStep, LanczosKeepsToItsVectorsAndSaysHowFarItCame) {
 
 TEST(Filters, AreTheirFormulas) {
   const Spectrum of{.largest = 4, .mean_square = 3};
-  EXPECT_EQ(gradient_filter()(0.7, of), 0.7);
+  EXPECT_EQ(power_filter(-1, 0)(0.7, of), 0.7);
   EXPECT_DOUBLE_EQ(power_filter(0.5, 0.1)(2, of), 1 / std::sqrt(2.0));
   EXPECT_EQ(power_filter(0.5, 0.5)(2, of), 0);  // strictly greater
   EXPECT_DOUBLE_EQ(clamped_power_filter(1, 0.5)(1e-9, of), 0.5);

@@ -209,6 +209,23 @@ TEST(Comparison, WithoutADeclaredMinimumTheBestKnownIsOne) {
   EXPECT_FALSE(compare_optimizers(study).problems[0].is_minimum_declared);
 }
 
+TEST(Comparison, AnImportedRunIsMarkedAndMovesNobodysTargets) {
+  Study study;
+  study.runs = {record_of({.optimizer = "gd"}), record_of({.optimizer = "theirs"})};
+  for (Record& record : study.runs) record.minimum.reset();
+  const Real ours = study.runs[0].summary.best_loss;
+  study.runs[1].imported =
+      Imported{.source = "a paper", .program = "p", .curve = "c", .sha256 = ""};
+  study.runs[1].summary.best_loss = ours - 5;
+  const Comparison c = compare_optimizers(study);
+  ASSERT_EQ(c.optimizers.size(), 2U);
+  for (const OptimizerAxis& axis : c.optimizers)
+    EXPECT_EQ(axis.is_imported, axis.method == "theirs") << axis.method;
+  EXPECT_EQ(c.runs[0].minimum, ours);
+  study.runs[1].imported.reset();
+  EXPECT_EQ(compare_optimizers(study).runs[0].minimum, ours - 5) << "as a run of ours it would";
+}
+
 TEST(Comparison, TimesTakenBesideOtherRunsAreMarked) {
   Record shared = record_of({});
   shared.provenance.run.concurrent_jobs = 4;
