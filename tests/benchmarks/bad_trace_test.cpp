@@ -5,6 +5,7 @@
 
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolate.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -30,7 +31,7 @@ Record record_after(const std::function<void(Trace&)>& wild_write) {
         wild_write(trace);
       },
       {}, 1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   return record_of(request, worker.trace());
 }
 
@@ -91,7 +92,7 @@ TEST(BadTrace, OfARunThatWasKilledIsNotReadEither) {
         }
       },
       {.hard_seconds = 0.2}, 1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   const Record record = record_of(request, worker.trace());
   EXPECT_EQ(record.status, Status::timeout) << record.message;
   EXPECT_TRUE(record.curve.iteration.empty());
@@ -100,14 +101,14 @@ TEST(BadTrace, OfARunThatWasKilledIsNotReadEither) {
 TEST(BadTrace, OfOneCellDoesNotReachTheMemoryOfAnother) {
   Worker first, second;
   first.start([](Trace& trace) { trace.status = Status::budget; }, {}, 1);
-  while (!first.poll()) usleep(1000);
+  wait_until([&] { return first.poll(); });
   const Trace& other = first.trace();
   second.start(
       [&](Trace&) {
         std::memset(static_cast<void*>(const_cast<Trace*>(&other)), 0x5a, sizeof(Trace));
       },
       {}, 1);
-  while (!second.poll()) usleep(1000);
+  wait_until([&] { return second.poll(); });
   EXPECT_EQ(second.trace().status, Status::crashed) << second.trace().message;
   EXPECT_EQ(first.trace().status, Status::budget);
 }
@@ -123,7 +124,7 @@ TEST(BadTrace, OfASizeThatCannotBeReturnsNothing) {
           trace.status = Status::budget;
         },
         {}, 1);
-    while (!worker.poll()) usleep(1000);
+    wait_until([&] { return worker.poll(); });
     return worker.returned_size();
   };
   static_assert(offsetof(Returned, theta) == sizeof(double));

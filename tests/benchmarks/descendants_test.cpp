@@ -3,6 +3,7 @@
 
 #include "benchmarks/run/isolate.h"
 #include "tests/benchmarks/hostile_cells.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -10,10 +11,14 @@ namespace {
 class Descendants : public HostileCells {
  protected:
   Descendants() {  // what runs that other tests killed left to this process is dead by now
-    while (!children_of(getpid()).empty()) waitpid(-1, nullptr, WNOHANG);
+    wait_until([] {
+      while (waitpid(-1, nullptr, WNOHANG) > 0) {
+      }
+      return children_of(getpid()).empty();
+    });
   }
   static void expect_good_end(Worker& worker) {
-    while (!worker.poll()) usleep(1000);
+    wait_until([&] { return worker.poll(); });
     EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
   }
 };
@@ -34,9 +39,9 @@ TEST_F(Descendants, OfAnotherCellAreLeftAlone) {
     for (;;) pause();
   };
   first.start(spin, {}, 1);
-  while (told() == 0) usleep(1000);
+  wait_until([] { return told() != 0; });
   second.start([](Trace& trace) { trace.status = Status::budget; }, {}, 1);
-  while (!second.poll()) usleep(1000);
+  wait_until([&] { return second.poll(); });
   EXPECT_TRUE(lives(told())) << "it belongs to the first, which runs";
   first.interrupt();
   EXPECT_FALSE(lives(told()));
@@ -81,7 +86,7 @@ TEST_F(Descendants, OfDescendantsEndToo) {
           }
           if (i > 0)
             for (;;) pause();
-          while (told() < 4) usleep(1000);
+          wait_until([] { return told() >= 4; });
           trace.status = Status::budget;
           return;
         }
@@ -105,7 +110,7 @@ TEST_F(Descendants, ThatNeverStandStillEndToo) {
             ++told();
           }
         }
-        while (told() < 100) usleep(1000);
+        wait_until([] { return told() >= 100; });
         trace.status = Status::budget;
       },
       {}, 1);
@@ -127,7 +132,7 @@ TEST_F(Descendants, SpendTheProcessorTimeOfTheirCell) {
         for (;;) pause();
       },
       {.hard_seconds = 0.3}, 1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   EXPECT_EQ(worker.trace().status, Status::timeout) << worker.trace().message;
   EXPECT_NE(std::string(worker.trace().message).find("processor time"), std::string::npos)
       << worker.trace().message;

@@ -14,6 +14,7 @@
 #include "benchmarks/plan/catalog.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 
@@ -35,7 +36,7 @@ inline std::atomic<int>& told() {
 // holds whatever it inherited.
 inline void leave_a_daemon_behind() {
   if (fork() != 0) {
-    while (told() == 0) usleep(1000);
+    wait_until([] { return told() != 0; });
     return;
   }
   if (fork() != 0) _exit(0);

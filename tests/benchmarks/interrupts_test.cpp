@@ -7,6 +7,7 @@
 
 #include "core/status.h"
 #include "tests/benchmarks/hostile_cells.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -17,7 +18,7 @@ class Interrupts : public HostileCells {
  protected:
   Interrupts() { options.limits = {.hard_seconds = 600, .idle_seconds = 600}; }
   void wait_until_told() const {
-    while (told() == 0) usleep(1000);
+    wait_until([] { return told() != 0; });
   }
   // And waits until it is heard: of two that come together one is lost.
   static void press_ctrl_c(pid_t runner) {
@@ -31,7 +32,7 @@ class Interrupts : public HostileCells {
         }
       return false;
     };
-    while (is_pending()) usleep(1000);
+    wait_until([&] { return !is_pending(); });
   }
   static int status_of(pid_t runner) {
     int status = 0;
@@ -76,7 +77,7 @@ TEST_F(Interrupts, ByThreeEndAllAtOnce) {
   const int status = status_of(runner);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), kInterrupted);
-  while (lives(cell)) usleep(1000);  // it is dying
+  wait_until([=] { return !lives(cell); });  // it is dying
 }
 
 TEST_F(Interrupts, ByASchedulerStopWhatRunsAndItGoesOnThere) {

@@ -9,6 +9,7 @@
 #include "benchmarks/run/runner.h"
 #include "problems/dense_physics.h"
 #include "tests/benchmarks/hostile.h"
+#include "tests/deadline.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
@@ -157,8 +158,10 @@ TEST_F(Judging, ManyPointsOfOneProblemAreJudgedByOneProcess) {
     judges.ask(slot, request);
   }
   std::vector<Verdict> all;
-  while (all.size() < workers.size())
+  wait_until([&] {
     for (const Verdict& verdict : judges.collect()) all.push_back(verdict);
+    return all.size() == workers.size();
+  });
   for (std::size_t slot = 0; slot < all.size(); ++slot) {
     ASSERT_TRUE(all[slot].judged.has_value()) << all[slot].failure;
     EXPECT_EQ(all[slot].slot, slot);

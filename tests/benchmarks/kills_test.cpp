@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "tests/benchmarks/hostile_cells.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -45,10 +46,10 @@ TEST_F(Kills, OfACellThatIsRunningFromOutside) {
           for (;;) pause();
         },
         {}, 1);
-    while (worker.trace().first_oracle_nanoseconds == 0) usleep(1000);
+    wait_until([&] { return worker.trace().first_oracle_nanoseconds != 0; });
     for (const pid_t child : children_of(getpid()))
       if (lives(child)) kill(child, signal);
-    while (!worker.poll()) usleep(1000);
+    wait_until([&] { return worker.poll(); });
     EXPECT_EQ(worker.trace().status, Status::interrupted) << signal;
   }
 }
@@ -57,7 +58,7 @@ TEST_F(Kills, ByAFaultOfItsOwnAreCrashes) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) {
     Worker worker;
     worker.start([=](Trace&) { std::raise(signal); }, {}, 1);
-    while (!worker.poll()) usleep(1000);
+    wait_until([&] { return worker.poll(); });
     EXPECT_EQ(worker.trace().status, Status::crashed) << signal;
   }
 }
@@ -156,13 +157,13 @@ TEST_F(KilledRuns, LeaveProcessesThatTheNextRunEnds) {
         {}, 1);
     for (;;) pause();
   }
-  while (told() == 0) usleep(1000);
+  wait_until([] { return told() != 0; });
   kill(runner, SIGKILL);
   waitpid(runner, nullptr, 0);
   EXPECT_TRUE(lives(told())) << "nobody was there to end it";
   requests.resize(1);
   run(folder.path());
-  while (lives(told())) usleep(1000);
+  wait_until([] { return !lives(told()); });
 }
 
 TEST_F(KilledRuns, AtFiftyMomentsLoseNothing) {

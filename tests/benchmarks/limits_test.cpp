@@ -5,6 +5,7 @@
 
 #include "benchmarks/run/prediction.h"
 #include "tests/benchmarks/hostile_cells.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -123,7 +124,7 @@ TEST_F(LimitsOfCells, LeaveWhoWaitsForAProcessorAlone) {
         trace.status = Status::budget;
       },
       {.hard_seconds = 2}, 1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
 }
 

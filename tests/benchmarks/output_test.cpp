@@ -3,6 +3,7 @@
 
 #include "benchmarks/run/isolate.h"
 #include "tests/benchmarks/hostile_cells.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -46,7 +47,7 @@ TEST_F(Output, WithoutEndHoldsNobodyUp) {
         trace.status = Status::budget;
       },
       {}, 1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   EXPECT_EQ(worker.trace().status, Status::budget) << worker.trace().message;
   EXPECT_LT(worker.output().text().size(), CapturedOutput::kMost + 100);
 }
@@ -61,14 +62,14 @@ TEST_F(Output, IsWhatWasWrittenInTheRightOrder) {
         trace.status = Status::budget;
       },
       {}, 1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   EXPECT_EQ(worker.output().text(), "first\nsecond\nthird, without an end");
 }
 
 TEST_F(Output, ThatIsNoTextBecomesText) {
   Worker worker;
   worker.start([](Trace&) { std::printf("a\xff z"); }, {}, 1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   EXPECT_EQ(worker.output().text(), "a\uFFFD z");
 }
 
@@ -77,7 +78,7 @@ TEST_F(Output, InputIsEmpty) {
   worker.start(
       [](Trace& trace) { trace.status = getchar() == EOF ? Status::budget : Status::failed; }, {},
       1);
-  while (!worker.poll()) usleep(1000);
+  wait_until([&] { return worker.poll(); });
   EXPECT_EQ(worker.trace().status, Status::budget);
 }
 

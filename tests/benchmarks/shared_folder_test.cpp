@@ -11,6 +11,7 @@
 #include "benchmarks/run/run_plan.h"
 #include "core/files.h"
 #include "tests/benchmarks/hostile.h"
+#include "tests/deadline.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
@@ -81,7 +82,7 @@ TEST_F(SharedFolder, ThreeRunsAtOnceDoEachCellOnce) {
 
 TEST_F(SharedFolder, CellsOfARunThatWasKilledAreTakenOver) {
   const pid_t other = run_elsewhere();
-  while (lines_in(log) < 3) usleep(100);
+  wait_until([&] { return lines_in(log) >= 3; });
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
   Store store(folder.path() / "out");
@@ -114,6 +115,7 @@ TEST_F(SharedFolder, RecordsThatVanishWhileItRunsAreMissed) {
   const fs::path out = folder.path() / "out";
   const pid_t remover = fork();
   if (remover == 0) {
+    alarm(120);
     std::error_code error;
     while (std::distance(fs::directory_iterator(out / "runs", error), {}) < 5) usleep(200);
     // It ends at a file that is renamed meanwhile, and leaves the rest.

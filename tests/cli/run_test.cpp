@@ -9,6 +9,7 @@
 
 #include "core/files.h"
 #include "tests/cli/shell.h"
+#include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -246,11 +247,8 @@ class LongRun : public Run {
     if (child_ > 0) kill(child_, SIGKILL);
   }
   bool wait_for_records(std::size_t count) const {
-    while (count_records(out) < count) {
-      if (kill(child_, 0) != 0) return false;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return true;
+    wait_until([&] { return count_records(out) >= count || kill(child_, 0) != 0; });
+    return count_records(out) >= count;
   }
   // The first lets running cells finish, which here would take for ever; the second stops them.
   int exit_code_after_two(int signal) {
