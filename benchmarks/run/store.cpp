@@ -186,10 +186,14 @@ void Store::write(Record record, const std::optional<Record>& earlier) {
                  earlier->repeat_wall_seconds.end());
     std::ranges::sort(times);
   }
-  constexpr int kTries = 3;  // for the folders may be removed while the run goes on
+  try_to_write([&] { write_files(record); });
+}
+
+void Store::try_to_write(const std::function<void()>& write) {
+  constexpr int kTries = 3;
   for (int i = 1;; ++i) {
     try {
-      return write_files(record);
+      return write();
     } catch (const std::exception&) {
       if (i == kTries) throw;
       make_folders();
@@ -221,8 +225,10 @@ void Store::remove_checkpoint(const Request& request) const {
 
 void Store::write(const Sheet& sheet) {
   const fs::path path = folder_ / "components" / sheet.file_name();
-  clear_way(path);
-  write_text(path, file_text(sheet));
+  try_to_write([&] {
+    clear_way(path);
+    write_text(path, file_text(sheet));
+  });
 }
 
 }  // namespace isoline::benchmarks

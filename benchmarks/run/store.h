@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -54,6 +55,8 @@ class Store {
 
  private:
   void write_files(const Record& record);
+  // Makes the folders anew where they are removed while the run goes on.
+  void try_to_write(const std::function<void()>& write);
   void sweep() const;  // removes what killed runs of this machine left half-written
   void clear_way(
       const std::filesystem::path& path);  // where a file is to stand: of a folder, a pipe
