@@ -94,7 +94,7 @@ class OnSlurm(unittest.TestCase):
 
     def test_tasks_that_are_stopped_or_killed_go_on_and_lose_nothing(self):
         self.submit("stopped", 2, LONG)
-        job = self.cluster.jobs()[0].split("_")[0]
+        job = next(name.split("_")[0] for name in self.cluster.jobs() if "_" in name)
         self.wait_until_it_runs("stopped", ["1/2", "2/2"])
         self.cluster.tell("scancel", "--batch", "--signal=TERM", f"{job}_1")
         os.kill(self.processes_of("stopped")["2/2"], signal.SIGKILL)
@@ -128,7 +128,7 @@ class OnSlurm(unittest.TestCase):
 
     def test_a_job_that_its_user_cancels_stays_cancelled(self):
         self.submit("cancelled", 2, LONG)
-        job = self.cluster.jobs()[0].split("_")[0]
+        job = next(name.split("_")[0] for name in self.cluster.jobs() if "_" in name)
         self.wait_until_it_runs("cancelled", ["1/2", "2/2"])
         for each in {name.split("_")[0] for name in self.cluster.jobs()}:
             self.cluster.tell("scancel", each)
