@@ -18,7 +18,7 @@ set(package lib/cmake/Isoline)
 install(EXPORT IsolineTargets NAMESPACE Isoline:: DESTINATION ${package})
 install(FILES cmake/Dependencies.cmake cmake/Commit.cmake cmake/BuildInfo.cmake
               cmake/Program.cmake cmake/program.cpp.in DESTINATION ${package})
-install(FILES clients/c/isoline.h DESTINATION include)
+install(FILES core/foreign/isoline.h DESTINATION include)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/IsolineConfig.cmake @ONLY CONTENT [[
 include("${CMAKE_CURRENT_LIST_DIR}/Dependencies.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/IsolineTargets.cmake")

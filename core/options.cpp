@@ -30,13 +30,13 @@ class FieldParser {
 
   OptionValue operator()(Real) const {
     const Real value = number();
-    if (!isoline::contains(field_.range, value)) reject("in " + text_of(field_.range));
+    if (!isoline::contains(field_.range, value)) reject("in " + range_text(field_.range));
     return value;
   }
   OptionValue operator()(Index) const {
     const Real value = number();
     if (value != std::floor(value) || std::abs(value) > 1e15) reject("a whole number");
-    if (!isoline::contains(field_.range, value)) reject("in " + text_of(field_.range));
+    if (!isoline::contains(field_.range, value)) reject("in " + range_text(field_.range));
     return static_cast<Index>(value);
   }
   OptionValue operator()(bool) const {
@@ -73,7 +73,7 @@ class FieldParser {
   }
   [[noreturn]] void reject(const std::string& law, const std::string& nearest = "") const {
     std::string text =
-        fmt::format("{}: {} must be {}, got {}", component_, field_.name, law, text_of(given_));
+        fmt::format("{}: {} must be {}, got {}", component_, field_.name, law, option_text(given_));
     if (!nearest.empty()) text += fmt::format("; did you mean {}?", nearest);
     throw UsageError(text);
   }
@@ -91,14 +91,14 @@ bool contains(const Range& range, Real value) {
   return above && below && std::isfinite(value);  // no range is closed at infinity
 }
 
-std::string text_of(const Range& range) {
+std::string range_text(const Range& range) {
   const bool is_closed = std::isfinite(range.high) && !range.high_is_open;
   const bool from_below = std::isfinite(range.low);
   return fmt::format("{}{}, {}{}", range.low_is_open || !from_below ? "(" : "[", range.low,
                      range.high, is_closed ? "]" : ")");
 }
 
-std::string text_of(const OptionValue& value) {
+std::string option_text(const OptionValue& value) {
   return std::visit([](const auto& held) { return fmt::format("{}", held); }, value);
 }
 
@@ -171,7 +171,7 @@ std::string short_spec(const OptionTable& table, const std::string& name,
     const OptionValue& value = options.at(field.name);
     if (value == field.standard) continue;
     const std::string* text = std::get_if<std::string>(&value);
-    given.push_back(field.name + "=" + (text ? quoted(*text) : text_of(value)));
+    given.push_back(field.name + "=" + (text ? quoted(*text) : option_text(value)));
   }
   return given.empty() ? name : fmt::format("{}[{}]", name, fmt::join(given, ","));
 }
@@ -233,7 +233,7 @@ Json describe_options(const OptionTable& table) {
                {"type", kTypes[field.standard.index()]},
                {"default", json_of(field.standard)},
                {"doc", field.doc}};
-    if (field.standard.index() < 2) entry["range"] = text_of(field.range);
+    if (field.standard.index() < 2) entry["range"] = range_text(field.range);
     if (!field.choices.empty()) entry["choices"] = field.choices;
     list.push_back(entry);
   }

@@ -31,12 +31,12 @@ inline Range between(Real low, Real high) { return {.low = low, .high = high}; }
 // Of a running mean. At 1 it would never take in a value, and its bias correction would be 0/0.
 inline Range decay() { return {.low = 0, .high = 1, .high_is_open = true}; }
 bool contains(const Range& range, Real value);
-std::string text_of(const Range& range);  // "[1, 1000]", "(0, inf)"
+std::string range_text(const Range& range);  // "[1, 1000]", "(0, inf)"
 
 using Choices = std::vector<std::string>;  // empty: any text
 
 using OptionValue = std::variant<Real, Index, bool, std::string>;
-std::string text_of(const OptionValue& value);  // as in a spec: "0.001", "3", "true", "code"
+std::string option_text(const OptionValue& value);  // as in a spec: "0.001", "3", "true", "code"
 
 struct NamedOption {
   std::string name;

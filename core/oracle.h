@@ -53,8 +53,8 @@ struct OracleRow {
 };
 
 // All that a kind of oracle is, in its order: a new one is a row here, its computation in
-// problems/problem.cpp, its question in optimizers/linearization.cpp and its call in
-// benchmarks/run/prices.cpp; and the schema of records renewed.
+// problems/problem.cpp, its question in optimizers/meter.cpp and its call in
+// benchmarks/run/sheets.cpp; and the schema of records renewed.
 inline constexpr std::array kOracleTable = {
     OracleRow{Oracle::forward, "forward", "y = P(N(θ)) and L",
               [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
@@ -105,7 +105,7 @@ inline constexpr auto kOracleNames = [] {
   return names;
 }();
 
-constexpr const OracleRow& row_of(Oracle oracle) {
+constexpr const OracleRow& oracle_row(Oracle oracle) {
   return kOracleTable[static_cast<std::size_t>(oracle)];
 }
 static_assert([] {
@@ -116,7 +116,7 @@ static_assert([] {
 
 using OracleCounts = std::array<std::int64_t, kOracles>;
 
-inline std::string_view name_of(Oracle oracle) { return row_of(oracle).name; }
+inline std::string_view name_of(Oracle oracle) { return oracle_row(oracle).name; }
 
 // A set of oracles: what a method needs, or what a problem offers.
 class OracleSet {

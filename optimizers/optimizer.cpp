@@ -36,7 +36,7 @@ std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& op
   for (std::size_t kind = 0; kind < kOracles; ++kind) {
     const auto oracle = static_cast<Oracle>(kind);
     if (needs.contains(oracle) && !offered.contains(oracle))
-      return std::string(row_of(oracle).lack);
+      return std::string(oracle_row(oracle).lack);
   }
   if (entry.needs_same_samples && problem.has_fresh_batches())
     return "it compares losses from step to step, which needs a finite data set (data=N)";

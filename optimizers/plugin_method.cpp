@@ -8,7 +8,7 @@
 #include <exception>
 #include <stdexcept>
 
-#include "clients/c/isoline.h"
+#include "core/foreign/isoline.h"
 
 namespace isoline::optimizers {
 namespace {

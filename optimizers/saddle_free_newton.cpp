@@ -1,5 +1,5 @@
 // Saddle-free Newton with a limit on the change of loss, Holl, Koltun, Thuerey (2022), sine
-// problem, as saddle_free.h has it: θ ← θ − η V d, H = V diag(S) Vᵀ. The published script's
+// problem, as inversion.h has it: θ ← θ − η V d, H = V diag(S) Vᵀ. The published script's
 // transposed V is corrected.
 #include "core/decompose.h"
 #include "optimizers/inversion.h"

@@ -36,7 +36,7 @@ Way way_named(std::string_view name) {
   throw UsageError(fmt::format("there is no way '{}' of a spectral step", name));
 }
 
-std::string_view words_of(Way way) { return kWays[static_cast<std::size_t>(way)].words; }
+std::string_view way_text(Way way) { return kWays[static_cast<std::size_t>(way)].words; }
 
 bool is_tikhonov(const SpectralFilter& filter) {
   return filter.kappa == 1 && filter.damping > 0 && filter.unit == SpectralFilter::Unit::mean;
@@ -208,7 +208,7 @@ void SpectralStep::say(Meter& f, Way way) {
   for (unsigned other = 0; other <= static_cast<unsigned>(Way::lanczos); ++other)
     if ((ways_taken_ & (1U << other)) != 0)
       words += fmt::format("{}{}", words.empty() ? "steps by " : ", and by ",
-                           words_of(static_cast<Way>(other)));
+                           way_text(static_cast<Way>(other)));
   f.claim(words);
 }
 

@@ -28,7 +28,7 @@ enum class Way {
 Way way_named(std::string_view name);  // "auto", and each as it is called here
 
 // What was done, in words: "the thin SVD of J".
-std::string_view words_of(Way way);
+std::string_view way_text(Way way);
 
 // Of `automatic`. A Gram matrix squares the condition number: it is used where the estimated
 // relative error of the step is at most 2e-9 by it, and the least σ that matters 1e-5 of the

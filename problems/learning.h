@@ -2,6 +2,7 @@
 // They are taken at kept iterations, off the clock, and no method sees them.
 #pragma once
 
+#include "core/learning_options.h"
 #include "core/options.h"
 #include "problems/problem.h"
 
@@ -46,19 +47,20 @@ Series spectrum(Index grid);
 //   void fields(Options& o, auto& field) { field("xi", …); fields(o.learning, field); }
 
 struct Learning {
-  std::string mode = "direct", network = "mlp", watch;
+  std::string mode = kDirectMode, network = "mlp", watch;
   Index batch = 100, data = 0;
 
-  bool is_on() const { return mode == "learn"; }
+  bool is_on() const { return mode == kLearnMode; }
 };
 
 inline void fields(Learning& o, auto& field) {
-  field("mode", o.mode, {"direct", "learn"}, "one y*, or a network that learns x = N(y*; θ)");
-  field("network", o.network, Choices{}, "network of mode=learn");
-  field("batch", o.batch, between(1, 1e6), "samples drawn anew for each step of mode=learn");
-  field("data", o.data, between(0, 1e6),
+  field(kModeOption, o.mode, {kDirectMode, kLearnMode},
+        "one y*, or a network that learns x = N(y*; θ)");
+  field(kNetworkOption, o.network, Choices{}, "network of mode=learn");
+  field(kBatchOption, o.batch, between(1, 1e6), "samples drawn anew for each step of mode=learn");
+  field(kDataOption, o.data, between(0, 1e6),
         "0: fresh samples each step; N: the same N samples at every step of mode=learn");
-  field("watch", o.watch, {"", "noise", "spectrum"},
+  field(kWatchOption, o.watch, {"", "noise", "spectrum"},
         "what mode=learn traces besides: noise: of gradients between batches; spectrum: of grids, "
         "the share of power by wave number");
 }

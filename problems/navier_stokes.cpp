@@ -104,7 +104,7 @@ class Generator {
 };
 
 // What all instances have in common.
-ProblemParts parts_of(const Options& o) {
+ProblemParts flow_parts(const Options& o) {
   const auto measure = std::make_shared<FlowDistance>(o.flow(Arrangement::staggered), o.truth());
   ProblemParts parts{
       .physics = physics_of(o),
@@ -123,7 +123,7 @@ ProblemParts learn_navier_stokes(const Options& o, const Draw& draw) {
           "navier-stokes: watch=spectrum is for an x of one number a cell, and a velocity has two");
   const auto generator = std::make_shared<Generator>(o);
   const auto low_pass = std::make_shared<LowPass>(o.N);
-  ProblemParts parts = parts_of(o);
+  ProblemParts parts = flow_parts(o);
   parts.samples = {.validation = 64,
                    .contexts = 2 * o.cells(),
                    .draw = [generator, low_pass](RandomStream& stream, Index b, Batch& batch) {
@@ -156,7 +156,7 @@ ProblemParts make_navier_stokes(const Options& o, const Draw& draw) {
                                 o.time();
   Vector start(2 * o.cells());
   start << Vector::Constant(o.cells(), drift.x()), Vector::Constant(o.cells(), drift.y());
-  ProblemParts parts = parts_of(o);
+  ProblemParts parts = flow_parts(o);
   parts.start = draw.start(start);
   parts.context = markers;
   parts.target.resize(o.cells(), 1);

@@ -40,7 +40,7 @@ struct ReturnOptions {
 };
 inline void fields(ReturnOptions& o, auto& field) {
   field("loss", o.loss, {"", "square"}, "square: ‖y − y*‖², as published, instead of half of it");
-  field("epoch", o.epoch, between(0, 1e6),
+  field(kEpochOption, o.epoch, between(0, 1e6),
         "N: mode=learn goes through the same N samples again and again, batch by batch; 0: fresh "
         "samples each step");
   fields(o.learning, field);

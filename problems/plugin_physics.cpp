@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "clients/c/isoline.h"
+#include "core/foreign/isoline.h"
 
 namespace isoline::problems {
 namespace {
@@ -148,8 +148,8 @@ class PluginPhysics final : public Physics {
   isoline_sizes sizes_;
 };
 
-ProblemParts parts_of(const PluginComponent& component, const OptionValues& options,
-                      const Draw& draw) {
+ProblemParts plugin_parts(const PluginComponent& component, const OptionValues& options,
+                          const Draw& draw) {
   auto physics = std::make_unique<PluginPhysics>(component, options, draw.seed());
   const Index k = physics->inputs();
   const bool has_truth = component.can(ISOLINE_TRUTH);
@@ -180,7 +180,7 @@ void add_plugin_physics(ProblemRegistry& registry, const PluginComponent& compon
                      .options = component.options};
   entry.introduce = [foreign = component.foreign](const OptionValues&) { return foreign; };
   entry.make = [component](const OptionValues& options, const Draw& draw) {
-    return Problem(parts_of(component, options, draw));
+    return Problem(plugin_parts(component, options, draw));
   };
   registry.add(std::move(entry));
 }

@@ -1,4 +1,4 @@
-// Problems that shared libraries bring (clients/c/isoline.h), as entries of the registry.
+// Problems that shared libraries bring (core/foreign/isoline.h), as entries of the registry.
 #pragma once
 
 #include "core/foreign/plugin_library.h"

@@ -182,8 +182,8 @@ class ProcessPhysics final : public Physics {
   Box box_;
 };
 
-ProblemParts parts_of(const ProblemHandshake& said, std::shared_ptr<Session> session,
-                      const Draw& draw) {
+ProblemParts process_parts(const ProblemHandshake& said, std::shared_ptr<Session> session,
+                           const Draw& draw) {
   const Vector standard = vector_of(said.start);
   ProblemParts parts{.physics = std::make_unique<ProcessPhysics>(std::move(session), said),
                      .start = draw.start(standard),
@@ -203,7 +203,7 @@ Problem make_process(const OptionValues& options, const Draw& draw) {
   const auto given = read_options<ProcessOptions>(options);
   auto session = std::make_shared<Session>(given.command);
   const ProblemHandshake said = greet_problem(session->line, draw.seed(), given.startup);
-  return Problem(parts_of(said, std::move(session), draw));
+  return Problem(process_parts(said, std::move(session), draw));
 }
 
 Foreign introduce(const OptionValues& options) {

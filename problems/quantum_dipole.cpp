@@ -19,7 +19,7 @@ struct Options {
 void fields(Options& o, auto& field) {
   field("loss", o.loss, {"", "residual"},
         "residual: y = (I − aaᵀ)ψ and y* = 0, the same loss as a sum of squares");
-  field("epoch", o.epoch, between(0, 1e6),
+  field(kEpochOption, o.epoch, between(0, 1e6),
         "N: mode=learn goes through the same N samples again and again, batch by batch; 0: fresh "
         "samples each step");
   fields(o.learning, field);

@@ -14,7 +14,7 @@
 
 #include "benchmarks/audit/audit_problems.h"
 #include "benchmarks/run/execute.h"
-#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/isolate.h"
 #include "core/json.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"

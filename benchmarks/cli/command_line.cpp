@@ -393,7 +393,7 @@ std::uint64_t read_seed(const std::string& option, const std::string& text) {
 double read_real(const std::string& option, const std::string& text, const Range& range) {
   const auto value = number_in<double>(text);
   require(value && contains(range, *value), [&] {
-    return fmt::format("{} must be a number in {}, got '{}'", option, text_of(range), text);
+    return fmt::format("{} must be a number in {}, got '{}'", option, range_text(range), text);
   });
   return *value;
 }

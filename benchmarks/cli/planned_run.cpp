@@ -163,7 +163,7 @@ Preview preview_of(const PlannedRun& all, const RunArguments& given,
     require(!there.empty(), [&] { return folder + ": no such result folder"; });
     timed.insert(timed.end(), there.begin(), there.end());
   }
-  return preview(session.catalog(), all.requests, folders, EarlierTimes(glances_at(timed)),
+  return preview(session.catalog(), all.requests, folders, EarlierTimes(record_outlines(timed)),
                  {.force = given.force, .reuse = given.reuse, .retry = statuses_of(given.retry)});
 }
 

@@ -10,7 +10,7 @@
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/run/preview.h"
-#include "benchmarks/shard/predicted.h"
+#include "benchmarks/shard/split.h"
 
 namespace isoline::benchmarks {
 

@@ -10,7 +10,7 @@
 #include "benchmarks/cli/command_line.h"
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/plugins.h"
-#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/isolate.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"
 #include "core/shell.h"

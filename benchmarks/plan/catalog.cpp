@@ -5,9 +5,10 @@
 
 #include <algorithm>
 
-#include "benchmarks/plan/best.h"
 #include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/rates.h"
 #include "core/digest.h"
+#include "core/learning_options.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 
@@ -58,7 +59,8 @@ std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
 }
 
 bool can_learn(const ProblemEntry& entry) {
-  return std::ranges::find(entry.options, "network", &OptionField::name) != entry.options.end();
+  return std::ranges::find(entry.options, kNetworkOption, &OptionField::name) !=
+         entry.options.end();
 }
 
 // Whoever asks to learn would else be told of an unknown option.
@@ -85,10 +87,10 @@ Component complete_problem(const Catalog& catalog, const std::string& name,
   if (asks_to_learn(options)) require_learnable(catalog, entry);
   Component problem = complete(entry, options);
   if (problem.is_learned) {
-    const std::string network = parse_spec(problem.options.text("network")).name;
+    const std::string network = parse_spec(problem.options.text(kNetworkOption)).name;
     problem.learning_sources = source_digest(networks::network_registry().at(network).file);
   }
-  const std::string best = BestLosses::builtin().text_of(problem);
+  const std::string best = BestLosses::builtin().losses_text(problem);
   if (!best.empty()) problem.sources = digest(problem.sources + best);
   return problem;
 }

@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 struct Claim {
   std::string group;  // the file it stands in
   std::string id, sentence;
-  std::shared_ptr<const Json> json;  // as reports/sections/verdicts.h says, its cells by digests
+  std::shared_ptr<const Json> json;  // as reports/sections/evidence.h says, its cells by digests
   // One of each set of cells, the longest first.
   struct Cells {
     bool is_long = false;  // hours: run only when asked for

@@ -1,16 +1,19 @@
-// Tables of rates: reading, looking up, joining.
+// Reads, looks up and joins tables of rates and of best losses.
 #include "benchmarks/plan/rates.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/learning_options.h"
 #include "core/options.h"
+#include "core/records/schema.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {
@@ -27,14 +30,14 @@ bool is_same(const OptionValue& value, const std::string& wanted) {
   if (const Real* number = std::get_if<Real>(&value)) return as_number(*number);
   if (const Index* number = std::get_if<Index>(&value))
     return as_number(static_cast<Real>(*number));
-  return text_of(value) == wanted;
+  return option_text(value) == wanted;
 }
 
 // Whether a problem's complete options have the values that a row names, as text.
 bool is_for(const OptionValues& row, const OptionValues& complete) {
   return std::ranges::all_of(row, [&](const NamedOption& wanted) {
     const OptionValue* value = complete.find(wanted.name);
-    return value && is_same(*value, text_of(wanted.value));
+    return value && is_same(*value, option_text(wanted.value));
   });
 }
 
@@ -73,10 +76,10 @@ const Rates::Row* Rates::find(const Component& problem, const std::string& optim
                               const std::string& table) const {
   const auto rows = rows_.find({problem.name, optimizer});
   if (rows == rows_.end()) return nullptr;
-  const bool is_in_other_mode = options_of(parse_spec(problem.spec)).contains("mode");
+  const bool is_in_other_mode = options_of(parse_spec(problem.spec)).contains(kModeOption);
   const Row* best = nullptr;
   for (const Row& row : rows->second) {
-    if (is_in_other_mode && !row.problem.contains("mode")) continue;
+    if (is_in_other_mode && !row.problem.contains(kModeOption)) continue;
     if (is_in(table, row.origin) && is_for(row.problem, problem.options) &&
         (!best || row.problem.size() >= best->problem.size()))
       best = &row;
@@ -87,6 +90,84 @@ const Rates::Row* Rates::find(const Component& problem, const std::string& optim
 void Rates::add(const Rates& other) {
   for (const auto& [pair, rows] : other.rows_)
     rows_[pair].insert(rows_[pair].end(), rows.begin(), rows.end());
+}
+
+// Best losses: read, looked up, renewed.
+
+namespace {
+
+constexpr const char* kSchema = "isoline.best/1";
+
+}  // namespace
+
+const BestLosses& BestLosses::builtin() {
+  static const BestLosses all =
+      from_json(parse_json(std::string(embedded_best()), "best.json"), "best.json");
+  return all;
+}
+
+BestLosses BestLosses::from_json(const Json& json, const std::string& origin) {
+  const Json schema = parse_json(std::string(builtin_schemas().at("best")), "best schema");
+  const auto violations = schema_violations(json, schema);
+  require(violations.empty(),
+          [&] { return origin + " is no table of best losses: " + violations[0]; });
+  BestLosses best;
+  for (const Json& row : json.at("rows")) {
+    Row& read = best.rows_.emplace_back();
+    read.problem = row.at("problem");
+    read.options = option_values_from(row.at("options"));
+    for (const Json& one : row.at("losses"))
+      read.losses[one.at("seed")] = {real_of(one.at("loss")), one.at("optimizer")};
+  }
+  return best;
+}
+
+Json BestLosses::to_json() const {
+  Json rows = Json::array();
+  for (const Row& row : rows_) {
+    Json losses = Json::array();
+    for (const auto& [seed, known] : row.losses)
+      losses.push_back({{"seed", seed}, {"loss", known.loss}, {"optimizer", known.optimizer}});
+    rows.push_back(
+        {{"problem", row.problem}, {"options", isoline::to_json(row.options)}, {"losses", losses}});
+  }
+  return {{"schema", kSchema}, {"rows", rows}};
+}
+
+std::size_t BestLosses::place_of(const Component& problem) const {
+  const OptionValues named = without_empty(problem.options);
+  const auto row = std::ranges::find_if(rows_, [&](const Row& each) {
+    return each.problem == problem.name && each.options == named;
+  });
+  return static_cast<std::size_t>(row - rows_.begin());
+}
+
+std::optional<Real> BestLosses::find(const Component& problem, std::uint64_t seed) const {
+  const std::size_t place = place_of(problem);
+  if (place == rows_.size()) return std::nullopt;
+  const auto known = rows_[place].losses.find(seed);
+  return known == rows_[place].losses.end() ? std::nullopt : std::optional(known->second.loss);
+}
+
+std::string BestLosses::losses_text(const Component& problem) const {
+  const std::size_t place = place_of(problem);
+  if (place == rows_.size()) return "";
+  Json losses = Json::object();
+  for (const auto& [seed, known] : rows_[place].losses) losses[std::to_string(seed)] = known.loss;
+  return json_text(losses);
+}
+
+bool BestLosses::add(const Record& record) {
+  const Real loss = record.summary.best_loss;
+  if (record.imported || !std::isfinite(loss) || record.status == Status::inapplicable)
+    return false;
+  const Component& problem = record.request.problem;
+  const std::size_t place = place_of(problem);
+  if (place == rows_.size()) rows_.push_back({problem.name, without_empty(problem.options), {}});
+  const auto [known, is_new] = rows_[place].losses.try_emplace(record.request.seed);
+  if (!is_new && known->second.loss <= loss) return false;
+  known->second = {loss, record.request.optimizer.spec};
+  return true;
 }
 
 }  // namespace isoline::benchmarks

@@ -1,12 +1,13 @@
-// Rates belong neither to a problem nor to an optimizer: a table maps the options of a problem and
-// an optimizer to options, with the source of each value.
+// Tables that belong neither to a problem nor to an optimizer: rates and the best losses known.
 #pragma once
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/records/record.h"
 #include "core/records/request.h"
 
 namespace isoline::benchmarks {
@@ -37,6 +38,39 @@ class Rates {
 
  private:
   std::map<std::pair<std::string, std::string>, std::vector<Row>> rows_;  // by names
+};
+
+// The best losses known, f_L of problems that declare none or whose bound nobody attains: by
+// problem, all its options and seed, in benchmarks/best.json. Runs read it when their problem is
+// made; no report changes it.
+
+class BestLosses {
+ public:
+  static const BestLosses& builtin();
+  static BestLosses from_json(const Json& json, const std::string& origin);
+  Json to_json() const;
+
+  std::optional<Real> find(const Component& problem, std::uint64_t seed) const;
+
+  // Of a problem at all seeds, as text: what a digest of the problem is also of. Empty: none.
+  std::string losses_text(const Component& problem) const;
+
+  // The lesser of what is known and the best loss that the record has seen; whether that changed.
+  bool add(const Record& record);
+
+ private:
+  struct Loss {
+    Real loss;
+    std::string optimizer;  // the spec of the method that found it
+  };
+  struct Row {
+    std::string problem;
+    OptionValues options;  // all of them
+    std::map<std::uint64_t, Loss> losses;
+  };
+  std::size_t place_of(const Component& problem) const;  // of its row; their number where none is
+
+  std::vector<Row> rows_;
 };
 
 }  // namespace isoline::benchmarks

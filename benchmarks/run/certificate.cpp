@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/isolate.h"
 #include "optimizers/optimizer.h"
 #include "problems/conformance.h"
 #include "problems/problem.h"

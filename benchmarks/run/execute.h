@@ -23,7 +23,7 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
 // Makes the components of the request and drives them. The verdict is in the trace, whatever
 // happens: an exception ends as `failed`, `memory` or `inapplicable`, and a run that was asked to
 // stop as `interrupted`. `returned` gets the last θ. A perturbation other than 0 moves the start in
-// the last bit (perturbation.h).
+// the last bit (runner.h).
 void execute(const Catalog& catalog, const Request& request, Trace& trace,
              Checkpoint checkpoint = {}, Vector* returned = nullptr, int perturbation = 0);
 

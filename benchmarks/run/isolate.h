@@ -12,7 +12,6 @@
 #include <span>
 #include <string>
 
-#include "benchmarks/run/isolated_text.h"
 #include "benchmarks/run/limits.h"
 #include "benchmarks/run/process_group.h"
 #include "core/trace.h"
@@ -99,8 +98,6 @@ class CapturedOutput {
   std::int64_t left_out_ = 0;  // bytes
 };
 
-// One run in a process of its own: whatever it does to itself, this process goes on.
-
 // Its trace lives in shared memory and outlives the child. Until the child has ended it may hold
 // anything; then it is checked whole, and what is read of it is sound.
 class Worker {
@@ -141,5 +138,17 @@ class Worker {
   std::optional<LimitWatch::Breach> breach_;  // why we killed it
   std::int64_t asked_to_stop_ = 0;            // monotonic nanoseconds; 0: it was not
 };
+
+// A text made in a process of its own: sheets, audits, checks of what may crash.
+
+// What work in a child process came to: its text, or why there is none.
+struct IsolatedText {
+  std::optional<std::string> text;
+  std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
+};
+
+// Ended after so many seconds of processor time, or of idleness, or five times as many in all.
+IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
+                           std::int64_t memory_bytes = Limits{}.memory_bytes);
 
 }  // namespace isoline::benchmarks

@@ -5,7 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/isolate.h"
 #include "benchmarks/run/prediction.h"
 #include "core/clock.h"
 #include "core/json.h"

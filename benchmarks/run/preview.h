@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
-#include "benchmarks/run/glance.h"
+#include "benchmarks/run/prediction.h"
 #include "benchmarks/run/store.h"
 
 namespace isoline::benchmarks {

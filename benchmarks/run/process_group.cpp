@@ -40,7 +40,7 @@ constexpr auto kMarked = static_cast<__rlimit_resource>(RLIMIT_LOCKS);
 constexpr std::string_view kMarkedLine = "Max file locks";
 
 // Empty where it cannot be read.
-std::string text_of(const std::string& path) {
+std::string process_text(const std::string& path) {
   std::string text;
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return text;
@@ -96,7 +96,7 @@ bool has_lists_of_children() {
 }  // namespace
 
 std::optional<ProcessFigures> figures_of(pid_t process) {
-  const std::string text = text_of(fmt::format("/proc/{}/stat", process));
+  const std::string text = process_text(fmt::format("/proc/{}/stat", process));
   const std::size_t name_end = text.rfind(')');  // a name may hold anything
   if (name_end == std::string::npos) return std::nullopt;
   int parent = 0;
@@ -119,7 +119,7 @@ std::optional<ProcessFigures> figures_of(pid_t process) {
 }
 
 std::int64_t proportional_bytes(pid_t process) {
-  const std::string text = text_of(fmt::format("/proc/{}/smaps_rollup", process));
+  const std::string text = process_text(fmt::format("/proc/{}/smaps_rollup", process));
   constexpr std::string_view kLine = "\nPss:";
   const std::size_t line = text.find(kLine);
   if (line == std::string::npos) return 0;
@@ -133,7 +133,7 @@ std::vector<pid_t> children_of(pid_t process) {
   const fs::path threads = fmt::format("/proc/{}/task", process);
   for (fs::directory_iterator thread(threads, error), end; !error && thread != end;
        thread.increment(error))
-    append_numbers(text_of(thread->path() / "children"), children);
+    append_numbers(process_text(thread->path() / "children"), children);
   return children;
 }
 
@@ -156,7 +156,7 @@ void mark_this_process(std::uint64_t mark) {
 }
 
 std::uint64_t mark_of(pid_t process) {
-  const std::string text = text_of(fmt::format("/proc/{}/limits", process));
+  const std::string text = process_text(fmt::format("/proc/{}/limits", process));
   const std::size_t line = text.find(kMarkedLine);
   if (line == std::string::npos) return 0;
   return std::strtoull(text.c_str() + line + kMarkedLine.size(), nullptr, 10);  // "unlimited": 0

@@ -1,22 +1,28 @@
-// Records counted, failures in words.
+// The run of a whole plan, the same runs from perturbed starts, and who may interrupt them.
 #include "benchmarks/run/runner.h"
 
 #include <fmt/format.h>
 #include <malloc.h>
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <memory>
 #include <thread>
 
+#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/execute.h"
-#include "benchmarks/run/interrupt_guard.h"
 #include "benchmarks/run/judge.h"
 #include "benchmarks/run/pending.h"
 #include "benchmarks/run/prediction.h"
+#include "benchmarks/run/process_group.h"
 #include "benchmarks/run/same_result.h"
 #include "core/clock.h"
+#include "core/errors.h"
+#include "core/files.h"
 #include "core/records/provenance.h"
+#include "core/status.h"
 #include "core/text.h"
 #include "core/threads.h"
 
@@ -40,6 +46,77 @@ std::string title_of(const Request& request) {
 // The run of a whole plan: workers filled, watched, collected and stored.
 
 namespace {
+
+constexpr std::sig_atomic_t kFinish = 1, kStop = 2;
+
+volatile std::sig_atomic_t heard = 0;
+
+void hear(int signal, siginfo_t* sent, void*) {
+  if (sent->si_code <= 0 && is_of_a_group(sent->si_pid)) return;  // by a process, and one of ours
+  if (heard == kStop) {
+    signal_all_groups(SIGKILL);
+    _exit(kInterrupted);
+  }
+  heard = signal == SIGINT && heard < kFinish ? kFinish : kStop;
+}
+
+void stop_with_cells(int) {
+  signal_all_groups(SIGSTOP);
+  raise(SIGSTOP);
+  signal_all_groups(SIGCONT);
+}
+
+// What is ignored stays so: nohup, and a shell that runs in the background, had it so.
+void handle(int signal, const struct sigaction& action, struct sigaction& old) {
+  sigaction(signal, nullptr, &old);
+  if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+}
+
+enum class Asked { nothing, finish, stop };
+
+// While it lives, who asks this process to end is heard in order. Ctrl-C asks to finish what runs;
+// a second one, a polite kill (of a scheduler, say) or a closed terminal ask to stop it; one more
+// ends this process and all its cells at once. Ctrl-Z stops the cells too, until they all go on.
+// What a handler calls is safe there: a flag, a table of numbers and plain calls of the system.
+class InterruptGuard {
+ public:
+  InterruptGuard();
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  Asked asked() const;  // so far; a cell that asks its parent is not heard
+
+ private:
+  struct sigaction old_int_ {
+  }, old_term_{}, old_hup_{}, old_stop_{};
+};
+
+InterruptGuard::InterruptGuard() {
+  heard = 0;
+  struct sigaction hearing {};
+  hearing.sa_sigaction = hear;
+  hearing.sa_flags = SA_SIGINFO;
+  handle(SIGINT, hearing, old_int_);
+  handle(SIGTERM, hearing, old_term_);
+  handle(SIGHUP, hearing, old_hup_);
+  struct sigaction stopping {};
+  stopping.sa_handler = stop_with_cells;
+  stopping.sa_flags = SA_RESTART;
+  handle(SIGTSTP, stopping, old_stop_);
+}
+
+InterruptGuard::~InterruptGuard() {
+  sigaction(SIGINT, &old_int_, nullptr);
+  sigaction(SIGTERM, &old_term_, nullptr);
+  sigaction(SIGHUP, &old_hup_, nullptr);
+  sigaction(SIGTSTP, &old_stop_, nullptr);
+}
+
+Asked InterruptGuard::asked() const {
+  if (heard == kStop) return Asked::stop;
+  return heard == kFinish ? Asked::finish : Asked::nothing;
+}
 
 constexpr double kJudgeSeconds = 300;  // that a point may take, its problem made afresh
 
@@ -268,6 +345,57 @@ void run_in_process(const Catalog& catalog, const std::vector<Request>& requests
     execute(catalog, request, *trace);
     ended(request, *trace);
   }
+}
+
+// Requests made anew.
+
+Request request_again(const Catalog& catalog, const Record& record, double hard_seconds) {
+  Request request = record.request;
+  const Component &problem = record.request.problem, &optimizer = record.request.optimizer;
+  request.problem = complete_problem(catalog, problem.name, problem.options);
+  request.optimizer = complete_optimizer(catalog, optimizer.name, optimizer.options);
+  request.problem.asked = problem.asked;
+  request.optimizer.asked = optimizer.asked;
+  request.hard_seconds = hard_seconds;
+  return named(std::move(request));
+}
+
+// Asks again for what records asked for, and runs it hidden from everybody else.
+
+namespace {
+
+// What the record asked for, as this program asks for it.
+Request same_request(const Catalog& catalog, const Record& record) {
+  constexpr double kLongest = 600;  // seconds: the record has ended without a clock before
+  const Request request = request_again(catalog, record, kLongest);
+  require(request.cell == record.cell && build_digest(request) == record.build, [&] {
+    return title_of(request) +
+           ": its record is of another build; run it by this one (isoline run), or keep "
+           "it without perturbations (--perturbations 0)";
+  });
+  return request;
+}
+
+bool is_repeated(const Record& record) {
+  return !record.is_nondeterministic && record.status != Status::inapplicable;
+}
+
+}  // namespace
+
+std::optional<std::vector<Record>> perturbed_records(const Catalog& catalog,
+                                                     const std::vector<Record>& records, int number,
+                                                     RunOptions options) {
+  std::vector<Request> requests;
+  for (const Record& record : records)
+    if (is_repeated(record)) requests.push_back(same_request(catalog, record));
+  const HiddenFolder folder;
+  Store store(folder.path());
+  options.perturbation = number;
+  if (run_all(catalog, requests, store, options).is_interrupted) return std::nullopt;
+  std::vector<Record> perturbed;
+  for (const Request& request : requests)
+    if (std::optional<Record> record = store.find(request)) perturbed.push_back(std::move(*record));
+  return perturbed;
 }
 
 }  // namespace isoline::benchmarks

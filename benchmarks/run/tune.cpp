@@ -358,7 +358,7 @@ Json number_of(Real value) {
   return std::isfinite(value) ? Json(three_digits(value)) : json_number(value);
 }
 
-Json row_of(const Candidate& candidate, const Budget& usual) {
+Json candidate_row(const Candidate& candidate, const Budget& usual) {
   Json values = Json::array(), scores = Json::array(), expected = Json::array();
   std::vector<Real> left;
   for (const Trial& trial : candidate.trials) {
@@ -419,7 +419,7 @@ TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
   for (const Candidate& candidate : candidates) {
     result.inapplicable += candidate.is_inapplicable;
     if (candidate.is_inapplicable) continue;
-    rows.push_back(row_of(candidate, plan.pairs[0].budget));
+    rows.push_back(candidate_row(candidate, plan.pairs[0].budget));
     result.tuned.push_back(tuned_of(candidate));
   }
   result.rows = std::make_shared<const Json>(std::move(rows));

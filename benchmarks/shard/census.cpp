@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "benchmarks/run/glance.h"
 #include "benchmarks/run/pending.h"
+#include "benchmarks/run/prediction.h"
 #include "benchmarks/run/store.h"
-#include "benchmarks/shard/predicted.h"
 #include "benchmarks/shard/split.h"
 #include "core/clock.h"
 #include "core/errors.h"
@@ -61,7 +60,7 @@ namespace {
 // What is known of a planned cell.
 struct Known {
   double weight = 1;  // predicted seconds; 1 each where nothing was predicted
-  std::optional<Glance> latest;
+  std::optional<RecordOutline> latest;
 };
 using Cells = std::unordered_map<std::string, Known>;
 
@@ -85,7 +84,7 @@ bool add_predicted(const fs::path& whole, Cells& cells) {
 }
 
 void add_records(const std::vector<fs::path>& folders, Cells& cells, const Listener& listener) {
-  for (Glance& seen : glances_at(folders, listener)) {
+  for (RecordOutline& seen : record_outlines(folders, listener)) {
     if (seen.status == Status::interrupted) continue;
     Known& cell = cells[seen.cell];
     if (!cell.latest || cell.latest->started < seen.started) cell.latest = std::move(seen);

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/run/perturbed_runs.h"
+#include "benchmarks/run/runner.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text.h"

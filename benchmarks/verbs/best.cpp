@@ -1,6 +1,4 @@
 // isoline best DIR... --out FILE: the best losses of runs, where no least loss is declared.
-#include "benchmarks/plan/best.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/plan/rates.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"

@@ -74,13 +74,14 @@ std::string allowed_values(const OptionField& field) {
   }
   const bool is_number =
       std::holds_alternative<Real>(field.standard) || std::holds_alternative<Index>(field.standard);
-  return is_number ? text_of(field.range) : "";
+  return is_number ? range_text(field.range) : "";
 }
 
 void print_options(const OptionTable& table, const OptionValues& values) {
   say(stdout, table.empty() ? "\nOptions     none\n" : "\nOptions\n");
   for (const OptionField& field : table) {
-    const std::string value = text_of(values.at(field.name)), standard = text_of(field.standard);
+    const std::string value = option_text(values.at(field.name)),
+                      standard = option_text(field.standard);
     say(stdout,
         fmt::format("  {:20} {:>12}  {:22} {}{}\n", field.name, value, allowed_values(field),
                     field.doc, value == standard ? "" : fmt::format(" (default: {})", standard)));

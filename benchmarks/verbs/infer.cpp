@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/run/isolated_text.h"
+#include "benchmarks/run/isolate.h"
 #include "benchmarks/run/trained.h"
 #include "core/errors.h"
 #include "core/records/npy.h"

@@ -14,7 +14,7 @@
 
 namespace isoline::benchmarks {
 
-// Of clients/start/ and clients/c/.
+// Of clients/start/ and core/foreign/.
 std::string_view embedded_start_problem_cpp();
 std::string_view embedded_start_optimizer_cpp();
 std::string_view embedded_start_problem_c();

@@ -7,7 +7,6 @@
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/build_parts.h"
-#include "benchmarks/run/perturbed_runs.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/same_result.h"
 #include "core/errors.h"

@@ -13,7 +13,6 @@
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/shard/census.h"
-#include "benchmarks/shard/predicted.h"
 #include "benchmarks/shard/split.h"
 #include "core/text.h"
 
@@ -33,9 +32,9 @@ std::string fate_of(const PreviewedCell& cell) {
 void print_plan(const PlannedRun& all, const RunOptions& options, const RunArguments& given,
                 Session& session) {
   constexpr std::size_t kMost = 20;
-  const Preview shown =
-      preview(session.catalog(), all.requests, {all.folder}, EarlierTimes(glances_at({all.folder})),
-              {.force = options.force, .reuse = options.reuse, .retry = options.retry});
+  const Preview shown = preview(
+      session.catalog(), all.requests, {all.folder}, EarlierTimes(record_outlines({all.folder})),
+      {.force = options.force, .reuse = options.reuse, .retry = options.retry});
   const std::vector<PreviewedCell>& cells = shown.cells;
   print_counts(shown, options.jobs);
   say(stdout, fmt::format("result folder: {}\n", all.folder.string()));

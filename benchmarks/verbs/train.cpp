@@ -15,6 +15,7 @@
 #include "benchmarks/run/isolate.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/trained.h"
+#include "core/learning_options.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 
@@ -50,7 +51,7 @@ void declare(VerbArguments& verb, TrainArguments& given) {
 Request request_of(const TrainArguments& given, const Catalog& catalog) {
   const Spec problem_spec = parse_spec(given.problem), spec = parse_spec(given.optimizer);
   OptionValues options = options_of(problem_spec);
-  if (!options.contains("mode")) options.set("mode", "learn");
+  if (!options.contains(kModeOption)) options.set(kModeOption, kLearnMode);
   const Component problem = complete_problem(catalog, problem_spec.name, options);
   require(problem.is_learned, "train: mode=direct has no network to train; leave it out");
   const Rates rates = Rates::builtin();

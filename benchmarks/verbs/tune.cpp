@@ -20,7 +20,6 @@
 #include "core/spec.h"
 #include "core/text.h"
 #include "reports/formats/formats.h"
-#include "reports/formats/terminal.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {

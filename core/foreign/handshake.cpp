@@ -176,7 +176,7 @@ class Said {
   const std::string who_;
 };
 
-Foreign words_of(const Said& said) {
+Foreign foreign_of(const Said& said) {
   Foreign foreign;
   foreign.label = said.text("name");
   foreign.interpreter = said.text("interpreter");
@@ -208,7 +208,7 @@ std::string answer_to(Line& line, const Json& greeting, double seconds) {
 ProblemHandshake problem_handshake(const std::string& text, const std::string& who) {
   const Said said(text, who);
   said.expect_role("problem");
-  ProblemHandshake problem{.foreign = words_of(said)};
+  ProblemHandshake problem{.foreign = foreign_of(said)};
   problem.inputs = said.whole("inputs", 1, kMostSize, {});
   problem.outputs = said.whole("outputs", 1, kMostSize, {});
   problem.oracles = said.oracles("oracles", {Oracle::forward, Oracle::pushforward, Oracle::pullback,
@@ -244,7 +244,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
 MethodHandshake method_handshake(const std::string& text, const std::string& who) {
   const Said said(text, who);
   said.expect_role("optimizer");
-  return {.foreign = words_of(said),
+  return {.foreign = foreign_of(said),
           .needs = said.oracles("needs", {Oracle::forward, Oracle::pullback, Oracle::pushforward,
                                           Oracle::jacobian, Oracle::hessian_product}),
           .is_least_squares = said.flag("least_squares"),

@@ -208,8 +208,8 @@ void Line::receive_rest(char* bytes, std::size_t count, const Deadline& deadline
   }
 }
 
-std::string Line::text_of(const FrameHead& head, std::string begun, std::uint64_t most,
-                          const Deadline& deadline) {
+std::string Line::message_text(const FrameHead& head, std::string begun, std::uint64_t most,
+                               const Deadline& deadline) {
   if (head.bytes > most)
     fail(fmt::format("sends a text of {} bytes, and at most {} are taken", head.bytes, most));
   const std::size_t got = begun.size();
@@ -239,7 +239,7 @@ void Line::receive_answer(Verb verb, std::span<Real> numbers, double seconds) {
     fail(fmt::format("answers {} with a frame of verb {}", name_of(verb), head.verb));
   if (head.status != static_cast<std::uint32_t>(Answer::done))
     fail(fmt::format("failed at {}: {}", name_of(verb),
-                     text_of(head, {bytes.data(), got}, kMostWireText, deadline)));
+                     message_text(head, {bytes.data(), got}, kMostWireText, deadline)));
   if (head.bytes != bytes.size())
     fail(fmt::format("answers {} with {} bytes, where {} are the answer", name_of(verb), head.bytes,
                      bytes.size()));
@@ -252,7 +252,7 @@ std::string Line::receive_text(Verb verb, std::uint64_t most_bytes, double secon
   const FrameHead head = receive_head(nullptr, 0, got, deadline);
   if (head.verb != static_cast<std::uint32_t>(verb))
     fail(fmt::format("answers {} with a frame of verb {}", name_of(verb), head.verb));
-  const std::string text = text_of(head, "", most_bytes, deadline);
+  const std::string text = message_text(head, "", most_bytes, deadline);
   if (head.status != static_cast<std::uint32_t>(Answer::done))
     fail(fmt::format("failed at {}: {}", name_of(verb), text));
   return text;

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "clients/c/isoline.h"
 #include "core/digest.h"
 #include "core/files.h"
+#include "core/foreign/isoline.h"
 #include "core/text.h"
 
 namespace isoline {
@@ -42,10 +42,10 @@ class Reader {
     made.table = std::make_shared<const isoline_component>(given);
     made.name = name_of(made.table->name, "name");
     words_ = made.name;
-    made.title = text_of("title", given.title);
-    made.formula = text_of("formula", given.formula);
-    made.source = text_of("source", given.source);
-    if (given.note != nullptr) made.note = text_of("note", given.note);
+    made.title = checked_text("title", given.title);
+    made.formula = checked_text("formula", given.formula);
+    made.source = checked_text("source", given.source);
+    if (given.note != nullptr) made.note = checked_text("note", given.note);
     made.is_optimizer = (given.capabilities & (ISOLINE_STEP | ISOLINE_SOLVE)) != 0;
     made.is_optimizer ? check_optimizer(*made.table) : check_problem(*made.table);
     read_options(*made.table, made);
@@ -90,7 +90,7 @@ class Reader {
     return name;
   }
 
-  std::string text_of(const char* what, const char* given) const {
+  std::string checked_text(const char* what, const char* given) const {
     hold(given != nullptr && given[0] != '\0',
          [&] { return fmt::format("`{}` is {}", what, given == nullptr ? "null" : "empty"); });
     return valid_utf8(std::string(given, strnlen(given, kMostText)));
@@ -152,9 +152,9 @@ class Reader {
     const Range range = between(option.low, option.high);
     hold(contains(range, option.standard), [&] {
       return fmt::format("the default of option '{}' must be in {}, got {}", name,
-                         isoline::text_of(range), option.standard);
+                         range_text(range), option.standard);
     });
-    return {name, option.standard, range, {}, text_of("about of an option", option.about)};
+    return {name, option.standard, range, {}, checked_text("about of an option", option.about)};
   }
 
   std::string path_, digest_, words_;
@@ -184,8 +184,7 @@ std::vector<PluginComponent> load_plugin(const std::string& path) {
   const std::string contents = digest(read_text(path));  // a regular file, or it says what it is
   void* entry = dlsym(opened(path), "isoline_plugin");
   require(entry != nullptr, [&] {
-    return fmt::format("{}: it exports no isoline_plugin(), which clients/c/isoline.h declares",
-                       path);
+    return fmt::format("{}: it exports no isoline_plugin(), which isoline.h declares", path);
   });
   const auto plugin = reinterpret_cast<decltype(&isoline_plugin)>(entry);
   std::vector<PluginComponent> all;

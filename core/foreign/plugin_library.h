@@ -1,5 +1,5 @@
 // The door to shared libraries: the components that one brings by the struct of
-// clients/c/isoline.h, each held to the law of that struct before any function of it is called.
+// core/foreign/isoline.h, each held to the law of that struct before any function of it is called.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 //     field.optional("counts", summary.counts);          // left out where empty
 //   }
 //
-// The types of members, and how each stands in JSON, are those of core/records/forms.h.
+// Each type of member says below how it stands in JSON.
 #pragma once
 
 #include <algorithm>

@@ -5,16 +5,17 @@
 
 #include "core/digest.h"
 #include "core/json.h"
+#include "core/learning_options.h"
 #include "core/options.h"
 #include "core/records/record_fields.h"
 
 namespace isoline {
 
-bool asks_to_learn(const OptionValues& options) { return options.text("mode") == "learn"; }
+bool asks_to_learn(const OptionValues& options) { return options.text(kModeOption) == kLearnMode; }
 
 bool is_instance_of(OptionValues direct, OptionValues learned) {
   if (asks_to_learn(direct) || !asks_to_learn(learned)) return false;
-  for (const char* of_learning : {"mode", "network", "batch", "data", "epoch", "watch"}) {
+  for (const char* of_learning : kLearningOptions) {
     direct.erase(of_learning);
     learned.erase(of_learning);
   }

@@ -60,7 +60,7 @@ class Amplitudes final : public Loss {
 
 // The map from an initial velocity to what is seen of the marker it carries: x (2N², B) at the
 // centres, context (2N², B) the marker before, and as it was observed after, which the inverse
-// uses; y (N², B) the marker after the last step under the weights of low_pass.h. Samples are
+// uses; y (N², B) the marker after the last step under the weights of flow_inverses.h. Samples are
 // shared among the threads; each is computed by one, so that their number changes no bit.
 
 // What one thread computes with.

@@ -14,7 +14,6 @@
 #include "core/json.h"
 #include "reports/compare/baseline.h"
 #include "reports/compare/differences.h"
-#include "reports/compare/gate_text.h"
 #include "reports/compare/pairing.h"
 #include "reports/compare/subject.h"
 #include "reports/sections/words.h"

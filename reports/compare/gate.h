@@ -20,8 +20,8 @@
 #include "core/status.h"
 #include "core/threads.h"
 #include "reports/compare/causes.h"
+#include "reports/compare/differences.h"
 #include "reports/compare/pairing.h"
-#include "reports/compare/timing.h"
 
 namespace isoline::reports {
 
@@ -72,5 +72,13 @@ inline constexpr const char* kComparisonSchema = "isoline.comparison/1";
 
 // Fills both in, once all else is there.
 void conclude(GateResult& result, const GateOptions& options);
+
+// Pieces of these texts.
+const char* name_of(Change change);
+const char* name_of_time(int change);
+std::string counts_of(const GateResult& result);           // "3 cells in both: 3 equal, …"
+std::string step_text(const Difference& difference);       // "loss 1e-3 → 2e-3"
+std::string remainder_text(const Difference& difference);  // "+5 %, and 3 more of its kind"
+std::string ratio_text(const RatioEstimate& ratio);        // "1.31× (1.25 to 1.36)"
 
 }  // namespace isoline::reports

@@ -1,6 +1,4 @@
 // Words for changes, ratios and counts.
-#include "reports/compare/gate_text.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <span>
 
 #include "core/json.h"
+#include "reports/compare/gate.h"
 #include "reports/compare/pairing.h"
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
@@ -108,7 +107,7 @@ void cut(Section& section) {
 
 Row line(const std::string& text) { return {text}; }
 
-Row row_of(const TimeVerdict& time) {
+Row time_row(const TimeVerdict& time) {
   return {name_of_time(time.change),
           time.title,
           ratio_text(time.ratio),
@@ -143,7 +142,7 @@ void add_what_differs(Section& section, const GateResult& result) {
             {.title = "Time, NEW over BASE",
              .columns = {"", "cell", "ratio (95 % interval)", "noise", "p, adjusted", "runs"},
              .align = "llrrrr"},
-            result.times, [](const TimeVerdict& time) { return row_of(time); });
+            result.times, [](const TimeVerdict& time) { return time_row(time); });
 }
 
 void add_what_is_apart(Section& section, const GateResult& result) {

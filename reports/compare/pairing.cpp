@@ -146,9 +146,9 @@ Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& aft
 namespace {
 
 // "1e-4", "1e4", "0.9": the shorter of two ways.
-std::string option_text(const OptionValue& value) {
+std::string short_text(const OptionValue& value) {
   const Real* const number = std::get_if<Real>(&value);
-  std::string plain = text_of(value);
+  std::string plain = option_text(value);
   if (number == nullptr || !std::isfinite(*number) || *number == 0) return plain;
   const int exponent = static_cast<int>(std::floor(std::log10(std::abs(*number))));
   const std::string scientific = fmt::format(
@@ -164,18 +164,18 @@ bool is_set_in(const std::string& spec, const std::string& option) {
 
 // An option of no text says what one that there was not yet said.
 bool says_nothing(const OptionValue* option) {
-  return option == nullptr || text_of(*option).empty();
+  return option == nullptr || option_text(*option).empty();
 }
 
 // Paired by what was asked, two differ in an option only by a default or by a table of rates.
 std::string change_text(const Given& a, const Given& b, const std::string& option) {
   const OptionValue* const old = a.options->find(option);
   const OptionValue* const now = b.options->find(option);
-  if (old == nullptr) return fmt::format("new option {} {}", option, option_text(*now));
-  if (now == nullptr) return fmt::format("option {} is gone, it was {}", option, option_text(*old));
+  if (old == nullptr) return fmt::format("new option {} {}", option, short_text(*now));
+  if (now == nullptr) return fmt::format("option {} is gone, it was {}", option, short_text(*old));
   if (is_set_in(a.spec, option) && is_set_in(b.spec, option))
-    return fmt::format("tabled {} {} → {}", option, option_text(*old), option_text(*now));
-  return fmt::format("default of {} {} → {}", option, option_text(*old), option_text(*now));
+    return fmt::format("tabled {} {} → {}", option, short_text(*old), short_text(*now));
+  return fmt::format("default of {} {} → {}", option, short_text(*old), short_text(*now));
 }
 
 void count_changes(const Given& a, const Given& b, std::map<std::string, std::size_t>& changes) {

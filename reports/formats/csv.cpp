@@ -80,7 +80,7 @@ CsvColumns columns_of_runs(const Yardstick& yardstick) {
 }
 
 // Of a planned cell that has not run: all figures are empty.
-std::string text_of(const PlannedCell& cell, const std::string& column) {
+std::string planned_text(const PlannedCell& cell, const std::string& column) {
   if (column == "problem") return csv_field(cell.problem);
   if (column == "optimizer") return csv_field(cell.optimizer);
   if (column == "seed") return std::to_string(cell.seed);
@@ -108,7 +108,8 @@ std::string csv_report(const Document& document) {
     if (!run.is_repeated)
       add_line(csv, columns, [&](const CsvColumn& column) { return column.text(run); });
   for (const PlannedCell& cell : c.missing)
-    add_line(csv, columns, [&](const CsvColumn& column) { return text_of(cell, column.name); });
+    add_line(csv, columns,
+             [&](const CsvColumn& column) { return planned_text(cell, column.name); });
   return csv;
 }
 

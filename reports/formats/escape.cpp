@@ -94,7 +94,7 @@ std::string terminal_text(std::string_view text) {
 
 // How wide tables are taken apart.
 
-std::vector<Part> parts_of(const Table& table, std::size_t most) {
+std::vector<Part> table_parts(const Table& table, std::size_t most) {
   std::vector<Part> parts;
   std::size_t at = table.names;
   for (const std::size_t count : table.parts) {

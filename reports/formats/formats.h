@@ -20,6 +20,7 @@ std::string terminal_table(const Document& document);  // standings, or every ce
 inline constexpr std::size_t kAllRows = static_cast<std::size_t>(-1), kFewRows = 20;
 std::string terminal_section(const Section& section, std::size_t most_rows = kAllRows);
 std::string terminal_claim(const Section& claim);  // one whole: readings, plots, tables
+std::string text_plot(const Plot& plot);           // lines in letters, for a terminal
 std::string markdown_claim(const Section& claim);
 std::string markdown_section(const Section& section);
 
@@ -33,6 +34,6 @@ inline constexpr const char* kReportSchema = "isoline.report/1";
 struct Part {
   std::size_t first = 0, last = 0;
 };
-std::vector<Part> parts_of(const Table& table, std::size_t most);
+std::vector<Part> table_parts(const Table& table, std::size_t most);
 
 }  // namespace isoline::reports

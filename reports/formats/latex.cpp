@@ -118,7 +118,7 @@ std::string latex_report(const Document& document) {
   for (const Section& section : document.sections)
     for (const Table& table : section.tables)
       for (std::size_t row = 0; row < table.rows.size() && !table.is_wordy(); row += kMostRows)
-        for (const Part& part : parts_of(table, kMostColumns)) {
+        for (const Part& part : table_parts(table, kMostColumns)) {
           const std::string caption = latex_text(first) + caption_of(table, part) + last;
           const std::size_t rows = std::min(kMostRows, table.rows.size() - row);
           text += part_text(table, part, Rows(table.rows).subspan(row, rows), caption);

@@ -47,7 +47,7 @@ std::string table_text(const Table& table) {
   const std::size_t most = table.most_columns > 0 ? table.most_columns : table.columns.size();
   Table whole = table;
   whole.parts.clear();
-  for (const Part& part : parts_of(whole, most)) text += part_text(table, part);
+  for (const Part& part : table_parts(whole, most)) text += part_text(table, part);
   if (table.rows.size() > kMostRows)
     text += fmt::format("{} more rows are in the page.\n\n", table.rows.size() - kMostRows);
   for (std::size_t i = 1; i < table.meanings.size(); ++i)

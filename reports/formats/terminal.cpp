@@ -1,6 +1,4 @@
 // Draws lines in letters: a, b, c, …; what was published is shaded, and crossed at its value.
-#include "reports/formats/terminal.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/claim_terms.h"
-#include "reports/sections/panels.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -335,7 +333,7 @@ std::string table_text(const Table& table, RowLimit& limit) {
     const std::size_t rows = limit.take(table.rows.size());
     for (std::size_t row = 0; row < rows; ++row) body += paragraph(table, row);
   } else {
-    for (const Part& part : parts_of(table, table.columns.size())) {
+    for (const Part& part : table_parts(table, table.columns.size())) {
       const std::size_t rows = limit.take(table.rows.size());
       if (rows == 0 && !table.rows.empty()) continue;
       body += block(table, part, rows);

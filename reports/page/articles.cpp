@@ -81,7 +81,7 @@ std::string values_of(const Comparison& c, std::size_t s, const std::string& opt
   const auto text = [](const OptionValue& value) {
     if (const Real* number = std::get_if<Real>(&value)) return figure(*number);
     if (const Index* number = std::get_if<Index>(&value)) return figure(Real(*number));
-    return text_of(value);
+    return option_text(value);
   };
   if (values.empty()) return "";
   if (values.size() == 1) return text(values[0]);

@@ -10,7 +10,7 @@
 
 #include "reports/formats/escape.h"
 #include "reports/page/page.h"
-#include "reports/sections/panels.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

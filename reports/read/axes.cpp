@@ -45,7 +45,7 @@ std::set<Option> common_to(const std::vector<Label>& labels) {
   return common;
 }
 
-std::string text_of(const Label& label, const std::set<Option>& left_out) {
+std::string label_text(const Label& label, const std::set<Option>& left_out) {
   std::string options;
   for (const Option& option : label.spec.options)
     if (!left_out.contains(option))
@@ -65,8 +65,8 @@ std::vector<std::string> brief_labels(const std::vector<std::string>& labels) {
   std::map<std::string, int> count;
   for (const std::string& label : labels) {
     const Label parsed = label_of(label);
-    brief.push_back(label.size() <= kLong ? label
-                                          : text_of(parsed, common_to(methods[parsed.spec.name])));
+    brief.push_back(
+        label.size() <= kLong ? label : label_text(parsed, common_to(methods[parsed.spec.name])));
     ++count[brief.back()];
   }
   for (std::size_t i = 0; i < labels.size(); ++i)

@@ -106,7 +106,7 @@ struct OptimizerAxis {
   std::string name_of_all() const { return is_meaning ? whole : label; }
 };
 
-// Methods that were given the very same settings; grounds.h says how they are found.
+// Methods that were given the very same settings; ranking.h says how they are found.
 struct Order {
   std::vector<std::size_t> settings, methods;  // problems; optimizers, best first
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/statistics/resampling.h"
+#include "reports/statistics/statistics.h"
 #include "reports/statistics/tests.h"
 
 namespace isoline::reports {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/errors.h"
+#include "core/learning_options.h"
 #include "core/spec.h"
 
 namespace isoline::reports {
@@ -49,7 +50,7 @@ void add(const Component& component, Features& out) {
     if (const std::string* text = std::get_if<std::string>(&option.value))
       add_inner(option.name, *text, out);
     else
-      out[option.name] = {text_of(option.value), number_of(option.value)};
+      out[option.name] = {option_text(option.value), number_of(option.value)};
   }
 }
 
@@ -69,7 +70,7 @@ std::map<std::pair<std::string, std::string>, Entries> entries_of(const Comparis
     Entry entry{i, {}, request.budget.iterations, 0};
     add(request.problem, entry.features);
     add(request.optimizer, entry.features);
-    const auto batch = static_cast<std::int64_t>(request.problem.options.number("batch", 1));
+    const auto batch = static_cast<std::int64_t>(request.problem.options.number(kBatchOption, 1));
     entry.samples = batch > 0 && entry.iterations < Budget{}.iterations ? entry.iterations * batch
                                                                         : entry.iterations;
     all[{request.problem.name, request.optimizer.name}].push_back(std::move(entry));
@@ -162,7 +163,7 @@ std::vector<SweepGrid> sweep_grids(const Comparison& c) {
     std::vector<SweepGrid> own;
     for (std::size_t a = 0; a < options.size(); ++a)
       for (std::size_t b = a + 1; b < options.size(); ++b) {
-        const bool has_batches = options[a] == "batch" || options[b] == "batch";
+        const bool has_batches = options[a] == kBatchOption || options[b] == kBatchOption;
         for (const bool by_samples : {false, true})
           if (has_batches || !by_samples)
             add_grids(entries, {options[a], options[b], by_samples}, own);

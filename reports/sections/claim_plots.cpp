@@ -1,12 +1,11 @@
 // Plots of claims: curves over iterations, or figures over an abscissa, and the band of what was
 // published at the place where the quantity is read.
-#include "reports/sections/claim_plots.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -33,7 +32,7 @@ std::vector<PlotSeries> goals_of(const Evidence& evidence) {
   if (evidence.curve != evidence.column) return {};
   if (kind == "ratio")
     return {goal_at(first.read_at, evidence.published, evidence.band, evidence.terms.at(1).level)};
-  if (kind == "value" || kind == "greatest" || kind == "least")
+  if (kind == "value" || kind == "greatest")
     return {goal_at(first.read_at, evidence.published, evidence.band, 1)};
   return {};  // places and orders are no heights
 }

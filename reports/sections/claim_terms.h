@@ -2,18 +2,44 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
 
 #include "core/real.h"
+#include "core/records/record.h"
 #include "reports/read/comparison.h"
 #include "reports/sections/quantities.h"
-#include "reports/sections/run_figures.h"
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+
+// Where a figure of a run is read: a column of its curve or a quantity of its path, at an
+// iteration, or when so much processor time has passed, or at the end where neither is named.
+struct Place {
+  std::string column;  // "series: …" is a quantity of the problem's own
+  std::optional<std::int64_t> iteration;
+  std::optional<Real> seconds;
+  std::vector<std::vector<Real>> table;  // of deviations: at iterations 1, 2, …; one row: there
+};
+
+// A printed row of figures and the point of the path that stands beside it.
+struct PrintedRow {
+  std::int64_t iteration = 0;
+  std::vector<Real> printed, reached;
+};
+// Of a table at iterations 1, 2, …; a single row is held against the place's iteration. None where
+// the path is shorter.
+std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
+
+// The last kept point at or before the place.
+std::size_t index_at(const Curve& curve, const Place& place);
+
+// Not-a-number where the record does not hold it.
+Real figure_of(const Record& record, const Place& place);
+std::string column_words(const std::string& column);  // "error in x"
 
 std::string tau_name(const Comparison& comparison);  // "1e-6", the headline's
 
@@ -41,8 +67,6 @@ std::string counted_settings(const Comparison& comparison, std::size_t count);  
 // What success means at this yardstick, a sentence; in a study of one aim, of that alone.
 std::string success_text(const Comparison& comparison);
 
-// The runs that stand for the terms of a claim: which they are, and what is read off them.
-
 using ByCell = std::unordered_map<std::string, const Record*>;
 
 std::vector<std::string> cells_of(const nlohmann::json& set);  // digests
@@ -60,7 +84,7 @@ enum class Null {
 };
 
 // The figures of a claim's terms, or of its contrast's. `cells` is a list of terms, each a list of
-// alternatives, as verdicts.h says. Where the claim asks for equal time, all are read at that at
+// alternatives. Where the claim asks for equal time, all are read at that at
 // which the fastest has made `iterations`.
 std::vector<Term> terms_of(const nlohmann::json& claim, const nlohmann::json& cells,
                            const ByCell& runs, std::int64_t iterations, Null null = Null::none);

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/sections/claim_plots.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/resampling.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {
@@ -183,7 +182,7 @@ std::string remarks_of(const Judgement& judgement) {
   return joined(parts, " ");
 }
 
-std::vector<TableCell> row_of(const Judgement& judgement) {
+std::vector<TableCell> claim_row(const Judgement& judgement) {
   TableCell claim = judgement.sentence;
   claim.note = judgement.quantity;
   claim.remark = judgement.source;
@@ -270,7 +269,7 @@ Section claims_section(const std::vector<Judgement>& judgements) {
       .columns = {"claim", "verdict", "published", "measured", "over seeds", "seeds", "remarks"},
       .align = "plrrrrp"};
   for (const Judgement& judgement : judgements) {
-    table.rows.push_back(row_of(judgement));
+    table.rows.push_back(claim_row(judgement));
     table.row_topics.push_back({.claim = judgement.id});
   }
   section.tables.push_back(std::move(table));

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "reports/read/comparison.h"
-#include "reports/sections/agreement.h"
 #include "reports/sections/claim_terms.h"
+#include "reports/sections/quantities.h"
 #include "reports/sections/section.h"
-#include "reports/statistics/resampling.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 

@@ -22,7 +22,7 @@ struct LearnedRow {
   bool is_timed_alone = true;
 };
 
-LearnedRow row_of(const Comparison& c, std::size_t problem, std::size_t optimizer) {
+LearnedRow learned_row(const Comparison& c, std::size_t problem, std::size_t optimizer) {
   const Cell& cell = c.cell(problem, optimizer);
   LearnedRow row{.problem = problem,
                  .optimizer = optimizer,
@@ -95,7 +95,7 @@ Section learned_section(const Comparison& c) {
     if (!c.problems[p].is_learned) continue;
     std::vector<LearnedRow> rows;
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).is_measured()) rows.push_back(row_of(c, p, s));
+      if (c.cell(p, s).is_measured()) rows.push_back(learned_row(c, p, s));
     std::ranges::stable_sort(rows, {}, [](const LearnedRow& row) { return row.x_error.median; });
     if (!rows.empty()) section.tables.push_back(table_of(c, p, rows));
   }
@@ -236,7 +236,8 @@ TableCell time_cell(const Side& side, std::string (*written)(Real)) {
           {{"seconds", seconds}}};
 }
 
-std::vector<TableCell> row_of(const Comparison& c, const Trained& network, const Side& single) {
+std::vector<TableCell> amortized_row(const Comparison& c, const Trained& network,
+                                     const Side& single) {
   const Spread& times = single.seconds;
   const TableCell inference =
       std::isnan(network.inference)
@@ -294,7 +295,7 @@ Table table_of(const Comparison& c, std::size_t p, const std::vector<Trained>& n
     const std::vector<Side> singles = singles_to(c, instances, network.x_error);
     if (table.reading.empty()) table.reading = reading_of(c, network, singles.front());
     for (std::size_t i = 0; i < std::min(singles.size(), kMostLines); ++i) {
-      table.rows.push_back(row_of(c, network, singles[i]));
+      table.rows.push_back(amortized_row(c, network, singles[i]));
       table.row_topics.push_back({.optimizer = singles[i].optimizer});
     }
   }

@@ -194,7 +194,7 @@ SettingTally tally_of(const Comparison& c, std::size_t p) {
   return all;
 }
 
-std::vector<TableCell> row_of(const ProblemAxis& problem, const SettingTally& tally) {
+std::vector<TableCell> tally_row(const ProblemAxis& problem, const SettingTally& tally) {
   const bool is_known = problem.sheet != nullptr;
   std::vector<TableCell> row = {
       problem_name(problem),
@@ -228,7 +228,7 @@ Table condition_table(const Comparison& c) {
   for (const std::size_t p : order) {
     const SettingTally tally = tally_of(c, p);
     if (tally.n == 0) continue;
-    table.rows.push_back(row_of(c.problems[p], tally));
+    table.rows.push_back(tally_row(c.problems[p], tally));
     table.row_topics.push_back({.problem = p});
     if (tally.without <= most) continue;
     most = tally.without;

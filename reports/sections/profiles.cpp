@@ -17,7 +17,6 @@
 #include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
-namespace {}  // namespace
 
 Table data_profile_table(const Comparison& c) {
   constexpr std::array<int, 5> kWork = {10, 100, 1000, 10'000, 100'000};

@@ -1,6 +1,4 @@
 // The audit of properties: a sentence and a plot each, and the table of all that was measured.
-#include "reports/sections/properties.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

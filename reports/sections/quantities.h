@@ -1,15 +1,20 @@
-// The quantities that claims speak of: what is made of the medians over seeds of figures of runs.
+// The quantities that claims speak of: what is made of the medians over seeds of figures of runs,
+// and when it agrees with what was published.
 #pragma once
 
+#include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/real.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 
-// Of terms by their medians: value (of the first), least and greatest, ratio (first over second),
+// Of terms by their medians: value (of the first), greatest, ratio (first over second),
 // slope of log m over log at, crossing (where the first half of the terms passes from below the
 // second half to above it, in `at`), position (of the first, from 1; a tie counts half), order
 // (Kendall's τ with that of the terms). Of the first half of the terms over the second: ratio_slope
@@ -45,5 +50,36 @@ struct Measurement {
 // data.
 Measurement measure(const std::string& kind, const std::vector<Term>& terms,
                     const std::string& stream);
+
+// When a measurement agrees with what was published: the law of the verdicts.
+
+// From the strongest to the weakest, then those that are none.
+enum class Verdict { reproduced, consistent, partly, not_reproduced, too_short, not_comparable };
+inline constexpr std::array<std::string_view, 6> kVerdictNames = {
+    "reproduced", "consistent", "partly", "not reproduced", "too short", "not comparable"};
+inline std::string_view name_of(Verdict verdict) {
+  return kVerdictNames[static_cast<std::size_t>(verdict)];
+}
+inline bool is_decided(Verdict verdict) { return verdict < Verdict::too_short; }
+
+// What was published with its error: the values that agree with it. A tie agrees with nothing that
+// says who is ahead, so such a band ends where the tie begins, without it.
+struct Agreement {
+  Real low = -kNever, high = kNever;
+  bool is_low_open = false, is_high_open = false;
+
+  bool holds(Real value) const {
+    return (is_low_open ? value > low : value >= low) &&
+           (is_high_open ? value < high : value <= high);
+  }
+};
+Agreement agreement_of(const nlohmann::json& claim);  // or of a contrast
+
+// Of a claim, or of its contrast. Reproduced: the interval over seeds lies within the band.
+// Consistent: it reaches into the band, and the value is on the published side of a tie. Partly:
+// the whole interval is on that side, and the value between a third and three times the published
+// effect (in logarithms, of a ratio). One run of several that could have been drawn is never more
+// than consistent.
+Verdict verdict_of(const Measurement& measured, const nlohmann::json& claim, bool is_drawn);
 
 }  // namespace isoline::reports

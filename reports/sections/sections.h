@@ -1,4 +1,4 @@
-// The sections of a report, one file a topic; document.cpp puts them in order.
+// The sections of a report, one file a topic; sections.cpp puts them in order.
 #pragma once
 
 #include <string>
@@ -13,6 +13,8 @@
 
 namespace isoline::reports {
 
+using Audits = std::vector<AuditedOptimizer>;
+
 Section standings_section(const Comparison& comparison);
 Section problems_section(const Comparison& comparison);  // a sentence each, and the matrix
 Section learned_section(const Comparison& comparison);
@@ -21,7 +23,7 @@ Section claims_section(const std::vector<Judgement>& judgements);
 // A line a claim, the refuted first.
 Section claims_summary(const std::vector<Judgement>& judgements);
 Section claim_section(const Judgement& judgement);  // one of them whole, with its evidence
-Section properties_section(const std::vector<AuditedOptimizer>& audits);
+Section properties_section(const Audits& audits);
 Section tuning_section(
     const Comparison& comparison);  // where rates came from, and what they bought
 Section statistics_section(const Comparison& comparison);
@@ -42,6 +44,13 @@ std::string verdict_text(const Judgement& judgement);                  // "partl
 std::string marked_verdict(const Judgement& judgement);                // "≈ partly on 3 seeds"
 std::vector<Reading> claim_notes(const Judgement& judgement);          // beside its figures
 std::string measured_text(const Judgement& judgement);                 // "23.4 (18.2–31), n = 3"
+// What names a term among the others: its optimizer, its problem where they differ, its abscissa.
+std::vector<std::string> term_names(const Evidence& evidence);
+// One plot, or none where the figures have no curve and no abscissa.
+std::vector<Plot> claim_plots(const Evidence& evidence, const std::string& id);
+// What this data says, a sentence a property; the last on false declarations.
+std::vector<Reading> property_readings(const Audits& all);
+std::vector<Plot> property_plots(const Audits& all);  // of each property that is a number
 std::string headline(const Comparison& comparison);
 std::string missing_text(const Comparison& comparison);
 std::vector<std::string> remarks(const Comparison& comparison);

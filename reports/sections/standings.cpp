@@ -310,8 +310,6 @@ Section standings_section(const Comparison& c) {
 
 // The leader against each other method, and what so few problems cannot show.
 
-namespace {}  // namespace
-
 Table leader_table(const Comparison& c) {
   Table table{
       .id = "leader",
@@ -376,8 +374,6 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
 }
 
 // The first against the second method, problem by problem.
-
-namespace {}  // namespace
 
 // One bar a problem: the doublings by which the leader is told from the next.
 Plots log_ratio_plot(const Comparison& c) {

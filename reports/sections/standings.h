@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "reports/read/comparison.h"
-#include "reports/statistics/resampling.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 

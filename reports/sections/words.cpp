@@ -10,7 +10,7 @@
 
 #include "core/shell.h"
 #include "reports/sections/claim_terms.h"
-#include "reports/statistics/resampling.h"
+#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

@@ -1,11 +1,10 @@
 // The best losses known: who has them, who may lower them, and what follows for a run.
-#include "benchmarks/plan/best.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/rates.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
 #include "core/errors.h"
@@ -84,7 +83,7 @@ TEST(Best, GiveRunsWithoutADeclaredMinimumHitsThatAreExact) {
 
 TEST(Best, ArePartOfTheDigestOfTheirProblem) {
   const Component learned = problem("exponential[mode=learn]");
-  EXPECT_NE(BestLosses::builtin().text_of(learned), "");
+  EXPECT_NE(BestLosses::builtin().losses_text(learned), "");
   EXPECT_NE(learned.sources, problem("exponential").sources);
   EXPECT_EQ(problem("exponential").sources, tree_sources().at("problems/exponential.cpp"));
 }

@@ -1,10 +1,9 @@
 // A text from another process: whole, or none and the reason.
-#include "benchmarks/run/isolated_text.h"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 
+#include "benchmarks/run/isolate.h"
 #include "core/clock.h"
 #include "tests/benchmarks/hostile.h"
 

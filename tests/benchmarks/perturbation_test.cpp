@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "benchmarks/run/execute.h"
-#include "benchmarks/run/perturbed_runs.h"
+#include "benchmarks/run/runner.h"
 #include "core/errors.h"
 #include "tests/benchmarks/matrix.h"
 

@@ -1,6 +1,4 @@
 // Measured prices: every oracle offered, in the right order of magnitude, kept by later runs.
-#include "benchmarks/run/prices.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -10,6 +8,7 @@
 #include "core/json.h"
 #include "core/records/schema.h"
 #include "problems/dense_physics.h"
+#include "problems/problem.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {

@@ -71,7 +71,7 @@ TEST(Options, TheLawAndWhatWasGivenAreNamed) {
 TEST(Options, ADecayIsBelowOne) {
   EXPECT_TRUE(contains(decay(), 0));
   EXPECT_FALSE(contains(decay(), 1));
-  EXPECT_EQ(text_of(decay()), "[0, 1)");
+  EXPECT_EQ(range_text(decay()), "[0, 1)");
 }
 
 TEST(Options, WithoutAnUpperBoundAreFiniteAllTheSame) {

@@ -142,6 +142,20 @@ TEST(Cell, HasTheNameThatEarlierVersionsGaveIt) {
   EXPECT_TRUE(request_from_json(learned).problem.is_learned);
 }
 
+TEST(LearnedProblem, HasInstancesWhoseOtherOptionsAgree) {
+  OptionValues direct, learned;
+  for (OptionValues* options : {&direct, &learned}) options->set("xi", Real{10});
+  direct.set("mode", "direct");
+  direct.set("batch", std::int64_t{100});
+  learned.set("mode", "learn");
+  learned.set("batch", std::int64_t{50});
+  EXPECT_TRUE(is_instance_of(direct, learned));
+  EXPECT_FALSE(is_instance_of(learned, direct));
+  EXPECT_FALSE(is_instance_of(learned, learned));
+  direct.set("xi", Real{11});
+  EXPECT_FALSE(is_instance_of(direct, learned));
+}
+
 TEST(Rates, AreTunedWhereAGridOfOursWroteThem) {
   EXPECT_EQ(kind_of_rates(""), RatesKind::none);
   EXPECT_EQ(kind_of_rates("learn.json"), RatesKind::published);

@@ -54,7 +54,7 @@ TEST(SpectralStep, EveryWayAgreesWithTheSvd) {
       for (const Way way : {Way::layers, Way::split})
         if (is_wide)
           expect_near(step_of(problem, theta, way, filter).step, reference, 1e-8,
-                      std::string(words_of(way)) + ", " + what);
+                      std::string(way_text(way)) + ", " + what);
     }
     const SpectralFilter damped = tikhonov_filter(1e-4);
     const Vector reference = step_of(problem, theta, Way::svd, damped).step;

@@ -1,4 +1,4 @@
-// What a shared library breaks of the struct of clients/c/isoline.h is told in a sentence that
+// What a shared library breaks of the struct of core/foreign/isoline.h is told in a sentence that
 // names the library.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What shared libraries bring by the struct of clients/c/isoline.h: the same runs as the tree's
+// What shared libraries bring by the struct of core/foreign/isoline.h: the same runs as the tree's
 // own, and a sentence that names the library wherever it breaks a law.
 #include <gtest/gtest.h>
 

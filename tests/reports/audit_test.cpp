@@ -7,7 +7,7 @@
 #include "core/json.h"
 #include "reports/page/page.h"
 #include "reports/report.h"
-#include "reports/sections/properties.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -8,9 +8,9 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/schema.h"
-#include "reports/formats/terminal.h"
+#include "reports/formats/formats.h"
 #include "reports/report.h"
-#include "reports/sections/claim_plots.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/statistics/resampling.h"
 #include "reports/statistics/statistics.h"
 #include "reports/statistics/tests.h"
 

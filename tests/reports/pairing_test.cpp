@@ -96,7 +96,7 @@ TEST(Pairing, ATabledRateThatChangedIsNoDefault) {
     return [rate](Record& record) {
       record.request.optimizer.options.set("rate", rate);
       record.request.optimizer.asked = "adam";
-      record.request.optimizer.spec = "adam[rate=" + text_of(OptionValue(rate)) + "]";
+      record.request.optimizer.spec = "adam[rate=" + option_text(OptionValue(rate)) + "]";
     };
   };
   const Results results;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/statistics/resampling.h"
 #include "reports/statistics/statistics.h"
 #include "reports/statistics/tests.h"
 

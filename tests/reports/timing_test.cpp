@@ -1,11 +1,10 @@
 // Verdicts on time, over simulated jobs whose noise is drawn from streams: no clock is read.
-#include "reports/compare/timing.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
+#include "reports/compare/differences.h"
 
 namespace isoline::reports {
 namespace {

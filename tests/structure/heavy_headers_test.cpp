@@ -32,7 +32,7 @@ const std::vector<HeavyHeader> kHeavyHeaders = {
     {"Eigen/SVD", kProduct, 0, "decompositions are LAPACK's, in core/decompose.cpp"},
     {"Eigen/Dense", ".*", 0, "the same"},
     {"fmt/ranges.h", ".*", 15, "texts that join lists; fmt/format.h does for all else"},
-    {"fmt/chrono.h", ".*", 0, "instants are those of core/records/instant.h"},
+    {"fmt/chrono.h", ".*", 0, "instants are those of core/clock.h"},
     {"ceres/", kProduct, 1, "one door"},
     {"oneapi/dnnl/", kProduct, 1, "one door"},
     {"regex", kProduct, 0, "its matches recurse, a level a character: texts are read by hand"}};

@@ -31,12 +31,14 @@ TEST(Specs, AreCutInOnePlace) {
 
 // How a problem is told to be learned is said where components are made, and asked nowhere else.
 bool reads_the_mode(const std::string& line) {
-  static const std::regex pattern(R"re(("mode"|"mode="|mode ?== ?"learn"|== ?"learn"))re");
+  static const std::regex pattern(
+      R"re(("mode"|"mode="|kModeOption|kLearnMode|mode ?== ?"learn"|== ?"learn"))re");
   return std::regex_search(line, pattern);
 }
 
 TEST(Specs, WhetherAComponentLearnsIsDecidedOnce) {
   const std::vector<std::string> allowed = {
+      "core/learning_options.h",    // the name
       "core/records/request.cpp",   // the decision
       "problems/",                  // the option
       "benchmarks/plan/rates.cpp",  // a row that names the mode, or does not
