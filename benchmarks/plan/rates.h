@@ -14,6 +14,7 @@ namespace isoline::benchmarks {
 
 using Json = nlohmann::json;
 
+// By the options of a problem and an optimizer: options, with the source of each value.
 class Rates {
  public:
   Rates() = default;  // an empty table: every method at its defaults

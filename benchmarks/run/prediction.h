@@ -15,6 +15,8 @@
 
 namespace isoline::benchmarks {
 
+// What is asked of records by the hundred thousand before any is read whole: which cell, how it
+// ended, what it took.
 struct RecordOutline {
   std::string cell;
   std::string problem, optimizer;  // specs

@@ -15,6 +15,9 @@ namespace isoline::benchmarks {
 
 using problems::Problem;
 
+// What each oracle of a problem takes, measured in forward solves. Budgets count declared prices;
+// these stand in the problem's sheet, for reports.
+
 // A price is resolved where a forward solve takes a microsecond and the rounds agree within a
 // factor: below, a call is mostly the overhead of calling, and its price drifts from session to
 // session by more than the rounds of one tell.

@@ -13,6 +13,8 @@
 
 namespace isoline::benchmarks {
 
+// What the cells of a plan were predicted to take, written once, before any of its shards runs.
+// Every task of a run in shards divides the plan by this file alone.
 inline constexpr const char* kPredictedSchema = "isoline.predicted/1";
 
 struct PredictedCell {

@@ -16,6 +16,8 @@
 
 namespace isoline::reports {
 
+// One figure of one run: what the quantities of claims are made of.
+
 // Where a figure of a run is read: a column of its curve or a quantity of its path, at an
 // iteration, or when so much processor time has passed, or at the end where neither is named.
 struct Place {
@@ -84,8 +86,8 @@ enum class Null {
 };
 
 // The figures of a claim's terms, or of its contrast's. `cells` is a list of terms, each a list of
-// alternatives. Where the claim asks for equal time, all are read at that at
-// which the fastest has made `iterations`.
+// alternatives. Where the claim asks for equal time, all are read at the time at which the fastest
+// has made `iterations`.
 std::vector<Term> terms_of(const nlohmann::json& claim, const nlohmann::json& cells,
                            const ByCell& runs, std::int64_t iterations, Null null = Null::none);
 
