@@ -133,9 +133,8 @@ Cost solves_of_ours(const Problem& problem, const Library& library, bool is_reco
     Trial trial(problem, library.name, budget);
     const Cost cost = cost_of(1, [&] { solve(trial); });
     sum.seconds += is_recorded ? trial.trace.last.wall_seconds : cost.seconds;
-    sum.allocations += cost.allocations;
   }
-  return {sum.seconds / library.calls, sum.allocations / library.calls};
+  return {sum.seconds / library.calls};
 }
 
 int evaluations_of_ours(const Problem& problem, const Library& library) {

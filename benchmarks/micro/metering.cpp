@@ -69,14 +69,6 @@ void register_metering() {
     f.problem.forward(f.theta, f.point);
     f.seen += ticks();
   });
-  add("loss-iterate", endless(), {}, [](Metered& f) {
-    f.meter.loss(f.theta);
-    f.meter.iterate(f.theta);
-  });
-  add("loss-iterate-clock", with_clock(), {}, [](Metered& f) {
-    f.meter.loss(f.theta);
-    f.meter.iterate(f.theta);
-  });
 }
 
 }  // namespace isoline::benchmarks::micro

@@ -1,6 +1,6 @@
 // Ours against the bare thing it stands for, timed in turn, so that the noise of the machine falls
 // on both. A benchmark's figures are medians over pairs: `ns` a call of ours, `bare_ns`, their
-// `ratio` and difference `extra_ns`, and the `allocations` of a call of ours.
+// `ratio` and difference `extra_ns`.
 #pragma once
 
 #include <cstdint>
@@ -16,22 +16,18 @@
 
 namespace isoline::benchmarks::micro {
 
-std::int64_t allocations();  // calls of malloc so far, by this program and its libraries
-
 // What one call takes.
 struct Cost {
-  double seconds = 0, allocations = 0;
+  double seconds = 0;
 };
 
 // The mean over `calls` of `work`.
 template <class Work>
 Cost cost_of(int calls, Work&& work) {
-  const std::int64_t allocated = allocations();
   const std::uint64_t begin = ticks();
   for (int i = 0; i < calls; ++i) work();
   const auto elapsed = static_cast<double>(ticks() - begin);
-  return {elapsed * seconds_per_tick() / calls,
-          static_cast<double>(allocations() - allocated) / calls};
+  return {elapsed * seconds_per_tick() / calls};
 }
 
 struct Pair {
@@ -49,16 +45,11 @@ void register_pair(const std::string& name, int pairs, const Goal& goal,
 
 // One call a file.
 void register_metering();
-void register_steps();
-void register_training();
 void register_libraries();
-void register_transforms();
-void register_fluid();
-void register_networks();
-void register_isolation();
+void register_grids();
 void register_round_trips();
-void register_unet();
 void register_spectral();
+void register_networks();
 
 // A problem by its spec, and a metered run of a method on it.
 

@@ -1,13 +1,8 @@
 // What the door of child processes adds to a frame that goes there and back: a forward of a program
 // that returns its x, over the bare frames of one that sends them back.
-#include <poll.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cstdlib>
 
 #include "benchmarks/micro/pairs.h"
-#include "benchmarks/run/isolate.h"
 #include "core/foreign/handshake.h"
 
 namespace isoline::benchmarks::micro {
@@ -70,37 +65,6 @@ void register_round_trips() {
       const auto bare = std::make_shared<Frames>(n);
       return Pair{[=] { return ours->cost(); }, [=] { return bare->cost(); }};
     });
-}
-
-// What a process of its own costs each run, over a bare fork.
-
-namespace {
-
-Cost empty_run(Worker& worker) {
-  return cost_of(1, [&] {
-    worker.start([](Trace&) {}, {}, 1);
-    while (!worker.poll()) {
-      pollfd ended{worker.descriptor(), POLLIN, 0};
-      ::poll(&ended, 1, -1);
-    }
-  });
-}
-
-Cost bare_fork() {
-  return cost_of(1, [] {
-    const pid_t child = fork();
-    if (child == 0) _exit(0);
-    waitpid(child, nullptr, 0);
-  });
-}
-
-}  // namespace
-
-void register_isolation() {
-  register_pair("isolation/empty-run", 301, {}, [] {
-    const auto worker = std::make_shared<Worker>();
-    return Pair{[=] { return empty_run(*worker); }, bare_fork};
-  });
 }
 
 }  // namespace isoline::benchmarks::micro

@@ -4,7 +4,6 @@
 // is part of what is measured.
 #include <fftw3.h>
 #include <fmt/format.h>
-#include <lapacke.h>
 
 #include <complex>
 
@@ -15,6 +14,12 @@
 #include "problems/physics/simulation.h"
 
 namespace isoline::benchmarks::micro {
+
+using problems::draw_flow;
+using problems::FlowOptions;
+using problems::FlowRun;
+using problems::FlowSample;
+using problems::Simulation;
 namespace {
 
 enum class Bare { fourier, odd_lines, sines };
@@ -86,43 +91,8 @@ struct Solves {
   }
 };
 
-}  // namespace
-
-void register_transforms() {
-  struct Bench {
-    const char* problem;
-    Bare bare;
-    const char* over;
-    Goal small, large;  // at N = 64 and 512
-  };
-  const Bench benches[] = {
-      {"poisson", Bare::odd_lines, "", {.ratio = 1.6}, {.ratio = 1.6}},
-      {"poisson", Bare::sines, "/RODFT00", {.ratio = 0.45}, {.ratio = 0.75}},
-      {"heat", Bare::fourier, "", {.ratio = 1.3}, {.ratio = 1.3}},
-  };
-  for (const int N : {64, 512}) {
-    for (const Bench& bench : benches) {
-      const std::string spec = fmt::format("{}[N={}]", bench.problem, N);
-      const Goal& goal = N < 100 ? bench.small : bench.large;
-      register_pair("transforms/" + spec + bench.over, N < 100 ? 1001 : 61, goal,
-                    [=, kind = bench.bare] {
-                      const auto solves = std::make_shared<Solves>(spec);
-                      const auto bare = std::make_shared<BareTransforms>(N, kind);
-                      return Pair{[=] { return solves->run(); }, [=] { return bare->run(); }};
-                    });
-    }
-  }
-}
-
 // A step of the flow on 64×64 cells over what it cannot do without: the two transforms of its
 // projection and one pass through the memory of each field. And the adjoint over the forward step.
-
-using problems::draw_flow;
-using problems::FlowOptions;
-using problems::FlowRun;
-using problems::FlowSample;
-using problems::Simulation;
-namespace {
 
 constexpr Index kN = 64, kSteps = 8;
 
@@ -166,7 +136,30 @@ struct Flow {
 
 }  // namespace
 
-void register_fluid() {
+void register_grids() {
+  struct Bench {
+    const char* problem;
+    Bare bare;
+    const char* over;
+    Goal small, large;  // at N = 64 and 512
+  };
+  const Bench benches[] = {
+      {"poisson", Bare::odd_lines, "", {.ratio = 1.6}, {.ratio = 1.6}},
+      {"poisson", Bare::sines, "/RODFT00", {.ratio = 0.45}, {.ratio = 0.75}},
+      {"heat", Bare::fourier, "", {.ratio = 1.3}, {.ratio = 1.3}},
+  };
+  for (const int N : {64, 512}) {
+    for (const Bench& bench : benches) {
+      const std::string spec = fmt::format("{}[N={}]", bench.problem, N);
+      const Goal& goal = N < 100 ? bench.small : bench.large;
+      register_pair("transforms/" + spec + bench.over, N < 100 ? 1001 : 61, goal,
+                    [=, kind = bench.bare] {
+                      const auto solves = std::make_shared<Solves>(spec);
+                      const auto bare = std::make_shared<BareTransforms>(N, kind);
+                      return Pair{[=] { return solves->run(); }, [=] { return bare->run(); }};
+                    });
+    }
+  }
   constexpr int kPairs = 301;
   register_pair("fluid/8 steps over transforms and passes", kPairs, {.ratio = 3}, [] {
     const auto flow = std::make_shared<Flow>();
@@ -177,90 +170,6 @@ void register_fluid() {
     const auto flow = std::make_shared<Flow>(), other = std::make_shared<Flow>();
     return Pair{[flow] { return flow->both(); }, [other] { return other->forward(); }};
   });
-}
-
-// One step of half-inverse gradients over LAPACK's thin SVD of the same Jacobian alone, by the same
-// kernels in the same run: at the start, and where a hundred steps have led. The step includes the
-// forward pass and everything that J or its Gram matrix takes. At the published cut-offs the
-// spectra of these problems reach below 1e-5 of the largest, so that the default is by a split Gram
-// matrix, and for the chain by QR, which agree with the SVD to 1e-9; way=layers differs from it by
-// up to 1e-5 there, as a SVD in single precision does.
-
-namespace {
-
-struct Bench {
-  const char* problem;
-  const char* method;
-  double ratio;  // promised
-};
-const Bench kBenches[] = {
-    {"linear-chain[mode=learn,batch=32]", "hig[rate=2,cutoff=1e-10]", 1.0 / 2},
-    {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2]", 1.0 / 5},
-    {"coupled-oscillators[mode=learn,batch=128]", "hig[rate=2,way=layers]", 1.0 / 5},
-    {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5]", 1.0 / 10},
-    {"quantum-dipole[mode=learn,batch=16]", "hig[rate=0.5,cutoff=1e-5,way=layers]", 1.0 / 10},
-};
-
-Vector after(const Problem& problem, const std::string& method, int steps) {
-  const auto trial = std::make_unique<Trial>(problem, method, endless());
-  Vector theta = problem.start();
-  trial->meter.begin(theta);
-  trial->method->start(trial->meter, theta);
-  for (int i = 0; i < steps; ++i) {
-    trial->method->step(trial->meter, theta);
-    trial->meter.iterate(theta);
-  }
-  return theta;
-}
-
-// A method that is asked for the same step again and again.
-struct Still {
-  Still(const Problem& problem, const std::string& spec, const Vector& at)
-      : trial(problem, spec, endless()), theta(at) {
-    trial.meter.begin(theta);
-    trial.method->start(trial.meter, theta);
-  }
-  Cost run() {
-    moved = theta;
-    return cost_of(1, [this] { trial.method->step(trial.meter, moved); });
-  }
-
-  Trial trial;
-  Vector theta, moved;  // (n)
-};
-
-// As numpy.linalg.svd and the published scripts have it.
-Cost thin_svd_of(const Matrix& J) {
-  const auto m = static_cast<lapack_int>(J.rows()), n = static_cast<lapack_int>(J.cols());
-  const lapack_int r = std::min(m, n);
-  Matrix scratch = J, U(m, r), Vt(r, n);
-  Vector sigma(r);
-  return cost_of(1, [&] {
-    LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'S', m, n, scratch.data(), m, sigma.data(), U.data(), m,
-                   Vt.data(), r);
-  });
-}
-
-Pair make(const Bench& bench, int steps) {
-  const auto problem = std::make_shared<const Problem>(make_problem(bench.problem));
-  const Vector theta = after(*problem, bench.method, steps);
-  const auto still = std::make_shared<Still>(*problem, bench.method, theta);
-  Point at;
-  problem->forward(theta, at);
-  const auto J = std::make_shared<Matrix>();
-  problem->jacobian(*J, at);
-  return {[problem, still] { return still->run(); }, [=] { return thin_svd_of(*J); }};
-}
-
-}  // namespace
-
-void register_spectral() {
-  for (const Bench& bench : kBenches)
-    for (const int steps : {0, 100}) {
-      const std::string name = std::string("spectral/") + bench.method + "/" + bench.problem +
-                               (steps > 0 ? "/after 100 steps" : "/start");
-      register_pair(name, 5, {.ratio = bench.ratio}, [=] { return make(bench, steps); });
-    }
 }
 
 }  // namespace isoline::benchmarks::micro
