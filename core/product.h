@@ -37,10 +37,11 @@ void product_by_rows(Form form, Gemm<float>::In A, Gemm<float>::In B, Gemm<float
 void product_by_rows(Form form, Gemm<double>::In A, Gemm<double>::In B, Gemm<double>::Out C,
                      double keep = 0);
 
-// Numbers that fill one vector register, or the Index n rounded up to whole ones.
+// What a vector register holds, and n numbers rounded up to whole ones.
+inline constexpr Index kRegisterBytes = EIGEN_MAX_STATIC_ALIGN_BYTES;
 template <class Scalar>
 Index whole_registers(Index n) {
-  constexpr Index kLanes = Eigen::internal::packet_traits<Scalar>::size;
+  constexpr Index kLanes = kRegisterBytes / Index{sizeof(Scalar)};
   return (n + kLanes - 1) / kLanes * kLanes;
 }
 

@@ -10,21 +10,30 @@
 namespace isoline {
 namespace {
 
-using Eigen::internal::packet_traits;
-using Eigen::internal::ploadu;
-using Eigen::internal::pmadd;
-using Eigen::internal::pmul;
-using Eigen::internal::pset1;
-using Eigen::internal::pstoreu;
+// Vectors of the compiler, as they lie in memory: at any address of a number.
+template <class Scalar>
+struct RegisterOf;
+template <>
+struct RegisterOf<float> {
+  using Type = float __attribute__((vector_size(kRegisterBytes), aligned(4), may_alias));
+};
+template <>
+struct RegisterOf<double> {
+  using Type = double __attribute__((vector_size(kRegisterBytes), aligned(8), may_alias));
+};
+template <class Scalar>
+using Register = typename RegisterOf<Scalar>::Type;
+template <class Scalar>
+constexpr Index kLanes = kRegisterBytes / Index{sizeof(Scalar)};
 
 template <class Scalar>
-using Register = typename packet_traits<Scalar>::type;
-template <class Scalar>
-constexpr Index kLanes = packet_traits<Scalar>::size;
+Register<Scalar>& lanes(const Scalar* numbers) {
+  return *reinterpret_cast<Register<Scalar>*>(const_cast<Scalar*>(numbers));
+}
 
 // Columns of a tile. Two registers of rows by as many sums hide the latency of a multiply-add;
 // there are 32 registers with AVX-512 and 16 without.
-constexpr int kColumns = EIGEN_ARCH_DEFAULT_NUMBER_OF_REGISTERS >= 32 ? 8 : 4;
+constexpr int kColumns = kRegisterBytes == 64 ? 8 : 4;
 
 // A matrix as numbers and the steps from one to the next: along the inner index, and across it.
 template <class Scalar>
@@ -44,25 +53,25 @@ struct Result {
 template <int Registers, int Columns, class Scalar>
 void tile(const Panel<Scalar>& A, const Panel<Scalar>& B, Index depth, const Result<Scalar>& C) {
   Register<Scalar> sum[Columns][Registers];
+  const auto of_C = [&](int c, int r) -> Register<Scalar>& {
+    return lanes(C.numbers + c * C.stride + r * kLanes<Scalar>);
+  };
   for (int c = 0; c < Columns; ++c)
     for (int r = 0; r < Registers; ++r)
-      sum[c][r] =
-          C.keep == 0
-              ? pset1<Register<Scalar>>(Scalar(0))
-              : pmul(pset1<Register<Scalar>>(C.keep),
-                     ploadu<Register<Scalar>>(C.numbers + c * C.stride + r * kLanes<Scalar>));
+      if (C.keep == 0)
+        sum[c][r] = Register<Scalar>{};
+      else  // no product by 1, which might be fused with the first sum in the place of a b
+        sum[c][r] = C.keep == 1 ? of_C(c, r) : C.keep * of_C(c, r);
   for (Index p = 0; p < depth; ++p) {
     Register<Scalar> a[Registers];
-    for (int r = 0; r < Registers; ++r)
-      a[r] = ploadu<Register<Scalar>>(A.numbers + p * A.along + r * kLanes<Scalar>);
+    for (int r = 0; r < Registers; ++r) a[r] = lanes(A.numbers + p * A.along + r * kLanes<Scalar>);
     for (int c = 0; c < Columns; ++c) {
-      const auto b = pset1<Register<Scalar>>(B.numbers[p * B.along + c * B.across]);
-      for (int r = 0; r < Registers; ++r) sum[c][r] = pmadd(a[r], b, sum[c][r]);
+      const Scalar b = B.numbers[p * B.along + c * B.across];
+      for (int r = 0; r < Registers; ++r) sum[c][r] = a[r] * b + sum[c][r];  // fused
     }
   }
   for (int c = 0; c < Columns; ++c)
-    for (int r = 0; r < Registers; ++r)
-      pstoreu(C.numbers + c * C.stride + r * kLanes<Scalar>, sum[c][r]);
+    for (int r = 0; r < Registers; ++r) of_C(c, r) = sum[c][r];
 }
 
 // All rows of `Columns` columns.

@@ -194,9 +194,7 @@ std::string better_kernel(const Processor& processor, const std::string& own) {
 }
 
 CacheSizes cache_sizes() {
-  CacheSizes sizes{};
-  Eigen::internal::manage_caching_sizes(Eigen::GetAction, &sizes.l1, &sizes.l2, &sizes.l3);
-  return sizes;
+  return {Eigen::l1CacheSize(), Eigen::l2CacheSize(), Eigen::l3CacheSize()};
 }
 
 void set_library_threads(int threads) {
