@@ -1,6 +1,6 @@
-// Drawing a network to the x̃ that another method has found: one step of a gradient rule on the
-// proxy loss (1/B) Σ ½‖x − x̃‖², or (1/B) Σ |x − x̃|, with x̃ held. With the identity network and
-// gd[rate=1] it is x ← x̃.
+// Drawing a network to the x̃ that a method has found: one step of a gradient rule on the proxy loss
+// (1/B) Σ ½‖x − x̃‖², or (1/B) Σ |x − x̃|, with x̃ held. With the identity network and gd[rate=1] it
+// is x ← x̃. The methods that do so, and what they have in common.
 #pragma once
 
 #include <memory>
@@ -35,5 +35,33 @@ class NetworkDescent {
   Matrix pull_;      // (k, B), the proxy's gradient in x
   Vector gradient_;  // (n)
 };
+
+// A method whose step in θ is the network's own.
+class ProxyMethod : public Optimizer {
+ public:
+  ProxyMethod(const OptimizerRegistry& registry, const std::string& rule)
+      : descent_(registry, rule) {}
+  void start(Meter& f, const Vector&) override { descent_.start(f); }
+  bool persist(Archive& archive) override { return descent_.persist(archive); }
+
+ protected:
+  NetworkDescent descent_;
+  Linearization at_;
+  Matrix found_;  // (k, B) x̃
+};
+
+// Its entry: Method is made of Options, which hold a `network_optimizer`, and the registry.
+template <class Method, class Options>
+OptimizerEntry proxy_entry(OptimizerEntry entry) {
+  entry.family = Family::inversion;
+  entry.kind = Kind::inversion;
+  entry.options = option_table<Options>();
+  entry.inside = NetworkDescent::inside;
+  entry.make = [](const OptionValues& options,
+                  const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
+    return std::make_unique<Method>(read_options<Options>(options), known);
+  };
+  return entry;
+}
 
 }  // namespace isoline::optimizers

@@ -17,11 +17,10 @@ void fields(Options& o, auto& field) {
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
 }
 
-class Rescaled final : public Optimizer {
+class Rescaled final : public ProxyMethod {
  public:
   Rescaled(const Options& options, const OptimizerRegistry& registry)
-      : is_by_truth_(options.by == "truth"), descent_(registry, options.network_optimizer) {}
-  void start(Meter& f, const Vector&) override { descent_.start(f); }
+      : ProxyMethod(registry, options.network_optimizer), is_by_truth_(options.by == "truth") {}
   Status step(Meter& f, Vector& theta) override {
     f.linearize(theta, at_);
     if (is_by_truth_) {
@@ -41,14 +40,11 @@ class Rescaled final : public Optimizer {
     descent_.approach(found_, Proxy::l2, at_, theta);
     return Status::running;
   }
-  bool persist(Archive& archive) override { return descent_.persist(archive); }
 
  private:
   const bool is_by_truth_;
-  NetworkDescent descent_;
-  Linearization at_;
-  Matrix g_;              // (m, B)
-  Matrix slope_, found_;  // (k, B) ∂L/∂x, x̃
+  Matrix g_;      // (m, B)
+  Matrix slope_;  // (k, B) ∂L/∂x
 };
 
 OracleSet needs_for(const OptionValues& options, const Problem&) {
@@ -60,22 +56,15 @@ OracleSet needs_for(const OptionValues& options, const Problem&) {
 }  // namespace
 
 void register_rescaled(OptimizerRegistry& registry) {
-  registry.add({.name = "rescaled",
-                .title = "Rescaled gradients",
-                .family = Family::inversion,
-                .kind = Kind::inversion,
-                .formula = "x̃ = x − d/‖d‖,  d = ∂L/∂x;  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
-                .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
-                .note = "by=truth has d = x − x*, as the published script does.",
-                .needs = {Oracle::forward, Oracle::network},
-                .options = option_table<Options>(),
-                .tunable = {.option = "network-optimizer", .below = 6},
-                .needs_for = needs_for,
-                .inside = NetworkDescent::inside,
-                .make = [](const OptionValues& options,
-                           const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
-                  return std::make_unique<Rescaled>(read_options<Options>(options), known);
-                }});
+  registry.add(proxy_entry<Rescaled, Options>(
+      {.name = "rescaled",
+       .title = "Rescaled gradients",
+       .formula = "x̃ = x − d/‖d‖,  d = ∂L/∂x;  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
+       .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
+       .note = "by=truth has d = x − x*, as the published script does.",
+       .needs = {Oracle::forward, Oracle::network},
+       .tunable = {.option = "network-optimizer", .below = 6},
+       .needs_for = needs_for}));
 }
 
 }  // namespace isoline::optimizers

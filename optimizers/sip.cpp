@@ -24,14 +24,14 @@ void fields(Options& o, auto& field) {
   field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
 }
 
-class Sip final : public Optimizer {
+class Sip final : public ProxyMethod {
  public:
   Sip(const Options& options, const OptimizerRegistry& registry)
-      : options_(options), descent_(registry, options.network_optimizer) {}
+      : ProxyMethod(registry, options.network_optimizer), options_(options) {}
 
-  void start(Meter& f, const Vector&) override {
+  void start(Meter& f, const Vector& theta) override {
     inversion_ = make_inversion(options_.inversion, f.inverse_kind());
-    descent_.start(f);
+    ProxyMethod::start(f, theta);
   }
 
   Status step(Meter& f, Vector& theta) override {
@@ -50,41 +50,29 @@ class Sip final : public Optimizer {
     return Status::running;
   }
 
-  bool persist(Archive& archive) override { return descent_.persist(archive); }
-
  private:
   const Options options_;
   std::unique_ptr<Inversion> inversion_;
-  NetworkDescent descent_;
-  Linearization at_, inner_;
-  Matrix found_;  // (k, B) x̃
+  Linearization inner_;
 };
 
 }  // namespace
 
 void register_sip(OptimizerRegistry& registry) {
-  registry.add({.name = "sip",
-                .title = "Scale-invariant physics",
-                .family = Family::inversion,
-                .kind = Kind::inversion,
-                .formula = "x̃ = P⁻¹(y + η (y* − y); x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
-                .source = "Holl, Koltun, Thuerey (2022), Fig. 3",
-                .note =
-                    "The inverse is the problem's own, a saddle-free Newton step with exact second "
-                    "derivatives, or found by L-BFGS; where it is damped or an estimate, x̃ = x + "
-                    "η (P⁻¹(y*; x) − x), and for Newton x + η U. The problem's own inverse and its "
-                    "second derivatives are privileges; L-BFGS is not.",
-                .needs = {Oracle::forward, Oracle::network},
-                .is_input_scale_invariant = true,
-                .options = option_table<Options>(),
-                .tunable = {.option = "step", .below = 5},
-                .needs_for = needs_of_inversion<Options>,
-                .inside = NetworkDescent::inside,
-                .objection = objection_of_inversion<Options>,
-                .make = [](const OptionValues& options,
-                           const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
-                  return std::make_unique<Sip>(read_options<Options>(options), known);
-                }});
+  registry.add(proxy_entry<Sip, Options>(
+      {.name = "sip",
+       .title = "Scale-invariant physics",
+       .formula = "x̃ = P⁻¹(y + η (y* − y); x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
+       .source = "Holl, Koltun, Thuerey (2022), Fig. 3",
+       .note = "The inverse is the problem's own, a saddle-free Newton step with exact second "
+               "derivatives, or found by L-BFGS; where it is damped or an estimate, x̃ = x + "
+               "η (P⁻¹(y*; x) − x), and for Newton x + η U. The problem's own inverse and its "
+               "second derivatives are privileges; L-BFGS is not.",
+       .needs = {Oracle::forward, Oracle::network},
+       .is_input_scale_invariant = true,
+       .tunable = {.option = "step", .below = 5},
+       .needs_for = needs_of_inversion<Options>,
+       .objection = objection_of_inversion<Options>}));
 }
 
 }  // namespace isoline::optimizers

@@ -20,25 +20,20 @@ void fields(Options& o, auto& field) {
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
 }
 
-class SipNewton final : public Optimizer {
+class SipNewton final : public ProxyMethod {
  public:
   SipNewton(const Options& options, const OptimizerRegistry& registry)
-      : inversion_(inversion_by_plain_newton(options.clip, options.damping)),
-        descent_(registry, options.network_optimizer) {}
-  void start(Meter& f, const Vector&) override { descent_.start(f); }
+      : ProxyMethod(registry, options.network_optimizer),
+        inversion_(inversion_by_plain_newton(options.clip, options.damping)) {}
   Status step(Meter& f, Vector& theta) override {
     f.linearize(theta, at_);
     inversion_->invert(f, at_, found_);
     descent_.approach(found_, Proxy::l2, at_, theta);
     return Status::running;
   }
-  bool persist(Archive& archive) override { return descent_.persist(archive); }
 
  private:
   std::unique_ptr<Inversion> inversion_;
-  NetworkDescent descent_;
-  Linearization at_;
-  Matrix found_;  // (k, B) x̃
 };
 
 std::string objection(const OptionValues&, const Problem& problem) {
@@ -48,25 +43,18 @@ std::string objection(const OptionValues&, const Problem& problem) {
 }  // namespace
 
 void register_sip_newton(OptimizerRegistry& registry) {
-  registry.add({.name = "sip-newton",
-                .title = "Network trained by Newton's step in x",
-                .family = Family::inversion,
-                .kind = Kind::inversion,
-                .formula = "x̃ = x − sign(g) |g/h|,  g = ∂L/∂x, h = ∂²L/∂x²;  "
-                           "θ ← one step on (1/B) Σ ½‖x − x̃‖²",
-                .source = "Holl, Koltun, Thuerey (2022), published script: train_exp.py",
-                .note = "The script's variants are clip=0.1 and damping=0.01; none is in a figure.",
-                .needs = {Oracle::forward, Oracle::network, Oracle::sensitivity, Oracle::curvature},
-                .is_input_scale_invariant = true,
-                .options = option_table<Options>(),
-                .tunable = {.option = "network-optimizer"},
-                .in_all = false,
-                .inside = NetworkDescent::inside,
-                .objection = objection,
-                .make = [](const OptionValues& options,
-                           const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
-                  return std::make_unique<SipNewton>(read_options<Options>(options), known);
-                }});
+  registry.add(proxy_entry<SipNewton, Options>(
+      {.name = "sip-newton",
+       .title = "Network trained by Newton's step in x",
+       .formula = "x̃ = x − sign(g) |g/h|,  g = ∂L/∂x, h = ∂²L/∂x²;  "
+                  "θ ← one step on (1/B) Σ ½‖x − x̃‖²",
+       .source = "Holl, Koltun, Thuerey (2022), published script: train_exp.py",
+       .note = "The script's variants are clip=0.1 and damping=0.01; none is in a figure.",
+       .needs = {Oracle::forward, Oracle::network, Oracle::sensitivity, Oracle::curvature},
+       .is_input_scale_invariant = true,
+       .tunable = {.option = "network-optimizer"},
+       .in_all = false,
+       .objection = objection}));
 }
 
 }  // namespace isoline::optimizers

@@ -27,14 +27,14 @@ void fields(Options& o, auto& field) {
   field("most-steps", o.most_steps, between(1, 1e6), "steps of the network toward each x̃, at most");
 }
 
-class SipTheorem3 final : public Optimizer {
+class SipTheorem3 final : public ProxyMethod {
  public:
   SipTheorem3(const Options& options, const OptimizerRegistry& registry)
-      : options_(options), descent_(registry, options.network_optimizer) {}
+      : ProxyMethod(registry, options.network_optimizer), options_(options) {}
 
-  void start(Meter& f, const Vector&) override {
+  void start(Meter& f, const Vector& theta) override {
     inversion_ = make_inversion(options_.inversion, f.inverse_kind());
-    descent_.start(f);
+    ProxyMethod::start(f, theta);
     f.name_series({"τ of U", "K of U", "length of U", "network steps of U"});
   }
 
@@ -57,41 +57,30 @@ class SipTheorem3 final : public Optimizer {
     return Status::running;
   }
 
-  bool persist(Archive& archive) override { return descent_.persist(archive); }
-
  private:
   const Options options_;
   std::unique_ptr<Inversion> inversion_;
-  NetworkDescent descent_;
-  Linearization at_, reached_;
-  Matrix found_;  // (k, B) x̃
+  Linearization reached_;
 };
 
 }  // namespace
 
 void register_sip_theorem_3(OptimizerRegistry& registry) {
-  registry.add({.name = "sip-theorem-3",
-                .title = "Scale-invariant physics, stopped by theorem 3",
-                .family = Family::inversion,
-                .kind = Kind::inversion,
-                .formula = "x̃ = x + U;  θ ← steps on (1/B) Σ ½‖x − x̃‖² until L ≤ (1 − τ/2) L(x),  "
-                           "τ = 1 − L(x + U)/L(x)",
-                .source = "Holl, Koltun, Thuerey (2022), theorem 3",
-                .note = "All samples of a batch are stopped together. Traced are τ, K = ‖U‖/‖y − "
-                        "y*‖, the length of U as a root mean square over the samples, and the "
-                        "network's steps. Each check of the loss is a forward solve, counted.",
-                .needs = {Oracle::forward, Oracle::network},
-                .is_input_scale_invariant = true,
-                .options = option_table<Options>(),
-                .tunable = {.option = "step", .below = 5},
-                .in_all = false,
-                .needs_for = needs_of_inversion<Options>,
-                .inside = NetworkDescent::inside,
-                .objection = objection_of_inversion<Options>,
-                .make = [](const OptionValues& options,
-                           const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
-                  return std::make_unique<SipTheorem3>(read_options<Options>(options), known);
-                }});
+  registry.add(proxy_entry<SipTheorem3, Options>(
+      {.name = "sip-theorem-3",
+       .title = "Scale-invariant physics, stopped by theorem 3",
+       .formula = "x̃ = x + U;  θ ← steps on (1/B) Σ ½‖x − x̃‖² until L ≤ (1 − τ/2) L(x),  "
+                  "τ = 1 − L(x + U)/L(x)",
+       .source = "Holl, Koltun, Thuerey (2022), theorem 3",
+       .note = "All samples of a batch are stopped together. Traced are τ, K = ‖U‖/‖y − "
+               "y*‖, the length of U as a root mean square over the samples, and the "
+               "network's steps. Each check of the loss is a forward solve, counted.",
+       .needs = {Oracle::forward, Oracle::network},
+       .is_input_scale_invariant = true,
+       .tunable = {.option = "step", .below = 5},
+       .in_all = false,
+       .needs_for = needs_of_inversion<Options>,
+       .objection = objection_of_inversion<Options>}));
 }
 
 }  // namespace isoline::optimizers

@@ -24,14 +24,14 @@ void fields(Options& o, auto& field) {
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
 }
 
-class TwoStage final : public Optimizer {
+class TwoStage final : public ProxyMethod {
  public:
   TwoStage(const Options& options, const OptimizerRegistry& registry)
-      : options_(options), descent_(registry, options.network_optimizer) {}
+      : ProxyMethod(registry, options.network_optimizer), options_(options) {}
 
   void start(Meter& f, const Vector& theta) override {
     inversion_ = make_inversion(options_.inversion, f.inverse_kind());
-    descent_.start(f);
+    ProxyMethod::start(f, theta);
     untrained_ = theta;
   }
 
@@ -64,8 +64,7 @@ class TwoStage final : public Optimizer {
 
   const Options options_;
   std::unique_ptr<Inversion> inversion_;
-  NetworkDescent descent_;
-  Linearization at_, solver_;
+  Linearization solver_;
   Vector untrained_;  // (n) θ₀
   Matrix labels_;     // (k, B) x̃
 };
@@ -80,26 +79,19 @@ std::string objection(const OptionValues& options, const Problem& problem) {
 }  // namespace
 
 void register_two_stage(OptimizerRegistry& registry) {
-  registry.add({.name = "two-stage",
-                .title = "Two-stage supervised training",
-                .family = Family::inversion,
-                .kind = Kind::inversion,
-                .formula = "x̃ = P⁻¹(y*; x₀);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
-                .source = "Holl, Koltun, Thuerey (2022)",
-                .note = "The labels are a solver's from a fixed x₀, not the x* that made y*; those "
-                        "are for `supervised`. The solver is one of sip's, and its work counts.",
-                .needs = {Oracle::forward, Oracle::network},
-                .is_input_scale_invariant = true,
-                .options = option_table<Options>(),
-                .tunable = {.option = "network-optimizer"},
-                .in_all = false,
-                .needs_for = needs_of_inversion<Options>,
-                .inside = NetworkDescent::inside,
-                .objection = objection,
-                .make = [](const OptionValues& options,
-                           const OptimizerRegistry& known) -> std::unique_ptr<Optimizer> {
-                  return std::make_unique<TwoStage>(read_options<Options>(options), known);
-                }});
+  registry.add(proxy_entry<TwoStage, Options>(
+      {.name = "two-stage",
+       .title = "Two-stage supervised training",
+       .formula = "x̃ = P⁻¹(y*; x₀);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
+       .source = "Holl, Koltun, Thuerey (2022)",
+       .note = "The labels are a solver's from a fixed x₀, not the x* that made y*; those "
+               "are for `supervised`. The solver is one of sip's, and its work counts.",
+       .needs = {Oracle::forward, Oracle::network},
+       .is_input_scale_invariant = true,
+       .tunable = {.option = "network-optimizer"},
+       .in_all = false,
+       .needs_for = needs_of_inversion<Options>,
+       .objection = objection}));
 }
 
 }  // namespace isoline::optimizers
