@@ -27,9 +27,6 @@ struct Pieces {
   virtual void add_choices(PieceDigest& digest) = 0;  // of the last forward pass
 };
 
-// What a forward pass leaves behind for the products that follow it. Owned by the caller, so that
-// physics and networks stay const; sized at first use, so that hot loops allocate nothing.
-
 // What a component keeps that is no array of double: it derives its own.
 struct Scratch {
   virtual ~Scratch() = default;

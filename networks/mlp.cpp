@@ -206,9 +206,6 @@ void Perceptron<Scalar>::pullback(BatchRef u, VectorOut JTu, Workspace& w) const
   JTu = own.gradient.template cast<Real>();
 }
 
-// The multilayer perceptron by name, and the products that methods beyond the gradient ask of it:
-// second derivatives, the batch Jacobian and the factors of each layer.
-
 // Forward over reverse (Pearlmutter, 1994): with h = W_lᵀ g_l,
 //   ġ_{l−1} = s'(z) (Ẇ_lᵀ g_l + W_lᵀ ġ_l) + s''(z) ż h,  (∂W_l)˙ = Σ_b ġ_l aᵀ + g_l ȧᵀ
 template <class Scalar>

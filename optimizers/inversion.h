@@ -51,9 +51,6 @@ struct LbfgsResult {
 // Moves x to the best point found.
 LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits, Vector& x);
 
-// One step of inverting the physics alone: from where it was linearized to an x̃ that brings y
-// nearer to y*, sample by sample. What scale-invariant physics training chooses between.
-
 class Inversion {
  public:
   virtual ~Inversion() = default;

@@ -83,20 +83,6 @@ class KroneckerBlock {
   Matrix damped_A_, damped_G_;
 };
 
-// Kronecker-factored curvature, Martens, Grosse (2015): with ā = (a, 1) the input of a dense layer
-// and g the cotangent of its output, the layer's block of the Gauss-Newton matrix is taken as A ⊗ G
-// with A = ⟨ā āᵀ⟩ and G = ⟨g gᵀ⟩, so that [W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹ with π²
-// = (tr A/dim A)/(tr G/dim G). Of a convolution, Grosse, Martens (2016): A = ⟨Σ_t ā āᵀ⟩ over the
-// patches ā at all places t, G = ⟨g gᵀ⟩ over samples and places, as if the cotangents of different
-// places were uncorrelated and alike; where the physics correlates them the curvature is larger, by
-// up to the number of places, and the rate must be smaller. g is that of √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a
-// sample's loss, for each output i in turn, so that G is exact; of a convolution, or of more than
-// 64 outputs, that of all outputs at once with random signs, one draw a step. Of the loss's
-// curvature the diagonal is used, which for ½‖y − y*‖² is all of it. Batch norm's γ and β have no
-// such form: each steps along its gradient, over λ and the mean of its curvature's diagonal under
-// the same draw. Running means as the paper's; its rescaling by the exact Gauss-Newton matrix,
-// momentum and adaptive λ are left out.
-
 constexpr Index kMostExact = 64;  // outputs, each of which costs a pullback
 
 struct Kfac {

@@ -109,13 +109,6 @@ bool DampedLeastSquares::by_cholesky(Real mu) {
   return true;
 }
 
-// Levenberg-Marquardt, Marquardt (1963), with Moré's scaling (1978) and the gain-ratio
-// rule of Nielsen (1999): d = argmin ‖J d + r‖² + μ‖D d‖², Dⱼ the largest norm the j-th
-// column of J has had. Steps that do not lower ‖r‖ are rejected and the damping is raised. On fresh
-// samples at every step J and r are those of the step's own. With damping=fixed, the rule of
-// mini-batches that cannot be compared: θ ← θ − η Jᵀ (K + μ)⁻¹ r, K = JJᵀ, μ a share of the mean
-// diagonal of K, and every step is taken.
-
 namespace {
 
 struct LevenbergMarquardt {

@@ -39,9 +39,6 @@ class RunningMean {
   std::int64_t count_ = 0;
 };
 
-// The only way from an optimizer to a problem: it counts every oracle by kind, refuses those the
-// method did not ask for, times, budgets and traces. Optimizers never log and never judge.
-
 using networks::Block;
 using networks::LayerFactor;
 using networks::LayerMoments;

@@ -111,5 +111,7 @@ struct OptimizerEntry {
 };
 
 void register_optimizers(OptimizerRegistry& registry);  // generated: one call a file
+// What a shared library brings (core/foreign/isoline.h), as an entry.
+void add_plugin_method(OptimizerRegistry& registry, const PluginComponent& component);
 
 }  // namespace isoline::optimizers

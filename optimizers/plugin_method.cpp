@@ -1,7 +1,5 @@
 // A method by the functions of a shared library, which asks the meter through functions of its own.
 // No exception crosses the library: it is kept, and thrown again when the library has returned.
-#include "optimizers/plugin_method.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <stdexcept>
 
 #include "core/foreign/isoline.h"
+#include "core/foreign/plugin_library.h"
+#include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
 namespace {

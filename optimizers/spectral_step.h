@@ -77,9 +77,6 @@ class SplitGram {
   Vector sigma_, along_;
 };
 
-// V f(σ) Uᵀ w over the stacked Jacobian J = U diag(σ) Vᵀ of a batch: one step, and several ways to
-// compute it.
-
 class SpectralStep {
  public:
   SpectralStep() = default;

@@ -72,14 +72,6 @@ struct WolfeSearch {
   }
 };
 
-// Self-scaled Broyden: a dense quasi-Newton method with a line search, θ ← θ − α H ∇L, whose H is
-// scaled down at each update as far as the curvature just seen asks for, and lies between the
-// updates of BFGS and DFP as Al-Baali, Khalfan (2005), "Wide interval for efficient self-scaling
-// quasi-Newton algorithms", choose it; found by Urbán, Stefanou, Pons (2025), J. Comput. Phys. 523
-// to train physics-informed networks to far smaller losses than BFGS. Full batch. The
-// line search is to the strong Wolfe conditions. H starts as 1, scaled at the first update as BFGS
-// is, Nocedal, Wright (2006), eq. 6.20.
-
 }  // namespace
 
 void update_self_scaled(Matrix& H, const Vector& s, const Vector& y, Real bend, Vector& Hy,

@@ -1,6 +1,5 @@
 // Beale's function: fᵢ = yᵢ − x1 (1 − x2ⁱ), y = (1.5, 2.25, 2.625). Moré, Garbow, Hillstrom (1981),
 // problem 5.
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

@@ -1,6 +1,5 @@
 // Brown's badly scaled function: f1 = x1 − 10⁶, f2 = x2 − 2·10⁻⁶, f3 = x1 x2 − 2. Moré, Garbow,
 // Hillstrom (1981), problem 4.
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

@@ -3,7 +3,6 @@
 // Σ fᵢ² = 85822.2… at m = 20, the one m whose minimum is given.
 #include <cmath>
 
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

@@ -1,7 +1,7 @@
 // Broyden's tridiagonal function: fᵢ = (3 − 2 xᵢ) xᵢ − xᵢ₋₁ − 2 xᵢ₊₁ + 1, x₀ = xₙ₊₁ = 0. Moré,
 // Garbow, Hillstrom (1981), problem 30. Products are O(n).
 
-#include "problems/classical.h"
+#include "problems/dense_physics.h"
 
 namespace isoline::problems {
 namespace {

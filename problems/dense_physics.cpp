@@ -1,6 +1,8 @@
 // Small physics, one sample at a time, from value and derivative.
 #include "problems/dense_physics.h"
 
+#include <cmath>
+
 namespace isoline::problems {
 
 void DensePhysics::second(VectorRef, VectorRef, BatchOut) const {
@@ -24,15 +26,11 @@ const Matrix& DensePhysics::saved_jacobian(Workspace& w) const {
 }
 
 void DensePhysics::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
-  const Matrix& J = saved_jacobian(w);
-  for (Index b = 0; b < v.cols(); ++b)
-    Jv.col(b).noalias() = J.middleCols(b * inputs_, inputs_) * v.col(b);
+  multiply_samples(saved_jacobian(w), v, Jv);
 }
 
 void DensePhysics::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
-  const Matrix& J = saved_jacobian(w);
-  for (Index b = 0; b < u.cols(); ++b)
-    JTu.col(b).noalias() = J.middleCols(b * inputs_, inputs_).transpose() * u.col(b);
+  multiply_samples_transposed(saved_jacobian(w), u, JTu);
 }
 
 void DensePhysics::jacobian(BatchOut J, Workspace& w) const { J = saved_jacobian(w); }
@@ -57,6 +55,23 @@ Success DensePhysics::local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut 
   Success success(y.cols());
   for (Index b = 0; b < y.cols(); ++b) success[b] = invert(y.col(b), x0.col(b), x.col(b));
   return success;
+}
+
+Real distance_to_nearest(BatchRef x, const Matrix& minimizers) {
+  return std::sqrt((minimizers.colwise() - x.col(0)).colwise().squaredNorm().minCoeff());
+}
+
+ProblemParts classical(std::unique_ptr<Physics> f, const Vector& start, const Draw& draw,
+                       Real minimum, const Matrix& minimizers) {
+  const Vector target = Vector::Zero(f->outputs());
+  return {.physics = std::move(f),
+          .start = draw.start(start),
+          .target = target,
+          .minimum = minimum,
+          .truth = minimizers.leftCols(1),
+          .x_error = [minimizers](BatchRef x, const Batch&) {
+            return distance_to_nearest(x, minimizers);
+          }};
 }
 
 }  // namespace isoline::problems

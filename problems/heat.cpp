@@ -12,6 +12,7 @@
 
 #include "core/fourier.h"
 #include "networks/mean_matched.h"
+#include "problems/exact_data.h"
 #include "problems/learning.h"
 #include "problems/random_fields.h"
 
@@ -30,7 +31,7 @@ void fields(Options& o, auto& field) {
   fields(o.learning, field);
 }
 
-class Heat final : public Physics {
+class Heat final : public SelfAdjointPhysics {
  public:
   Heat(Index N, Real noise_floor)
       : N_(N), noise_floor_(noise_floor), fourier_(N, N), ell_(N / 2 + 1, N), gain_(ell_) {
@@ -47,26 +48,18 @@ class Heat final : public Physics {
   Index inputs() const override { return N_ * N_; }
   Index outputs() const override { return N_ * N_; }
 
-  void diffuse(BatchRef x, BatchOut y) const {
+  void apply(BatchRef x, BatchOut y) const override {
     for (Index b = 0; b < x.cols(); ++b) {
       fourier_.forward(x.col(b));
       fourier_.spectrum().array() *= gain_.array();
       fourier_.inverse(y.col(b));
     }
   }
-  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override { diffuse(x, y); }
-  void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { diffuse(v, Jv); }
-  void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { diffuse(u, JTu); }
-  bool has_curvature() const override { return true; }
-  void curvature(BatchRef, BatchOut out, Workspace&) const override { out.setZero(); }
-  void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const override {
-    out.setZero();
-  }
 
   Inverse inverse_kind() const override { return Inverse::damped; }
   Index inverse_price() const override { return 2; }  // P(x₀), and as much again to invert
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
-    diffuse(x0, x);
+    apply(x0, x);
     x = y - x;  // d
     for (Index b = 0; b < y.cols(); ++b) sharpen(x.col(b));
     x += x0;
@@ -127,11 +120,8 @@ Field field_of(Index N) {
 // The mean of x* is that of y*, which the network is given: x ← N(y*) + mean(y*) − mean(N(y*)).
 ProblemParts learn_heat(const Options& o, const Draw& draw) {
   const auto physics = std::make_shared<const Heat>(o.N, 0);
-  const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {
-    batch.truth.col(b) = soft_rectangles(N, stream);
-    physics->diffuse(batch.truth.col(b), batch.target.col(b));
-    batch.input.col(b) = batch.target.col(b);
-  };
+  const auto sample =
+      sample_of(physics, [N = o.N](RandomStream& stream) { return soft_rectangles(N, stream); });
   const NetworkShape shape{.inputs = o.N * o.N, .outputs = o.N * o.N, .grid = o.N};
   return learn(o.learning, shape, draw,
                {.physics = std::make_unique<Heat>(o.N, 0),
@@ -145,19 +135,10 @@ ProblemParts learn_heat(const Options& o, const Draw& draw) {
 ProblemParts make_heat(const Options& o, const Draw& draw) {
   if (o.learning.is_on()) return learn_heat(o, draw);
   RandomStream stream = draw.stream("target");
-  const auto physics = std::make_shared<const Heat>(o.N, kNoiseFloor);
-  const Matrix truth = soft_rectangles(o.N, stream);
-  Matrix target(truth.rows(), 1);
-  physics->diffuse(truth, target);
-  const auto distance = [truth](BatchRef x, const Batch&) { return (x - truth).norm(); };
-  return {.physics = std::make_unique<Heat>(o.N, kNoiseFloor),
-          .start = draw.start(Vector::Zero(truth.rows())),
-          .target = target,
-          .minimum = 0,
-          .truth = truth,
-          .x_error = distance,
-          .x_floor = floor_of(physics, distance),
-          .field = field_of(o.N)};
+  ProblemParts parts = from_exact_data(std::make_unique<Heat>(o.N, kNoiseFloor),
+                                       soft_rectangles(o.N, stream), field_of(o.N), draw);
+  parts.x_floor = floor_of(std::make_shared<const Heat>(o.N, kNoiseFloor), parts.x_error);
+  return parts;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

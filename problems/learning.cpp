@@ -243,6 +243,15 @@ Real summed_error(BatchRef x, const Batch& batch) {
   return (x - batch.truth).cwiseAbs().sum() / static_cast<Real>(x.cols());
 }
 
+std::function<void(RandomStream&, Index, Batch&)> sample_of(
+    std::shared_ptr<const SelfAdjointPhysics> physics, std::function<Vector(RandomStream&)> truth) {
+  return [physics, truth](RandomStream& stream, Index b, Batch& batch) {
+    batch.truth.col(b) = truth(stream);
+    physics->apply(batch.truth.col(b), batch.target.col(b));
+    batch.input.col(b) = batch.target.col(b);
+  };
+}
+
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,
                    ProblemParts parts) {
   if (!parts.network) parts.network = make_network(options.network, shape);

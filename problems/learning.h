@@ -68,6 +68,10 @@ inline void fields(Learning& o, auto& field) {
 // The published error of grids: |x − x*| summed over cells, the mean over samples.
 Real summed_error(BatchRef x, const Batch& batch);
 
+// A sample whose x* is drawn and whose y* = A x* is what the network sees.
+std::function<void(RandomStream&, Index, Batch&)> sample_of(
+    std::shared_ptr<const SelfAdjointPhysics> physics, std::function<Vector(RandomStream&)> truth);
+
 // Adds what learning needs to parts that hold the physics, `samples.draw` and the error in x: the
 // network of that shape, its start, the streams, and the series. The network sees Batch::input.
 ProblemParts learn(const Learning& options, const NetworkShape& shape, const Draw& draw,

@@ -38,4 +38,15 @@ Success Physics::local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut) const {
   return Success::Constant(y.cols(), false);
 }
 
+void multiply_samples(const Matrix& J, BatchRef v, BatchOut Jv) {
+  const Index k = v.rows();
+  for (Index b = 0; b < v.cols(); ++b) Jv.col(b).noalias() = J.middleCols(b * k, k) * v.col(b);
+}
+
+void multiply_samples_transposed(const Matrix& J, BatchRef u, BatchOut JTu) {
+  const Index k = JTu.rows();
+  for (Index b = 0; b < u.cols(); ++b)
+    JTu.col(b).noalias() = J.middleCols(b * k, k).transpose() * u.col(b);
+}
+
 }  // namespace isoline::problems

@@ -122,4 +122,23 @@ class Physics {
   virtual Success local_inverse(BatchRef y, BatchRef x0, BatchRef c, BatchOut x) const;
 };
 
+// Products of the Jacobians of samples side by side, J (m, k·B).
+void multiply_samples(const Matrix& J, BatchRef v, BatchOut Jv);
+void multiply_samples_transposed(const Matrix& J, BatchRef u, BatchOut JTu);
+
+// y = A x with A = Aᵀ, whose products are the forward pass again.
+class SelfAdjointPhysics : public Physics {
+ public:
+  virtual void apply(BatchRef x, BatchOut y) const = 0;  // A x
+
+  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const final { apply(x, y); }
+  void pushforward(BatchRef v, BatchOut Jv, Workspace&) const final { apply(v, Jv); }
+  void pullback(BatchRef u, BatchOut JTu, Workspace&) const final { apply(u, JTu); }
+  bool has_curvature() const final { return true; }
+  void curvature(BatchRef, BatchOut out, Workspace&) const final { out.setZero(); }
+  void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const final {
+    out.setZero();
+  }
+};
+
 }  // namespace isoline::problems

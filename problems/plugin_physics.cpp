@@ -1,8 +1,6 @@
 // A physics by the functions of a shared library. Its products get the x that they are at and what
 // forward() kept of it, so that a rejected trial costs no forward pass more. Where it gives the
 // Jacobian, products that it lacks follow from that.
-#include "problems/plugin_physics.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,6 +8,8 @@
 #include <stdexcept>
 
 #include "core/foreign/isoline.h"
+#include "core/foreign/plugin_library.h"
+#include "problems/problem.h"
 
 namespace isoline::problems {
 namespace {
@@ -88,12 +88,7 @@ class PluginPhysics final : public Physics {
   }
 
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
-    if (!instance_.of().can(ISOLINE_PUSHFORWARD)) {
-      const Matrix& J = saved_jacobian(w);
-      for (Index b = 0; b < v.cols(); ++b)
-        Jv.col(b).noalias() = J.middleCols(b * inputs(), inputs()) * v.col(b);
-      return;
-    }
+    if (!instance_.of().can(ISOLINE_PUSHFORWARD)) return multiply_samples(saved_jacobian(w), v, Jv);
     for (Index b = 0; b < v.cols(); ++b)
       judge(table().pushforward(self(), w.x.col(b).data(), kept(w, b), v.col(b).data(),
                                 Jv.col(b).data()),
@@ -101,12 +96,8 @@ class PluginPhysics final : public Physics {
   }
 
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
-    if (!instance_.of().can(ISOLINE_PULLBACK)) {
-      const Matrix& J = saved_jacobian(w);
-      for (Index b = 0; b < u.cols(); ++b)
-        JTu.col(b).noalias() = J.middleCols(b * inputs(), inputs()).transpose() * u.col(b);
-      return;
-    }
+    if (!instance_.of().can(ISOLINE_PULLBACK))
+      return multiply_samples_transposed(saved_jacobian(w), u, JTu);
     for (Index b = 0; b < u.cols(); ++b)
       judge(table().pullback(self(), w.x.col(b).data(), kept(w, b), u.col(b).data(),
                              JTu.col(b).data()),

@@ -18,21 +18,12 @@ void fields(Options& o, auto& field) {
   fields(o.learning, field);
 }
 
-class Poisson final : public Physics {
+class Poisson final : public SelfAdjointPhysics {
  public:
   explicit Poisson(Index N) : laplacian_(N) {}
   Index inputs() const override { return laplacian_.cells(); }
   Index outputs() const override { return laplacian_.cells(); }
-
-  void solve(BatchRef x, BatchOut y) const { laplacian_.solve(x, y); }
-  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override { solve(x, y); }
-  void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { solve(v, Jv); }
-  void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { solve(u, JTu); }
-  bool has_curvature() const override { return true; }
-  void curvature(BatchRef, BatchOut out, Workspace&) const override { out.setZero(); }
-  void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const override {
-    out.setZero();
-  }
+  void apply(BatchRef x, BatchOut y) const override { laplacian_.solve(x, y); }
 
   Inverse inverse_kind() const override { return Inverse::exact; }
   Success local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut x) const override {
@@ -49,12 +40,8 @@ Field field_of(Index N) {
 }
 
 ProblemParts learn_poisson(const Options& o, const Draw& draw) {
-  const auto physics = std::make_shared<const Poisson>(o.N);
-  const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {
-    batch.truth.col(b) = smooth_noise(N, 10, 1, stream);
-    physics->solve(batch.truth.col(b), batch.target.col(b));
-    batch.input.col(b) = batch.target.col(b);
-  };
+  const auto sample = sample_of(std::make_shared<const Poisson>(o.N),
+                                [N = o.N](RandomStream& s) { return smooth_noise(N, 10, 1, s); });
   return learn(o.learning, {.inputs = o.N * o.N, .outputs = o.N * o.N, .grid = o.N}, draw,
                {.physics = std::make_unique<Poisson>(o.N),
                 .x_error = summed_error,

@@ -21,27 +21,18 @@ void fields(Options& o, auto& field) {
   fields(o.learning, field);
 }
 
-class PoissonHig final : public Physics {
+class PoissonHig final : public SelfAdjointPhysics {
  public:
   explicit PoissonHig(Index N) : laplacian_(N) {}
   Index inputs() const override { return laplacian_.cells(); }
   Index outputs() const override { return laplacian_.cells(); }
-
-  void apply(BatchRef x, BatchOut y) const { laplacian_.apply(x, y); }
-  void forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const override { apply(x, y); }
-  void pushforward(BatchRef v, BatchOut Jv, Workspace&) const override { apply(v, Jv); }
-  void pullback(BatchRef u, BatchOut JTu, Workspace&) const override { apply(u, JTu); }
+  void apply(BatchRef x, BatchOut y) const override { laplacian_.apply(x, y); }
   // The same of each sample.
   void jacobian(BatchOut J, Workspace& w) const override {
     const Index k = inputs();
     w.unit.setIdentity(k, k);
     laplacian_.apply(w.unit, J.leftCols(k));
     for (Index first = k; first < J.cols(); first += k) J.middleCols(first, k) = J.leftCols(k);
-  }
-  bool has_curvature() const override { return true; }
-  void curvature(BatchRef, BatchOut out, Workspace&) const override { out.setZero(); }
-  void curvature_product(BatchRef, BatchRef, BatchOut out, Workspace&) const override {
-    out.setZero();
   }
 
   Inverse inverse_kind() const override { return Inverse::exact; }
@@ -65,12 +56,8 @@ Field field_of(Index N) {
 }
 
 ProblemParts learn_poisson_hig(const Options& o, const Draw& draw) {
-  const auto physics = std::make_shared<const PoissonHig>(o.N);
-  const auto sample = [physics, N = o.N](RandomStream& stream, Index b, Batch& batch) {
-    batch.truth.col(b) = noise(N, stream);
-    physics->apply(batch.truth.col(b), batch.target.col(b));
-    batch.input.col(b) = batch.target.col(b);
-  };
+  const auto sample = sample_of(std::make_shared<const PoissonHig>(o.N),
+                                [N = o.N](RandomStream& stream) { return noise(N, stream); });
   const Index cells = o.N * o.N;
   ProblemParts parts = learn(o.learning, {.inputs = cells, .outputs = cells, .grid = o.N}, draw,
                              {.physics = std::make_unique<PoissonHig>(o.N),

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

@@ -14,6 +14,10 @@
 #include "core/registry.h"
 #include "core/status.h"
 
+namespace isoline {
+struct PluginComponent;
+}
+
 namespace isoline::problems {
 
 class Draw;
@@ -53,5 +57,7 @@ struct ProblemEntry {
 using ProblemRegistry = Registry<ProblemEntry>;
 
 void register_problems(ProblemRegistry& registry);  // generated: one call a file
+// What a shared library brings (core/foreign/isoline.h), as an entry.
+void add_plugin_physics(ProblemRegistry& registry, const PluginComponent& component);
 
 }  // namespace isoline::problems

@@ -26,10 +26,6 @@ struct Box {
   }
 };
 
-// A problem that another program computes, over frames on a private socket (docs/wire-format.md):
-// process[command="python3 mine.py"]. Each problem that is made has a program of its own, which
-// ends with it. A forward is asked for once a point; products there come from what it left behind.
-
 Inverse inverse_of(const std::string& kind) {
   if (kind == "exact") return Inverse::exact;
   if (kind == "damped") return Inverse::damped;
@@ -111,15 +107,11 @@ class ProcessPhysics final : public Physics {
   }
   void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const override {
     if (asks_pushforward_) return ask(Verb::pushforward, v, Jv, point_of(w));
-    const Matrix& J = saved_jacobian(w);
-    for (Index b = 0; b < v.cols(); ++b)
-      Jv.col(b).noalias() = J.middleCols(b * inputs_, inputs_) * v.col(b);
+    multiply_samples(saved_jacobian(w), v, Jv);
   }
   void pullback(BatchRef u, BatchOut JTu, Workspace& w) const override {
     if (asks_pullback_) return ask(Verb::pullback, u, JTu, point_of(w));
-    const Matrix& J = saved_jacobian(w);
-    for (Index b = 0; b < u.cols(); ++b)
-      JTu.col(b).noalias() = J.middleCols(b * inputs_, inputs_).transpose() * u.col(b);
+    multiply_samples_transposed(saved_jacobian(w), u, JTu);
   }
   void jacobian(BatchOut J, Workspace& w) const override {
     if (!has_jacobian_) return Physics::jacobian(J, w);

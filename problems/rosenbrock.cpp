@@ -1,5 +1,4 @@
 // Rosenbrock's valley: f1 = 10 (x2 − x1²), f2 = 1 − x1. Moré, Garbow, Hillstrom (1981), problem 1.
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

@@ -1,6 +1,6 @@
 // The variably dimensioned function: fᵢ = xᵢ − 1 for i ≤ n, fₙ₊₁ = t, fₙ₊₂ = t², with
 // t = Σ j (xⱼ − 1). Moré, Garbow, Hillstrom (1981), problem 25. Products are O(n).
-#include "problems/classical.h"
+#include "problems/dense_physics.h"
 
 namespace isoline::problems {
 namespace {

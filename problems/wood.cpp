@@ -2,7 +2,6 @@
 // f5 = √10 (x2 + x4 − 2), f6 = (x2 − x4)/√10. Moré, Garbow, Hillstrom (1981), problem 14.
 #include <cmath>
 
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {

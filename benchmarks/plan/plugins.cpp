@@ -2,8 +2,6 @@
 #include "benchmarks/plan/plugins.h"
 
 #include "core/foreign/plugin_library.h"
-#include "optimizers/plugin_method.h"
-#include "problems/plugin_physics.h"
 
 namespace isoline::benchmarks {
 

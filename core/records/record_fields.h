@@ -85,9 +85,6 @@ struct Form<Provenance> {
   }
 };
 
-// The members of a record, as they stand in its file: a new one costs its line in record.h, its
-// line here, the place that fills it, and the schema renewed (tests/core/run_schema_test.cpp).
-
 inline constexpr const char* kDigestLaw = R"({"pattern": "^[0-9a-f]{16}$"})";
 
 inline constexpr const char* kTolerancesLaw = R"({"required": ["1e-1", "1e-3", "1e-6"]})";

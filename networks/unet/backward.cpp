@@ -243,9 +243,6 @@ void unet_layer_moments(const UnetPlan& plan, UnetState& state, BatchRef u,
                 [&](const UnitPass& pass) { watch_unit(pass, moments[pass.index]); });
 }
 
-// The pullback of a U-net to its parameters, and with dual numbers its derivative: the curvature.
-// Unit by unit from the last, `cotangents` holds g, that of the unit's y before the rectifier.
-
 namespace {
 
 void clear_sums(const UnitPass& pass, Index task) {

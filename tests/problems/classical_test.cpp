@@ -1,6 +1,6 @@
 // Figures of Moré, Garbow and Hillstrom's problems. Unless it says otherwise, a value was computed
 // from the paper's definitions apart from this code, in rational or quadruple arithmetic.
-#include "problems/classical.h"
+#include "problems/dense_physics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // Freudenstein and Roth's function: P(x) = (x1 − 13 + ((5 − x2) x2 − 2) x2, x1 − 29 + ((x2 + 1) x2
 // − 14) x2), y* = 0. Moré, Garbow, Hillstrom (1981), problem 2: its second minimum traps most
 // searches from the standard start.
-#include "problems/classical.h"
 #include "problems/dense_physics.h"
 
 namespace isoline::problems {
