@@ -71,7 +71,7 @@ std::vector<std::filesystem::path> pages() {
 }
 
 // Folders whose sources are held to kArchaic.
-constexpr const char* kFolders[] = {"cmake"};
+constexpr const char* kFolders[] = {"cmake", "clients"};
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(),
@@ -144,10 +144,14 @@ TEST(Vocabulary, OfSourcesIsPlain) {
   for (const char* folder : kFolders)
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root() / folder)) {
       if (std::ranges::find(kRead, entry.path().extension().string()) == std::end(kRead)) continue;
+      const bool is_python = entry.path().extension() == ".py";
       int number = 0;
-      for (const std::string& line : lines_of(text_of(entry.path())))
+      for (const std::string& line : lines_of(text_of(entry.path()))) {
+        ++number;
+        if (is_python && line.find("None") != std::string::npos) continue;  // "is None" is code
         EXPECT_EQ(avoidable(lower(line), kArchaic), "")
-            << entry.path() << ":" << ++number << ": " << line;
+            << entry.path() << ":" << number << ": " << line;
+      }
     }
 }
 
