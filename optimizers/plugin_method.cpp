@@ -1,5 +1,6 @@
-// A method by the functions of a shared library, which asks the meter through functions of its own.
-// No exception crosses the library: it is kept, and thrown again when the library has returned.
+// A method by the functions of a shared library, which calls the meter through functions of its
+// own. No exception crosses the library: it is stored, and thrown again after the library has
+// returned.
 #include "optimizers/plugin_method.h"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ struct Questions : isoline_oracles {
   bool is_linearized = false;
   Linearization at;
   std::exception_ptr error = nullptr;
-  Vector theta, wide;  // (n), (m·B): what comes from the library, aligned as ours is
+  Vector theta, wide;  // (n), (m·B): copies of the library's arrays, aligned like ours
   Matrix narrow;       // (m, B)
 
   Questions(Meter& meter, bool solves);

@@ -1,4 +1,4 @@
-// Types of members whose form is more than a line.
+// Member types whose JSON form takes more than a line.
 #include "core/records/fields.h"
 
 #include <charconv>

@@ -1,4 +1,4 @@
-// Sheets to JSON and back.
+// Conversion of component metadata to and from JSON.
 #include "core/records/sheet.h"
 
 #include <fmt/format.h>
@@ -124,7 +124,7 @@ Sheet sheet_from_text(const std::string& text, const std::string& origin) {
     Form<Sheet>::read(json, sheet);
     return sheet;
   } catch (const UsageError& error) {
-    throw UsageError(fmt::format("no {} sheet: {}", kSheetSchema, error.what()));
+    throw UsageError(fmt::format("not a valid {} file: {}", kSheetSchema, error.what()));
   }
 }
 
