@@ -31,7 +31,8 @@ struct Processor;
 // caches that this was built for. Replaces the process where the environment has to change.
 void prepare_libraries(char** arguments);
 
-// The kernel that OpenBLAS uses, and who selected it: "OpenBLAS", "isoline", "user" or "portable".
+// The kernel that OpenBLAS uses, and the origin of this choice: "OpenBLAS", "isoline", "user" or
+// "portable".
 struct LibraryKernel {
   std::string name, chosen_by;
 };

@@ -34,8 +34,8 @@ class ChildProgram {
   ChildProgram& operator=(const ChildProgram&) = delete;
 
   const std::string& command() const { return command_; }
-  // Readable if the program has printed. Whoever waits for it must also drain this pipe: otherwise
-  // the program could block on a full pipe.
+  // Readable if the program has printed. A caller that waits for it must also drain this pipe:
+  // otherwise the program could block on a full pipe.
   int output() const { return output_; }
   void drain();
   bool has_ended();  // without waiting

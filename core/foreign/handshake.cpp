@@ -219,7 +219,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   problem.are_differences = said.flag("differences");
   problem.inverse = said.choice("inverse", kInverses);
   require(problem.oracles.contains(Oracle::inverse) == !problem.inverse.empty(),
-          [&] { return who + " has an inverse where, and only where, it says of which kind"; });
+          [&] { return who + " must declare the oracle inverse and its kind together"; });
   problem.start = said.numbers("start", problem.inputs, true);
   problem.drawn = said.numbers("drawn", problem.inputs, false);
   problem.target = said.numbers("target", problem.outputs, true);
@@ -227,7 +227,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   std::tie(problem.lower, problem.upper) = said.bounds(problem.inputs);
   const auto require_within = [&](const char* name, const std::vector<Real>& x) {
     require(is_within(x, problem),
-            [&] { return fmt::format("{} says a {} outside its bounds", who, name); });
+            [&] { return fmt::format("{} declares a {} outside its bounds", who, name); });
   };
   require_within("start", problem.start);
   require_within("drawn", problem.drawn);

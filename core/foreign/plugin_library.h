@@ -21,7 +21,7 @@ struct PluginComponent {
   std::shared_ptr<const isoline_component> table;
   std::string name, title, formula, source, note;
   OptionTable options;
-  std::string tuned;  // the tunable option; empty if there is none
+  std::string tuned;  // the tunable option, or empty
   Foreign foreign;
   bool is_optimizer = false;
 

@@ -102,7 +102,7 @@ TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
     problem_handshake(json_text(json), "`mine`");
     FAIL() << "a truth without";
   } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(), "`mine` says a truth outside its bounds");
+    EXPECT_STREQ(error.what(), "`mine` declares a truth outside its bounds");
   }
 }
 
