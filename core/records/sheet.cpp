@@ -133,8 +133,7 @@ Sheet sheet_from_json(const Json& json) { return sheet_from_text(json_text(json)
 Json sheet_schema() {
   Json schema;
   Form<Sheet>::law(JsonPlace(schema));
-  complete_schema(JsonPlace(schema),
-                  "isoline.component/1: what a reader needs to know of a problem or an optimizer");
+  complete_schema(JsonPlace(schema), "isoline.component/1: metadata of a problem or an optimizer");
   return schema;
 }
 
