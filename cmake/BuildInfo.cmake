@@ -1,10 +1,10 @@
-# Run at every build: writes the commit that is being built, whether the tree differs from it, and
-# digests of the target's sources. The file changes only when they do, so that nothing is compiled
-# in vain.
+# Runs at every build. Writes the commit that is being built, whether the tree differs from it, and
+# digests of the target's sources. The file changes only when these change, which avoids needless
+# compilation.
 cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git rev-parse --short=12 HEAD WORKING_DIRECTORY ${SOURCE}
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-# A file that git does not know is built as well, where the build reads it.
+# The build also reads untracked files of these types.
 set(read *.cpp *.h *.in *.cmake *CMakeLists.txt *.json *.js *.css *.html)
 execute_process(COMMAND git status --porcelain --untracked-files=no WORKING_DIRECTORY ${SOURCE}
                 OUTPUT_VARIABLE changes ERROR_QUIET)
@@ -18,7 +18,8 @@ if(changes OR strangers)
   set(dirty "true")
 endif()
 
-# digest_of(file): of the file and all that it includes by quotes, from its own folder or SOURCE.
+# digest_of(file out): a digest of the file and of everything that it includes with quotes, from its own
+# folder or SOURCE.
 function(digest_of file out)
   set(open ${file})
   set(found ${file})

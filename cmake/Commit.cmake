@@ -1,6 +1,6 @@
-# isoline_names_commit(target [WITHOUT_SOURCES]): writes "isoline_build_info.h" for the target at every build: kCommit
-# and kDirty, of the repository that its CMakeLists.txt lies in, and kSources, a line for each of the
-# target's sources with a digest of what it includes. One target a folder.
+# isoline_names_commit(target [WITHOUT_SOURCES]): writes "isoline_build_info.h" for the target at every
+# build. It contains kCommit and kDirty of the repository of the target's CMakeLists.txt, and kSources: a
+# line for each source of the target, with a digest of what it includes. At most one target per folder.
 function(isoline_names_commit target)
   set(info ${CMAKE_CURRENT_BINARY_DIR}/isoline_build_info.h)
   if(NOT ARGN)

@@ -1,8 +1,8 @@
 # isoline_registry(folder ENTRY Entry HEADER header [NAMESPACE namespace] CORE files...)
 #
-# Writes the registry that names every component of <folder>: <folder>/heat.cpp must define
-# register_heat(Registry<Entry>&). Files after CORE are compiled only; so are those of folders below,
-# unless they define their function too. With NAMESPACE <folder> lies below the calling folder. Sets
+# Writes the registry of all components of <folder>: <folder>/heat.cpp must define
+# register_heat(Registry<Entry>&). Files after CORE are only compiled, and so are files in subfolders
+# that do not define their function. With NAMESPACE, <folder> is a subfolder of the calling folder. Sets
 # <folder>_sources.
 function(isoline_registry folder)
   cmake_parse_arguments(PARSE_ARGV 1 "" "" "ENTRY;HEADER;NAMESPACE" "CORE")
@@ -22,7 +22,7 @@ function(isoline_registry folder)
       string(APPEND calls "  register_${name}(registry);\n")
     elseif(NOT file MATCHES "/" AND NOT file IN_LIST _CORE)
       message(FATAL_ERROR "${folder}/${file} must define register_${name}(Registry<${_ENTRY}>&); a file "
-                          "that is no component belongs in a folder below or after CORE in "
+                          "that is not a component belongs in a subfolder or after CORE in "
                           "${folder}/CMakeLists.txt")
     endif()
   endforeach()
@@ -31,7 +31,7 @@ function(isoline_registry folder)
   set(${folder}_sources ${files} ${CMAKE_CURRENT_BINARY_DIR}/registry.cpp PARENT_SCOPE)
 endfunction()
 
-# isoline_components(folder …): the library isoline_<folder> of these sources.
+# isoline_components(folder …): builds the library isoline_<folder> from these sources.
 function(isoline_components folder)
   isoline_registry(${folder} ${ARGN})
   add_library(isoline_${folder} STATIC ${${folder}_sources})

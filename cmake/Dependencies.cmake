@@ -1,4 +1,4 @@
-# Every library the project links, found on the system; nothing is downloaded.
+# All libraries of the project. CMake finds them on the system and downloads nothing.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
@@ -22,26 +22,26 @@ endfunction()
 # Named directly, not through the system's BLAS alternatives, which differ between machines.
 isoline_library(Isoline::lapacke "openblas;lapacke" lapacke.h)
 isoline_library(Isoline::fftw "fftw3" fftw3.h)
-isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package wants OpenCL
+isoline_library(Isoline::onednn "dnnl" oneapi/dnnl/dnnl.hpp)  # its own package requires OpenCL
 isoline_library(Isoline::random123 "" Random123/philox.h)
 isoline_library(Isoline::simdjson "simdjson" simdjson.h)
 isoline_library(Isoline::valijson "" valijson/validator.hpp)
 
-# Ceres' own CMake target is the static library. Built for other vector instructions than ours, its
-# inline Eigen functions would be merged with ours at link time; the shared library keeps its own.
+# Ceres' CMake target is the static library. It is built for other vector instructions, and the linker
+# would merge its inline Eigen functions with ours. The shared library keeps its own.
 isoline_library(Isoline::ceres "libceres.so;glog" ceres/ceres.h)
 find_package(Ceres 2.1 REQUIRED)
 
 find_file(ISOLINE_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js REQUIRED)
 
-# The versions a record names.
+# The library versions that each record names.
 file(STRINGS ${Isoline__onednn_INCLUDE}/oneapi/dnnl/dnnl_version.h _lines REGEX "VERSION_(MAJOR|MINOR|PATCH) ")
 string(REGEX REPLACE "[^0-9;]" "" _lines "${_lines}")
 list(JOIN _lines "." _onednn)
 find_file(ISOLINE_OPENBLAS_CONFIG openblas_config.h REQUIRED)
 file(STRINGS ${ISOLINE_OPENBLAS_CONFIG} _lines REGEX "OPENBLAS_VERSION")
 string(REGEX MATCH "[0-9]+[0-9.]*" _openblas "${_lines}")
-file(SHA256 ${Isoline__random123_INCLUDE}/Random123/philox.h _philox)  # it names no version
+file(SHA256 ${Isoline__random123_INCLUDE}/Random123/philox.h _philox)  # its headers have no version
 string(SUBSTRING ${_philox} 0 8 _philox)
 set(ISOLINE_LIBRARIES "Eigen ${Eigen3_VERSION}" "Ceres ${Ceres_VERSION}" "NLopt ${NLopt_VERSION}"
     "nlohmann-json ${nlohmann_json_VERSION}" "fmt ${fmt_VERSION}"

@@ -1,7 +1,7 @@
-# isoline_embed(target name file): makes `file` part of the binary, as the text
-# `std::string_view embedded_<name>()` in the namespace of the target isoline_<room>.
+# isoline_embed(target name file): embeds `file` in the binary, as the text
+# `std::string_view embedded_<name>()` in the namespace of the target isoline_<module>.
 function(isoline_embed target name file)
-  string(REPLACE "isoline_" "" room ${target})
+  string(REPLACE "isoline_" "" module ${target})
   set(stem ${CMAKE_CURRENT_BINARY_DIR}/embedded_${name})
   file(CONFIGURE OUTPUT ${stem}.S @ONLY CONTENT [[
     .section .rodata
@@ -15,12 +15,12 @@ isoline_@name@_end:
   file(CONFIGURE OUTPUT ${stem}.cpp @ONLY CONTENT [[
 #include <string_view>
 extern "C" const char isoline_@name@_begin[], isoline_@name@_end[];
-namespace isoline::@room@ {
+namespace isoline::@module@ {
 std::string_view embedded_@name@();
 std::string_view embedded_@name@() {
   return {isoline_@name@_begin, static_cast<std::size_t>(isoline_@name@_end - isoline_@name@_begin)};
 }
-}  // namespace isoline::@room@
+}  // namespace isoline::@module@
 ]])
   set_source_files_properties(${stem}.S PROPERTIES OBJECT_DEPENDS ${file})
   target_sources(${target} PRIVATE ${stem}.S ${stem}.cpp)
@@ -29,7 +29,7 @@ endfunction()
 # isoline_embed_folder(target function folder): every *.json of `folder`, by name, as
 # `const std::map<std::string, std::string_view>& <function>()`.
 function(isoline_embed_folder target function folder)
-  string(REPLACE "isoline_" "" room ${target})
+  string(REPLACE "isoline_" "" module ${target})
   file(GLOB files CONFIGURE_DEPENDS ${folder}/*.json)
   foreach(file IN LISTS files)
     cmake_path(GET file STEM stem)
@@ -42,14 +42,14 @@ function(isoline_embed_folder target function folder)
 #include <map>
 #include <string>
 #include <string_view>
-namespace isoline::@room@ {
+namespace isoline::@module@ {
 @declarations@const std::map<std::string, std::string_view>& @function@();
 const std::map<std::string, std::string_view>& @function@() {
   static const std::map<std::string, std::string_view> all{
 @entries@  };
   return all;
 }
-}  // namespace isoline::@room@
+}  // namespace isoline::@module@
 ]])
   target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
 endfunction()

@@ -1,5 +1,5 @@
-# `cmake --install` exports Isoline::core, Isoline::problems, … and isoline_program(): components can
-# live in a tree of their own, found by find_package(Isoline). Libraries in C need isoline.h alone.
+# `cmake --install` exports Isoline::core, Isoline::problems, … and isoline_program(). Other repositories
+# find them with find_package(Isoline). Libraries in C need only isoline.h.
 include(CMakePackageConfigHelpers)
 
 set(libraries core networks problems optimizers reports benchmarks)

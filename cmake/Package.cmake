@@ -1,7 +1,7 @@
-# In the portable build `cpack` makes a Debian package of the program alone, which runs where nothing
-# compiles: it depends on the libraries that the program links, as the program itself lists them.
+# In the portable build, `cpack` makes a Debian package of the program for machines without a compiler.
+# It depends on the libraries that the program links.
 install(TARGETS isoline COMPONENT program)
-if(NOT ISOLINE_PORTABLE)  # a program for this machine's processor is for no other one
+if(NOT ISOLINE_PORTABLE)  # a program for this machine's processor may not run on another
   return()
 endif()
 
@@ -30,8 +30,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-"Every problem of a registry is run against every optimizer of a registry, each
-run in a process of its own, one JSON record a run, and a report is made of the
-records. The program is, as a whole, under the GNU General Public License, since
-it links FFTW.")
+"Isoline runs optimizers on physical inverse problems. Each run has its own
+process and writes one JSON record. Reports show rankings, profiles and
+statistics. The program as a whole is under the GNU General Public License,
+since it links FFTW.")
 include(CPack)

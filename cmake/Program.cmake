@@ -1,32 +1,32 @@
 # isoline_program(target [PROBLEMS files...] [OPTIMIZERS files...] [SOURCES files...])
 #
-# The program <target>: every verb of Isoline over its own components and these. By the rule of the
-# tree problems/my_chain.cpp must define isoline::problems::register_my_chain(ProblemRegistry&), and
-# an optimizer's file likewise; SOURCES are compiled besides. Its records name the commit of the
-# repository that the calling CMakeLists.txt lies in.
+# The program <target> has every verb of Isoline, for Isoline's components and these. As in Isoline's tree,
+# problems/my_chain.cpp must define isoline::problems::register_my_chain(ProblemRegistry&), and the file
+# of an optimizer likewise. SOURCES are only compiled. Records name the commit of the repository of the
+# calling CMakeLists.txt.
 function(isoline_program target)
   cmake_parse_arguments(PARSE_ARGV 1 "" "" "" "PROBLEMS;OPTIMIZERS;SOURCES")
   if(_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "isoline_program(${target}): ${_UNPARSED_ARGUMENTS} stand after none of "
-                        "PROBLEMS, OPTIMIZERS and SOURCES")
+    message(FATAL_ERROR "isoline_program(${target}): put ${_UNPARSED_ARGUMENTS} after PROBLEMS, "
+                        "OPTIMIZERS or SOURCES")
   endif()
   set(problems ${_PROBLEMS})
   set(optimizers ${_OPTIMIZERS})
   set(entry_of_problems ProblemEntry)
   set(entry_of_optimizers OptimizerEntry)
-  foreach(room problems optimizers)
-    string(APPEND declarations "namespace isoline::${room} {\n")
-    foreach(file IN LISTS ${room})
+  foreach(module problems optimizers)
+    string(APPEND declarations "namespace isoline::${module} {\n")
+    foreach(file IN LISTS ${module})
       cmake_path(ABSOLUTE_PATH file)
       set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
       cmake_path(GET file STEM name)
       file(STRINGS ${file} definition REGEX "void register_${name}\\(" LIMIT_COUNT 1)
       if(NOT definition)
-        message(FATAL_ERROR "${file} must define isoline::${room}::register_${name}(Registry<"
-                            "${entry_of_${room}}>&); a file that is no component stands after SOURCES")
+        message(FATAL_ERROR "${file} must define isoline::${module}::register_${name}(Registry<"
+                            "${entry_of_${module}}>&); put a file that is not a component after SOURCES")
       endif()
-      string(APPEND declarations "void register_${name}(Registry<${entry_of_${room}}>&);\n")
-      string(APPEND calls "  isoline::${room}::register_${name}(catalog.${room});\n")
+      string(APPEND declarations "void register_${name}(Registry<${entry_of_${module}}>&);\n")
+      string(APPEND calls "  isoline::${module}::register_${name}(catalog.${module});\n")
     endforeach()
     string(APPEND declarations "}\n")
   endforeach()

@@ -1,16 +1,17 @@
 # cmake -DROOT=… -DOUTPUT=… -P SourceDigests.cmake
 #
-# Digests of what computes a run, written as the C++ function tree_sources(): "harness" is all of
-# core/ outside core/records/ and whatever benchmarks/run/execute.cpp reaches; each file that
-# registers a component, or adds those of others, has the digest of itself and of what it reaches
-# besides. A file reaches what it includes; a header reaches the file of its name that implements it. A
-# file without a header of its own implements the headers of its own folder that it includes, so those
-# reach it.
+# Writes digests of the sources that compute a run, as the C++ function tree_sources(). "harness" is
+# core/ without core/records/, and everything that benchmarks/run/execute.cpp reaches. Each file that
+# registers components has a digest of itself and of everything else that it reaches.
+#
+# A file reaches the headers that it includes. A header reaches the file of the same name that implements
+# it. A file without a header of its own implements the headers of its folder that it includes, so those
+# headers reach it.
 cmake_minimum_required(VERSION 3.25)
-set(rooms core networks problems optimizers benchmarks/plan benchmarks/run)
+set(modules core networks problems optimizers benchmarks/plan benchmarks/run)
 
-foreach(room IN LISTS rooms)
-  file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/${room}/*.h ${ROOT}/${room}/*.cpp)
+foreach(module IN LISTS modules)
+  file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/${module}/*.h ${ROOT}/${module}/*.cpp)
   list(APPEND files ${found})
 endforeach()
 list(FILTER files EXCLUDE REGEX "^core/records/")
@@ -46,7 +47,7 @@ foreach(file IN LISTS files)
   endforeach()
 endforeach()
 
-# closure(out first...): the files that these reach, and they themselves, sorted.
+# closure(out first...): these files and all files that they reach, sorted.
 function(closure out)
   set(open ${ARGN})
   set(found ${ARGN})
@@ -89,19 +90,19 @@ foreach(component IN LISTS components)
   list(APPEND digested ${component} ${parts})
 endforeach()
 
-# An edit of a file that no digest covers would reuse records of the old one. A file with a header of
-# its own that no component reaches takes no part in a run.
+# After an edit of a file without a digest, old records would be reused. A file with its own header that
+# no component reaches takes no part in a run.
 list(APPEND digested ${harness})
 set(forgotten ${without_header})
 list(FILTER forgotten INCLUDE REGEX "^(networks|problems|optimizers)/")
 list(REMOVE_ITEM forgotten ${digested})
 if(forgotten)
-  message(FATAL_ERROR "No digest covers ${forgotten}: include the header of the same folder that declares "
-                      "what these files define, or give each a header of its own name.")
+  message(FATAL_ERROR "No digest covers ${forgotten}: include the header in the same folder that "
+                      "declares their functions, or give each a header of the same name.")
 endif()
 
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-// Generated from the sources: what computes each component, as digests.
+// Generated from the sources: a digest of the sources of each component.
 #include "benchmarks/plan/build_parts.h"
 
 namespace isoline::benchmarks {

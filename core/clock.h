@@ -1,5 +1,5 @@
-// The stopwatch of a run: the processor's time-stamp counter where there is one, which a single
-// evaluation can afford to read, and the monotonic clock elsewhere.
+// The stopwatch of a run: the processor's time-stamp counter if there is one, which is cheap enough
+// for single evaluations, and the monotonic clock otherwise.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace isoline {
 
 double seconds_per_tick();   // measured once, against the monotonic clock
-double processor_seconds();  // of this process and who computes for it
+double processor_seconds();  // of this process and the processes that compute for it
 std::int64_t monotonic_nanoseconds();
 
 inline std::uint64_t ticks() {  // inline: a call would cost as much as the reading
@@ -36,7 +36,7 @@ class Stopwatch {
   double resumed_processor_ = 0, processor_ = 0;
 };
 
-// Instants as records and sheets write them: whole seconds of universal time,
+// Times as records and component files contain them: whole seconds of universal time,
 // "2026-01-31T12:00:00Z".
 
 // Of seconds since 1970.

@@ -67,7 +67,7 @@ dnnl::convolution_backward_weights::primitive_desc gradient_of(const Arrays& arr
 
 }  // namespace
 
-// One primitive and its arguments, whose addresses are set at each call.
+// One primitive and its arguments; each call sets their addresses.
 class ConvolutionCall {
  public:
   struct Argument {

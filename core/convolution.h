@@ -1,12 +1,12 @@
-// 3×3 convolutions of small stacks of N×N grids in single precision: the only door to oneDNN. Each
-// runs on the calling thread, for callers that keep a stack in cache and share stacks out among
-// threads, and gives the same bits on any thread.
+// 3×3 convolutions of small stacks of N×N grids in single precision: the only adapter to oneDNN.
+// Each runs on the calling thread, for callers that keep a stack in cache and distribute stacks
+// over threads, and gives the same bits on any thread.
 //
 // Channels come in blocks of kChannels, [image][block][column][row][channel]. Inputs carry a halo
-// of one, (N+2)×(N+2), that their writer fills, so that the padding is the caller's. A kernel is
-// [block out][block in][3][3][channel in][channel out]. Few channels that come in, fewer than a
-// block, are not blocked: [image][channel][column][row], with kernels [block out][3][3][in][out].
-// Every array must be aligned to 64 bytes.
+// of one, (N+2)×(N+2), that their writer fills, so that the caller decides the padding. A kernel is
+// [block out][block in][3][3][channel in][channel out]. If there are fewer input channels than a
+// block, they are not blocked: [image][channel][column][row], with kernels [block
+// out][3][3][in][out]. Every array must be aligned to 64 bytes.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ struct ConvolutionShape {
   bool is_plain = false;
 };
 
-class ConvolutionCall;  // oneDNN's objects, whose header stays inside convolution.cpp
+class ConvolutionCall;  // oneDNN's objects; their header stays inside convolution.cpp
 class ThreeChannels;
 
 // out = kernel * in, or out += kernel * in.

@@ -1,4 +1,4 @@
-// Factorizations by LAPACKE, the only door to it.
+// Factorizations by LAPACKE; the only adapter to it.
 #include "core/decompose.h"
 
 #include <lapacke.h>

@@ -33,7 +33,7 @@ class FactoredSvd {
 };
 
 struct SymmetricEigen {
-  Matrix V;       // (n, n), one eigenvector a column
+  Matrix V;       // (n, n), one eigenvector per column
   Vector lambda;  // (n), ascending
 };
 bool symmetric_eigen(const Matrix& A,
@@ -46,8 +46,8 @@ bool solve_positive_definite(Matrix& A, Matrix& B);
 // x = A⁻¹ b by LU with partial pivoting, A (n, n); false when A is exactly singular.
 bool solve_square(const Matrix& A, const Vector& b, Vector& x);
 
-// x = argmin ‖A x − b‖, of least norm where A (m, n) lacks rank, by a complete orthogonal
-// factorization; a column whose pivot is below `relative_rank` of the first is taken as dependent.
+// x = argmin ‖A x − b‖, of least norm if A (m, n) is rank-deficient, by a complete orthogonal
+// factorization; a column with a pivot below `relative_rank` of the first counts as dependent.
 bool least_squares(const Matrix& A, const Vector& b, Real relative_rank, Vector& x);
 
 }  // namespace isoline

@@ -1,5 +1,5 @@
-// Counter-based random numbers (Philox4x64-10, Salmon et al. 2011), by named stream: what a draw
-// yields depends on its key alone, not on order, thread, shard or standard library.
+// Counter-based random numbers (Philox4x64-10, Salmon et al. 2011), by named stream: a sample
+// depends on its key alone, not on order, thread, shard or standard library.
 #pragma once
 
 #include <array>

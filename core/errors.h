@@ -7,7 +7,7 @@
 
 namespace isoline {
 
-// The caller asked for something impossible: a bad option, a wrong shape, an unknown name.
+// The caller requested something impossible: a bad option, a wrong shape, an unknown name.
 struct UsageError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
@@ -21,7 +21,7 @@ inline void require(bool holds, const char* law) {
   if (!holds) throw UsageError(law);
 }
 
-// For laws that name what was given: their text is made only where they are broken.
+// For constraints whose message names the value: the text is built only on failure.
 template <std::invocable Law>
 void require(bool holds, const Law& law) {
   if (!holds) throw UsageError(law());

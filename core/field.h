@@ -1,4 +1,4 @@
-// What x and y of a problem are, and which figures a problem asks for.
+// The fields x and y of a problem, and the figures that a problem requests.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ struct Field {
   bool is_history() const { return time > 0; }
 };
 
-// A figure that a problem wants drawn of its runs, as the paper it is from draws it.
+// A figure of a problem's runs, in the form of the paper's figure.
 struct Panel {
   std::string title;  // "Fig. 5d: error over ξ"
   // "curve": error in x against iterations. "sweep": the error at the end over the option `over`,

@@ -1,4 +1,4 @@
-// Files by the calls of the system, whose every answer is looked at.
+// Files by system calls, with every result checked.
 #include "core/files.h"
 
 #include <fcntl.h>
@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
   throw std::runtime_error(fmt::format("cannot {} {}: {}", what, path.string(), strerror(errno)));
 }
 
-// An open file, closed with its scope; `close` tells whether that went well.
+// An open file, closed with its scope; `close` returns whether that succeeded.
 class OpenFile {
  public:
   OpenFile(const fs::path& path, int how)
@@ -98,7 +98,7 @@ void require_readable(const struct stat& found, const fs::path& path, std::size_
 // All of an open file, which has about so many bytes: some of the system's say 0.
 std::string all_of(int file, std::size_t size, const fs::path& path, std::size_t most_bytes) {
   constexpr std::size_t kLeast = 1 << 12;
-  std::string text(std::max(size + 1, kLeast), '\0');  // with room to see the end
+  std::string text(std::max(size + 1, kLeast), '\0');  // one byte more, to detect the end
   std::size_t have = 0;
   for (;;) {
     const ssize_t got = ::read(file, text.data() + have, text.size() - have);
@@ -113,8 +113,8 @@ std::string all_of(int file, std::size_t size, const fs::path& path, std::size_t
   return text;
 }
 
-// "9c1d52aa": tells the processes of this machine from those of others. Machines made of one image
-// differ in their host's name, and containers have process numbers of their own.
+// "9c1d52aa": distinguishes this machine's processes from those of others. Machines made of one
+// image differ in their host's name, and containers have process numbers of their own.
 std::string machine_name() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);

@@ -26,7 +26,7 @@ bool is_there(const std::filesystem::path& path);
 // UsageError where it cannot be listed.
 std::vector<std::string> names_in(const std::filesystem::path& folder);
 
-// By a temporary file, fsync and rename: whoever looks finds the old file or the new one.
+// Through a temporary file, fsync and rename: readers see either the old file or the new one.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
 // The name that a file has while this process writes it, "record.json.9c1d52aa-4711.tmp": of the
@@ -47,7 +47,7 @@ std::filesystem::path move_into(const std::filesystem::path& folder,
 void write_unflushed(const std::filesystem::path& path, std::string_view text);
 void flush_all(const std::filesystem::path& folder);
 
-// A folder of one's own among the temporary ones, which nobody finds by its name.
+// A private folder in the temporary folder, with an unpredictable name.
 
 // Goes with its scope, and all that is in it. UsageError where it cannot be made.
 class HiddenFolder {

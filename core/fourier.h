@@ -1,6 +1,6 @@
-// Fast transforms of real grids (rows, columns), column-major: the only door to FFTW. A transform
-// owns its plans and its scratch, is unnormalized, and allocates nothing once made. The same plan
-// is executed always, so equal input gives equal bits wherever it lies.
+// Fast transforms of real grids (rows, columns), column-major: the only adapter to FFTW. A
+// transform owns its plans and scratch arrays, is unnormalized, and allocates nothing after
+// construction. It always executes the same plan, so equal input gives equal bits at every address.
 #pragma once
 
 #include <memory>

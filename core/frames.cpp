@@ -116,7 +116,8 @@ std::vector<std::size_t> chosen_frames(const Trace::Frames& frames) {
   std::size_t first = 1;
   for (std::size_t i = 1; i + 1 < kMostFrames; ++i) {
     const Real even = static_cast<Real>(i) / (kMostFrames - 1) * depth_of(taken.size() - 1);
-    const std::size_t end = taken.size() - (kMostFrames - 1 - i);  // room for those to come
+    const std::size_t end =
+        taken.size() - (kMostFrames - 1 - i);  // keeps places for later iterations
     std::size_t nearest = first;
     for (std::size_t j = first + 1; j < end; ++j)
       if (std::abs(depth_of(j) - even) < std::abs(depth_of(nearest) - even)) nearest = j;

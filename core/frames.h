@@ -21,9 +21,9 @@ Vector curl(VectorRef velocity, Index rows, Index columns);
 // The states from x on, at even times, each a row of `states` (rows, columns).
 using History = std::function<void(VectorRef x, BatchOut states)>;
 
-// The sample itself, or its curl where it has two numbers a cell. Of a field that is a history all
-// that follows from x; of y, of which no history is given, the last row alone, with 0 elsewhere.
-// The batch outlives the picture.
+// The sample itself, or its curl if it has two numbers per cell. For a field that is a history, all
+// states after x; for y, whose history is unknown, the last row only, with 0 elsewhere.
+// The batch outlives the snapshot.
 class Picture {
  public:
   Picture(const Matrix& batch, const std::optional<Field>& field, const History& history = {});
@@ -41,14 +41,14 @@ class Picture {
 
 inline constexpr std::size_t kMostFrames = 6;  // that a record keeps
 
-// Makes room for x (rows · columns), and keeps y* and, where it is known, x* of the same size.
-// Where there is no room for so many cells, nothing is kept.
+// Reserves storage for x (rows · columns), and stores y* and, if known, x* of the same size.
+// Stores nothing if the grid has too many cells.
 void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<const Real> target,
                  std::span<const Real> truth);
 
-// Keeps x of an iteration later than those before, or anew of the last one. An x that is not finite
-// in single precision is no picture. Where all places are taken, the x is given up that is missed
-// least: whose neighbours, in the logarithm of iterations, are nearest.
+// Stores x of an iteration after the previous one, or replaces the last one. Skips an x that is not
+// finite in single precision. If all places are taken, drops the x whose neighbours, in the
+// logarithm of iterations, are nearest.
 void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x);
 
 // The places of at most six frames by iteration: the first, the last, and between them those

@@ -1,5 +1,5 @@
-// JSON whose numbers survive: infinities and not-a-number are written as the strings "inf", "-inf"
-// and "nan", where plain nlohmann-json writes null and then fails to read it.
+// JSON whose numbers survive: infinities and NaN are written as the strings "inf", "-inf" and
+// "nan". Plain nlohmann-json writes null, which it then fails to read.
 #pragma once
 
 #include <filesystem>
@@ -16,10 +16,11 @@ using Json = nlohmann::json;
 
 Json json_number(Real value);
 Json json_numbers(std::span<const Real> values);
-Real real_of(const Json& value);  // UsageError when it is no number
+Real real_of(const Json& value);  // UsageError if it is not a number
 std::vector<Real> reals_of(const Json& list);
 
-// The one way of ours to JSON as text: what is no UTF-8 in it becomes U+FFFD, and nothing throws.
+// JSON as text. All output uses this function: it replaces invalid UTF-8 by U+FFFD, and never
+// throws.
 std::string json_text(const Json& value, int indent = -1);
 
 Json parse_json(const std::string& text, const std::string& origin);  // UsageError names the origin

@@ -1,5 +1,5 @@
 // Names of the options by which a network learns a problem. Problems declare them
-// (problems/learning.h); plans, records and reports ask for them.
+// (problems/learning.h); plans, records and reports read them.
 #pragma once
 
 #include <array>

@@ -56,9 +56,9 @@ class OptionValues {
   void set_all(const OptionValues& others);              // each of them
   void erase(std::string_view name);                     // where there is one
   const OptionValue* find(std::string_view name) const;  // or nullptr
-  const OptionValue& at(std::string_view name) const;    // UsageError where there is none
+  const OptionValue& at(std::string_view name) const;    // UsageError if it does not exist
   bool contains(std::string_view name) const { return find(name) != nullptr; }
-  // As a number, or as text; what is given where there is none, or one of another type.
+  // As a number, or as text; the fallback if the option is missing or has another type.
   Real number(std::string_view name, Real otherwise) const;
   std::string text(std::string_view name, std::string_view otherwise = "") const;
 
@@ -160,12 +160,12 @@ inline void fields(NoOptions&, auto&) {}
 
 using Json = nlohmann::json;
 
-Json to_json(const OptionValues& options);  // an object; numbers survive
-OptionValues option_values_from(
-    const Json& json);  // UsageError where a value is of no type of ours
-// Without the options of no text. They alone name a cell, so a component that gains an option which
-// is empty by default keeps the names of its cells.
+Json to_json(const OptionValues& options);          // an object; numbers survive
+OptionValues option_values_from(const Json& json);  // UsageError if a value has an unknown type
+// Without the options that are empty. Only these name a cell, so a component can gain an option
+// that is empty by default without renaming its cells.
 OptionValues without_empty(const OptionValues& options);
-Json describe_options(const OptionTable& table);  // a list: name, type, default, law and meaning
+Json describe_options(
+    const OptionTable& table);  // a list: name, type, default, constraint and meaning
 
 }  // namespace isoline

@@ -1,4 +1,4 @@
-// What an optimizer may ask of a problem, by kind; the ledger counts each.
+// The oracles of a problem, by kind; the ledger counts each.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ enum class Oracle {
   truth
 };
 
-// Of a problem: what prices depend on.
+// The sizes of a problem that determine costs.
 struct OracleSizes {
   std::int64_t unknowns, residuals;  // n, and m·B, the rows of J
   std::int64_t inputs, outputs;      // k, m
@@ -52,9 +52,9 @@ struct OracleRow {
   bool is_in_every_record = true;  // records of older versions lack what was counted later
 };
 
-// All that a kind of oracle is, in its order: a new one is a row here, its computation in
-// problems/problem.cpp, its question in optimizers/meter.cpp and its call in
-// benchmarks/run/sheets.cpp; and the schema of records renewed.
+// All properties of the kinds of oracles, in their order. A new kind is a row here, its computation
+// in problems/problem.cpp, its call in optimizers/meter.cpp and benchmarks/run/sheets.cpp, and the
+// renewed schema of records.
 inline constexpr std::array kOracleTable = {
     OracleRow{Oracle::forward, "forward", "y = P(N(θ)) and L",
               [](const OracleSizes&) -> std::int64_t { return 1; }, ""},
@@ -70,11 +70,11 @@ inline constexpr std::array kOracleTable = {
     OracleRow{Oracle::hessian, "hessian", "∇²L, (n, n)",
               [](const OracleSizes& of) { return of.unknowns; },
               "the problem offers no second derivatives", true},
-    OracleRow{Oracle::curvature, "curvature", "Σ wᵢ ∇²Pᵢ, (k, k) a sample",
+    OracleRow{Oracle::curvature, "curvature", "Σ wᵢ ∇²Pᵢ, (k, k) per sample",
               [](const OracleSizes& of) { return of.inputs; },
               "the problem offers no second derivatives", true},
     OracleRow{Oracle::sensitivity, "sensitivity",
-              "∂y/∂x, (m, k) a sample, through the physics alone",
+              "∂y/∂x, (m, k) per sample, through the physics alone",
               [](const OracleSizes& of) { return matrix_price(of, of.inputs, of.outputs); },
               "the Jacobian is not offered, or would be too large to form", true, false},
     OracleRow{Oracle::hessian_product, "hessian_product", "∇²L v",
@@ -95,7 +95,7 @@ inline constexpr std::array kOracleTable = {
               // a pullback that sums the squares of what passes
               [](const OracleSizes&) -> std::int64_t { return 1; },
               "there is no network of dense layers or of convolutions", false, false},
-    OracleRow{Oracle::truth, "truth", "the x* that made y*: a privilege",
+    OracleRow{Oracle::truth, "truth", "the x* that produced y* (extra information)",
               [](const OracleSizes&) -> std::int64_t { return 0; }, "the problem knows no true x"}};
 inline constexpr std::size_t kOracles = kOracleTable.size();
 

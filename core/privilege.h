@@ -27,7 +27,7 @@ inline std::string_view name_of(Privilege privilege) {
   return kPrivilegeNames[static_cast<std::size_t>(privilege)];
 }
 
-// Whether a record's privilege is that the physics are inverted for the method.
+// Whether this extra information is an inverse of the physics.
 inline bool is_inverse_of_physics(std::string_view privilege) {
   using enum Privilege;
   return std::ranges::any_of(std::array{exact_inverse, damped_inverse, approximate_inverse},

@@ -1,6 +1,6 @@
 // Products of dense matrices: by OpenBLAS, compiled once and without Eigen's packing on the heap,
-// and by sums of a fixed order of our own where a row's bits must not depend on its place. The only
-// door to cblas.h.
+// and by our own sums in a fixed order where the bits of a row must not depend on its place. The
+// only adapter to cblas.h.
 #pragma once
 
 #include <complex>

@@ -1,4 +1,4 @@
-// Products whose rows do not depend on their place. One register holds as many rows of a column; a
+// Products whose rows do not depend on their place. One register holds several rows of a column; a
 // tile of sums stays in registers while the inner index runs, as in Goto, van de Geijn (2008), but
 // without their packing: the arrays of small networks lie in the caches as they are.
 #include <algorithm>
@@ -87,8 +87,8 @@ void columns(Panel<Scalar> A, const Panel<Scalar>& B, Index rows, Index depth, R
   if (rows > 0) tile<1, Columns>(A, B, depth, C);
 }
 
-// The inner index in blocks whose part of B stays in the first cache; what a block leaves in C is
-// exactly what its registers held, so blocks change no bits.
+// The inner index in blocks whose part of B stays in the first cache. A block leaves in C exactly
+// the contents of its registers, so blocks change no bits.
 template <class Scalar>
 void all_columns(Panel<Scalar> A, Panel<Scalar> B, Index rows, Index width, Index depth,
                  Result<Scalar> C) {
@@ -122,7 +122,8 @@ void multiply(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scalar>::In 
     all_columns<Scalar>({A.data() + first, A.outerStride(), 1}, right, count, width, depth,
                         {C.data() + first, C.outerStride(), keep});
   };
-  constexpr Real kWorthSharing = 4e6;  // multiply-adds: some 50 µs, against 5 to wake a thread
+  constexpr Real kWorthSharing =
+      4e6;  // multiply-adds: some 50 µs, compared with 5 µs to wake a thread
   constexpr Index kShare = 16 * kLanes<Scalar>;
   if (library_threads() == 1 || static_cast<Real>(rows * width) * Real(depth) < kWorthSharing)
     return some_rows(0, rows);

@@ -1,4 +1,4 @@
-// Counter-based random streams by Random123, the only door to it.
+// Counter-based random streams by Random123; the only adapter to it.
 #include "core/random.h"
 
 #include <Random123/philox.h>

@@ -95,14 +95,14 @@ namespace {
 
 struct Counted {
   pid_t process;
-  double seconds;  // at the last look: what has ended tells no more
+  double seconds;  // at the last reading: a process that has ended reports nothing more
 };
 
 struct Ledger {
   std::mutex mutex;
   std::vector<Counted> running;
   double ended_seconds = 0;
-  // Who counts nobody pays nothing, and a fork of who counts does not count the same again.
+  // A process that counts no others costs nothing extra, and its fork does not count them twice.
   std::atomic<pid_t> owner = 0;
 };
 

@@ -39,8 +39,8 @@ std::string quoted(const std::string& value);
 // As texts, by their declared names; UsageError where a name is given twice.
 OptionValues options_of(const Spec& spec);
 
-// "sine" of "sine[xi=32]", for labels made of specs that are no component's. Components, records
-// and sheets carry their names.
+// "sine" of "sine[xi=32]", for labels that do not come from a component. Components, records and
+// component files carry their names.
 std::string name_of_spec(std::string_view spec);
 
 // "N" -> 0..N-1; "a..b" inclusive; "=5" -> 5; commas join. UsageError, before they are listed,

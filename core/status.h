@@ -43,7 +43,7 @@ inline bool is_failure(Status status) {
          status == Status::memory;
 }
 
-// What the user of a problem wants of a run: a small loss, or the x that was sought.
+// The success criterion of a problem: a small loss, or the true x.
 
 enum class Aim {
   loss,  // f − f_L ≤ τ s: the loss is reached, whatever x
@@ -63,14 +63,14 @@ inline std::optional<Aim> aim_of(std::string_view name) {
 
 struct Budget {
   std::int64_t iterations = 1000;
-  std::int64_t work = std::numeric_limits<std::int64_t>::max();  // declared prices, in forwards
+  std::int64_t work = std::numeric_limits<std::int64_t>::max();  // nominal costs, in forwards
   double seconds = std::numeric_limits<double>::infinity();      // soft; hard is twice that
-  // τ of f ≤ f_L + τ s, or of the error in x where that is sought: f ≤ f_L + τ² s. 0 goes on to the
-  // end of the budget.
+  // τ of f ≤ f_L + τ s, or, if the criterion is x, of the error in x: f ≤ f_L + τ² s. 0 continues
+  // to the end of the budget.
   double target = 1e-10;
 };
 
-// What every verb tells the shell that called it.
+// The exit code of every verb.
 
 enum ExitCode {
   kGood = 0,

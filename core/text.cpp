@@ -85,7 +85,8 @@ std::string_view cut(std::string_view text, std::size_t most_bytes) {
   std::size_t end = most_bytes;
   const auto is_inside = [&] { return (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U; };
   while (end > 0 && most_bytes - end < kLongest && is_inside()) --end;
-  return text.substr(0, is_inside() ? most_bytes : end);  // of no character: it is cut anywhere
+  return text.substr(
+      0, is_inside() ? most_bytes : end);  // inside an invalid sequence it is cut anywhere
 }
 
 std::string printable(std::string_view text) {

@@ -1,5 +1,5 @@
-// The one door for text that others wrote: of components and their errors, of files, of command
-// lines and paths. What comes in is made valid; what goes to a terminal is made harmless.
+// The only entry for external text: of components and their errors, of files, of command lines and
+// paths. Input is made valid UTF-8; output to a terminal loses its control sequences.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ void say(std::FILE* out, std::string_view text);
 
 inline constexpr std::uint64_t kUncountable = std::numeric_limits<std::uint64_t>::max();
 
-// Most iterations, and most work, that can be asked for: their sums and products still fit.
+// The largest iterations and work of a budget: their sums and products still fit.
 inline constexpr std::int64_t kMostAmount = 1'000'000'000'000'000;
 
 inline std::uint64_t product_of(std::uint64_t a, std::uint64_t b) {

@@ -135,7 +135,7 @@ constexpr bool kIsPortable = false;
 constexpr CacheSizes kCacheSizes{ISOLINE_CACHE_SIZES};  // by the build: core/CMakeLists.txt
 
 constexpr const char* kKernel = "OPENBLAS_CORETYPE";
-// Beside it: what we chose there ourselves, so that what a user chose is told apart.
+// A second variable stores our own choice, to distinguish it from the user's.
 constexpr const char* kOurKernel = "ISOLINE_KERNEL";
 
 using Setting = std::pair<const char*, std::string>;
@@ -221,7 +221,7 @@ void share(std::size_t count, const std::function<void(std::size_t)>& work,
   std::exception_ptr failure;
   std::mutex mutex;
   const auto some = [&](const Listener& told) {
-    std::size_t due = 0;  // whichever of them this thread happens to draw
+    std::size_t due = 0;  // the next task, for whichever thread is free
     try {
       for (std::size_t i = next++; i < count; i = next++) {
         work(i);

@@ -1,5 +1,5 @@
-// The processor as this process reads it, by its own CPUID instruction: under an emulator that is
-// the emulated one, where the system's files tell of the host.
+// The processor as this process sees it, by its own CPUID instruction. Under an emulator this is
+// the emulated processor, whereas the system's files describe the host.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,8 @@ struct Processor;
 // caches that this was built for. Replaces the process where the environment has to change.
 void prepare_libraries(char** arguments);
 
-// What OpenBLAS computes with, and by whose choice: "OpenBLAS", "isoline", "user" or "portable".
+// The kernel that OpenBLAS uses, and the origin of this choice: "OpenBLAS", "isoline", "user" or
+// "portable".
 struct LibraryKernel {
   std::string name, chosen_by;
 };
@@ -39,12 +40,12 @@ LibraryKernel library_kernel();
 
 std::string fourier_version();  // of FFTW: "3.3.10"; core/fourier.cpp has it
 
-// The kernel to ask OpenBLAS for: "SkylakeX" or "Haswell", where `own`, its choice, is below what
-// the processor has; else empty.
+// The kernel to select in OpenBLAS: "SkylakeX" or "Haswell" if `own`, its choice, is below the
+// processor's features; otherwise empty.
 std::string better_kernel(const Processor& processor, const std::string& own);
 
-// Bytes of the caches that Eigen blocks its products by. Left to itself it asks the processor, and
-// gives other bits on another one.
+// Bytes of the caches by which Eigen blocks its products. By default Eigen reads them from the
+// processor, and gives other bits on another one.
 struct CacheSizes {
   std::ptrdiff_t l1, l2, l3;
 };
@@ -54,9 +55,9 @@ CacheSizes cache_sizes();
 void set_library_threads(int threads);
 int library_threads();
 
-// Calls work(task, thread) once for every task in [0, tasks), on all threads of the libraries. Who
-// takes which task is left to chance, so nothing may depend on it. The only door to OpenMP, whose
-// threads begin with the first call: never before a fork.
+// Calls work(task, thread) once for every task in [0, tasks), on all threads of the libraries. The
+// assignment of tasks to threads is arbitrary; nothing may depend on it. The only adapter to
+// OpenMP, whose threads begin with the first call, never before a fork.
 void run_tasks(Index tasks, const std::function<void(Index task, int thread)>& work);
 
 template <class Work>
@@ -76,7 +77,7 @@ class OneThread {
   int threads_;
 };
 
-// Is told now and then how many are done, of how many.
+// Receives from time to time how many tasks are done, and of how many.
 using Listener = std::function<void(std::size_t done, std::size_t all)>;
 
 // Calls work(0) … work(count − 1), each once, in any order. The listener is called by the calling

@@ -1,4 +1,4 @@
-// Texts put into a trace, and the laws that hold for all of it.
+// Texts in a trace, and the constraints on all of it.
 #include "core/trace.h"
 
 #include <algorithm>
@@ -147,7 +147,7 @@ std::string defect_of(const Trace& trace) {
   if (!are_frames_sound(trace.frames)) return "fields of a size or at iterations that cannot be";
   if (!are_spectra_sound(trace.spectra)) return "spectra of a size or at iterations that cannot be";
   if (!are_texts_sound(trace)) return "a text without an end";
-  if (!are_series_sound(trace)) return "more series than there is room for";
+  if (!are_series_sound(trace)) return "more series than the trace has room for";
   if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps))
     return "counts that cannot be";
   return "";

@@ -20,7 +20,7 @@ namespace isoline {
 struct TracePoint {
   std::int64_t iteration = 0;
   OracleCounts counts{};  // cumulative
-  std::int64_t work = 0;  // counts times declared prices
+  std::int64_t work = 0;  // counts times nominal costs
   double wall_seconds = 0, processor_seconds = 0;
   double loss = 0;
   double x_error = 0;        // distance to the nearest solution; nan where none is known
@@ -48,7 +48,7 @@ struct TraceHit {
 
 struct Trace {
   static constexpr int kPoints = 512;  // iterations 0-100, then 32 a decade: enough for 1e14
-  static constexpr int kInputs = 3, kOutputs = 16;  // largest x and y whose path is kept
+  static constexpr int kInputs = 3, kOutputs = 16;  // largest x and y with a stored path
   static constexpr int kSeries = TracePoint::kSeries;
   static constexpr int kExhibit = 4096;  // numbers of each array of the exhibit
   static constexpr int kText = 1024;
@@ -61,7 +61,7 @@ struct Trace {
   double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
   int path_inputs = 0, path_outputs = 0;  // sizes of x and y in the path; 0: not kept
 
-  // What was learned, on some small samples of the validation, one a column.
+  // What a network has learned, on some validation samples, one per column.
   struct Exhibit {
     int rows = 0, columns = 0;
     double value[kExhibit];
@@ -80,8 +80,7 @@ struct Trace {
     Frames() { std::fill_n(iteration, kPlaces, -1); }
   };
   Frames frames;
-  // Singular values of J = ∂y/∂θ over the batch of a step, at some kept iterations, where they are
-  // asked for.
+  // Singular values of J = ∂y/∂θ over the batch of a step, at some kept iterations, if requested.
   struct Spectra {
     static constexpr int kPlaces = 48;    // iterations 0, 1, 2, 4, 8, …, and the last
     static constexpr int kValues = 2048;  // of one spectrum
@@ -117,9 +116,8 @@ struct Trace {
 // What fits, cut at a character.
 void set_text(char (&out)[Trace::kText], std::string_view text);
 
-// What cannot be, in a trace that another process had its hands on; empty where all of it is sound:
-// every count, size, choice and text is within its law, so that whoever reads it reads nothing
-// else.
+// The error in a trace that another process may have overwritten; empty if the trace is valid:
+// every count, size, choice and text is in its range, so that readers need no checks of their own.
 std::string defect_of(const Trace& trace);
 
 }  // namespace isoline

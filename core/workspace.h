@@ -21,7 +21,7 @@ class PieceDigest {
   std::uint64_t state_ = 0xcbf29ce484222325;
 };
 
-// What a forward pass leaves behind where the map has kinks: a component's Scratch is one, too.
+// The differentiable pieces of a forward pass with nondifferentiable points; a Scratch is one, too.
 struct Pieces {
   virtual ~Pieces() = default;
   virtual void add_choices(PieceDigest& digest) = 0;  // of the last forward pass

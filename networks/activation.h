@@ -29,8 +29,8 @@ auto normal_density(FlatRef<Scalar> z) {
   return kHeight * (Scalar(-0.5) * z.square()).exp();
 }
 
-// out = Φ(z), in double by the C library; in float by Hastings' rational form (Abramowitz, Stegun
-// (1964), 7.1.26), whose error of 7.5e-8 is that of the type, and which vectorizes.
+// out = Φ(z): in double by the C library, in float by Hastings' rational form (Abramowitz, Stegun
+// (1964), 7.1.26), whose error of 7.5e-8 is that of single precision, and which vectorizes.
 template <class Scalar>
 void normal_distribution(FlatRef<Scalar> z, FlatOut<Scalar> out) {
   if constexpr (std::is_same_v<Scalar, double>) {
@@ -89,7 +89,7 @@ void activate(Activation kind, FlatRef<Scalar> z, FlatOut<Scalar> a) {
   }
 }
 
-// g = s'(z) g, given a = s(z) too; `room` is as long.
+// g = s'(z) g, given a = s(z); `room` is a scratch array of the same length.
 template <class Scalar>
 void multiply_by_slope(Activation kind, FlatRef<Scalar> z, FlatRef<Scalar> a, FlatOut<Scalar> g,
                        FlatOut<Scalar> room) {

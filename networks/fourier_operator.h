@@ -14,9 +14,9 @@ namespace isoline::networks {
 
 class TruncatedFourier {
  public:
-  using Spectra = Gemm<Complex>::Array;  // (grids, 2M²), one grid a row, mode k + M q a column
+  using Spectra = Gemm<Complex>::Array;  // (grids, 2M²): one grid per row, mode k + M q per column
 
-  // Transforms share room, which the caller owns.
+  // Transforms share scratch arrays, which the caller owns.
   struct Room {
     Gemm<float>::Array half;  // (2M, P·grids), transformed along rows; complex numbers by pairs
     Spectra modes;            // (2M², grids)
@@ -26,8 +26,8 @@ class TruncatedFourier {
   Index size() const { return size_; }
   Index modes() const { return 2 * modes_ * modes_; }
 
-  // `none` is w = 1; `inverse` makes synthesis the inverse real transform of a half spectrum whose
-  // other modes are 0: w_k = c_k/P², c₀ = 1 and else 2.
+  // `none`: w = 1. `inverse`: synthesis is the inverse real transform of a half spectrum whose
+  // other modes are 0; w_k = c_k/P², c₀ = 1, otherwise c_k = 2.
   enum class Weights { none, inverse };
 
   void analyze(Weights weights, Gemm<float>::In grids, Spectra& S, Room& room) const;
@@ -43,8 +43,9 @@ class TruncatedFourier {
 // A Fourier neural operator on square grids, Li, Kovachki, Azizzadenesheli et al. (2021):
 //   lift 3 -> C | pad | four layers z = K a + W a + b, a' = gelu(z) but for the last | crop |
 //   C -> 128, gelu | 128 -> 1;   K a = F⁻¹ R F a on the lowest modes, R (C, C) for each
-// A batch is a matrix (cells·B, C), one channel a column: pointwise layers are products with [W b]ᵀ
-// and a column of ones, as in the perceptron, and all grids stand side by side for the transform.
+// A batch is a matrix (cells·B, C), one channel per column. Pointwise layers are products with [W
+// b]ᵀ and a column of ones, as in the perceptron, and all grids stand side by side for the
+// transform.
 
 // Columns with one of ones behind them, in whole vector registers.
 class Field {
@@ -136,7 +137,7 @@ class FourierOperator final : public Network {
   // a = Wᵀ g + Kᵀ g + keep a
   void apply_adjoint(Parameters& theta, const Layer& layer, Field& g, Spectra& gS, float keep,
                      Field& a, Own& own) const;
-  // [∂W ∂b] = Σ g [a 1]ᵀ and R likewise, on top of keep times what is there
+  // [∂W ∂b] = Σ g [a 1]ᵀ, and R alike, added to `keep` times the previous values
   void gather(const Layer& layer, Field& g, Spectra& gS, Field& a, Spectra& S, bool ones,
               float keep, Own& own) const;
   // Grids of one layer's edge in those of another's: the near corner, and zeros around it.

@@ -1,7 +1,7 @@
 // A network whose output has the mean of its input, sample by sample, as heat conserves it:
 //   x = N(in) + mean(in) − mean(N(in))
-// Holl, Koltun, Thuerey (2022), the correction behind the network of the heat experiment. With the
-// projection C = I − 1 1ᵀ/k all products are those of N with C before or behind it.
+// Holl, Koltun, Thuerey (2022): the correction after the network of the heat experiment. With the
+// projection C = I − 1 1ᵀ/k, all products are those of N with C before or after it.
 #pragma once
 
 #include <memory>

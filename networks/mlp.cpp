@@ -1,4 +1,4 @@
-// The multilayer perceptron by name, and the products that methods beyond the gradient ask of it:
+// The multilayer perceptron by name, with the products that methods beyond the gradient need:
 // second derivatives, the batch Jacobian and the factors of each layer.
 #include <fmt/format.h>
 
@@ -57,7 +57,7 @@ class Perceptron final : public Network {
     void add_choices(PieceDigest& digest) override;
 
     Activation activation;
-    Index samples = -1;  // B that the arrays have room for
+    Index samples = -1;  // B that the arrays are allocated for
     std::vector<Layer> layers;
     Parameters theta, v, gradient;
   };
@@ -155,7 +155,7 @@ void Perceptron<Scalar>::forward(VectorRef theta, BatchRef in, BatchOut x, Works
   x = own.layers.back().z.topRows(B).transpose().template cast<Real>();
 }
 
-// On which side of its kink each neuron of the hidden layers is.
+// For each hidden neuron, the side of its nondifferentiable point.
 template <class Scalar>
 void Perceptron<Scalar>::Passes::add_choices(PieceDigest& digest) {
   if (activation != Activation::relu) return;

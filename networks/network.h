@@ -1,6 +1,6 @@
-// A differentiable map θ ↦ x = N(input; θ). Parameters are one flat vector; one sample a column.
-// Const: what a forward pass leaves behind lives in the caller's Workspace, and the products are
-// taken at the (θ, input) of the last forward.
+// A differentiable map θ ↦ x = N(input; θ). Parameters are one flat vector; columns are samples.
+// Const: the results of a forward pass live in the caller's Workspace, and the products are taken
+// at the (θ, input) of the last forward.
 #pragma once
 
 #include <memory>
@@ -49,8 +49,8 @@ class Network {
   virtual Vector start(RandomStream&) const = 0;  // θ₀, (n)
   virtual std::vector<Block> layout() const = 0;
   virtual bool is_identity() const { return false; }
-  // What the tests may ask: x_b depends on column b of the input alone (not so with batch norm);
-  // 1e-5 instead of 1e-12; steps that cross a kink drawn anew.
+  // Properties that tests use: x_b depends only on column b of the input (not with batch norm); the
+  // tolerance is 1e-5 instead of 1e-12; steps across a nondifferentiable point are resampled.
   virtual bool has_independent_samples() const { return true; }
   virtual bool is_single_precision() const { return false; }
   virtual bool has_kinks() const { return false; }
@@ -65,7 +65,7 @@ class Network {
   virtual void curvature(VectorRef v, BatchRef u, BatchRef du, VectorOut out, Workspace& w) const;
 
   // ∂y/∂θ of all samples stacked, (m·B, n), from ∂y/∂x of each side by side, (m, k·B). By default
-  // one pullback a row.
+  // one pullback per row.
   virtual void jacobian(BatchRef dy_dx, BatchOut J, Workspace& w) const;
 
   // The factors of each dense layer, in order, under the cotangent u (k, B).

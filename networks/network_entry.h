@@ -14,8 +14,8 @@ namespace isoline::networks {
 
 class Network;
 
-// What a network is asked to map. Grids are columns of channels·N² numbers, channel by channel,
-// each N×N column major.
+// The shapes of a network's input and output. Grids are columns of channels·N² numbers, channel by
+// channel, each N×N column major.
 struct NetworkShape {
   Index inputs, outputs;                          // i, k
   Index grid = 0;                                 // N where samples are grids, else 0
@@ -36,6 +36,6 @@ using NetworkRegistry = Registry<NetworkEntry>;
 // Every network, registered once.
 const NetworkRegistry& network_registry();
 
-void register_networks(NetworkRegistry& registry);  // generated: one call a file
+void register_networks(NetworkRegistry& registry);  // generated: one call per file
 
 }  // namespace isoline::networks

@@ -1,5 +1,5 @@
 // AdaHessian, Yao et al. (2021): Adam with the diagonal of the Hessian in place of the gradient in
-// v. D = z ⊙ ∇²L z, z of random signs (Hutchinson), one probe a step; m ← β₁ m + (1 − β₁) ∇L, v ←
+// v. D = z ⊙ ∇²L z, z of random signs (Hutchinson), one probe per step; m ← β₁ m + (1 − β₁) ∇L, v ←
 // β₂ v + (1 − β₂) D², θ ← θ − η m̂/(√v̂ᵖ + ε). As in torch_optimizer, the absolute values |D| of a
 // convolution's taps are averaged for each pair of channels, so also those of the modes of a
 // Fourier layer, and p is ½ where the paper has 1.

@@ -1,6 +1,6 @@
-// The door to Ceres (Agarwal, Mierle et al., ceres-solver.org): its trust-region methods on r = (y
-// − y*)/√B, with dense QR, and its line searches on L. Each iteration of its own loop, rejected or
-// not, is reported to the meter. Its tolerances are zero: it stops where a step changes nothing.
+// The adapter to Ceres (Agarwal, Mierle et al., ceres-solver.org): its trust-region methods on r =
+// (y − y*)/√B, with dense QR, and its line searches on L. Each iteration of its own loop, rejected
+// or not, is reported to the meter. Its tolerances are zero: it stops where a step changes nothing.
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Map;
 
-// What Ceres asks of one θ, in several calls, costs one forward pass. No exception crosses Ceres:
-// it is kept and thrown again after the solve.
+// Several calls of Ceres at one θ cost one forward pass. No exception crosses Ceres: it is stored
+// and thrown again after the solve.
 struct Evaluation {
   Meter& f;
   Vector theta;             // (n)
@@ -95,7 +95,7 @@ struct Watch final : ceres::IterationCallback {
 
 template <class Options>
 void set_common(Options& options, Watch& watch) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of is ours to record
+  FLAGS_minloglevel = google::GLOG_FATAL;  // our record states Ceres' warnings
   options.max_num_iterations = std::numeric_limits<int>::max();
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 0;
   options.logging_type = ceres::SILENT;
@@ -191,8 +191,9 @@ OptimizerEntry entry_of(const TrustRegion& m) {
             ceres::Solver::Options o;
             o.linear_solver_type = ceres::DENSE_QR;
 #ifdef ISOLINE_PORTABLE
-            // The Eigen inside Ceres blocks its products by caches that it asks the processor for,
-            // which can't be fixed from outside; LAPACK, of our OpenBLAS, has its kernel alone.
+            // The Eigen inside Ceres blocks its products by the cache sizes that it reads from the
+            // processor, which we cannot fix. LAPACK, from our OpenBLAS, depends on its kernel
+            // only.
             o.dense_linear_algebra_library_type = ceres::LAPACK;
 #endif
             o.trust_region_strategy_type = m.strategy;

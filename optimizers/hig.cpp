@@ -1,8 +1,8 @@
 // Half-inverse gradients, Schnell, Holl, Thuerey (2022): Δθ = −η V f(σ) Uᵀ g over the stacked
 // Jacobian J = U diag(σ) Vᵀ and g = ∂L/∂y, f(σ) = σ^(−κ). κ = 1 is Gauss-Newton, ½ the published
 // method, −1 gradient descent. Singular values not above the cut-off, relative to the largest, are
-// discarded, as published; or, against which the book argues, clamped to it. Its damped form is
-// ours: f(σ) = σ/(σ² + μ)^((κ+1)/2) with μ as a share of σ₁² is the same for large σ and decays for
+// discarded, as published; or, against which the book argues, clamped to it. The damped form is our
+// own: f(σ) = σ/(σ² + μ)^((κ+1)/2) with μ as a share of σ₁² is the same for large σ and decays for
 // small ones, as a Tikhonov filter does for κ = 1, instead of growing up to a cut-off.
 #include "optimizers/optimizer.h"
 #include "optimizers/spectral_step.h"
@@ -117,7 +117,7 @@ void register_hig(OptimizerRegistry& registry) {
        .kind = Kind::half_inverse,
        .formula = "θ ← θ − η V Λ (Λ² + μ)^(−(κ+1)/2) Uᵀ g,  J = U Λ Vᵀ,  g = ∂L/∂y",
        .source = "after Schnell, Holl, Thuerey (2022); μ as in Tikhonov's filter",
-       .note = "Ours: the half-inverse decays where singular values vanish, where the published "
+       .note = "Our own: the half-inverse decays where singular values vanish, where the published "
                "one grows up to its cut-off. With κ = 1 it is Levenberg-Marquardt's step of fixed "
                "damping. Scales as hig does.",
        .needs = {Oracle::forward},

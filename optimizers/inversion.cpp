@@ -16,7 +16,7 @@ class ByProblem final : public Inversion {
  public:
   explicit ByProblem(Real step) : step_(step) {}
 
-  // A sample whose inverse fails keeps its x, and so teaches nothing.
+  // A sample whose inverse fails keeps its x, and gives no gradient.
   void invert(Meter& f, Linearization& at, Matrix& found) override {
     const bool undoes_physics = f.inverse_kind() == Inverse::exact;
     wanted_ = f.target();

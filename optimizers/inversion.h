@@ -31,8 +31,8 @@ inline Real saddle_free_length(Real slope, Real curvature, Real mean, Real max_l
   return curvature > mean || is_within ? slope / size : max_loss_change / slope;
 }
 
-// Limited-memory BFGS (Nocedal 1980) for the methods that minimize a misfit f ≥ 0 inside a step,
-// such as inverting a physics numerically. Luksan's code, by way of NLopt.
+// Limited-memory BFGS (Nocedal 1980) for methods that minimize a misfit f ≥ 0 inside a step, such
+// as the numerical inversion of a physics. Uses Luksan's code through NLopt.
 
 // f and its gradient at x, both (n).
 using ValueAndGradient = std::function<Real(VectorRef x, VectorOut gradient)>;
@@ -40,7 +40,7 @@ using ValueAndGradient = std::function<Real(VectorRef x, VectorOut gradient)>;
 struct LbfgsLimits {
   Index evaluations = 200;
   Real enough = 0;                          // stop at f ≤ enough
-  std::function<bool()> is_over = nullptr;  // asked before each evaluation
+  std::function<bool()> is_over = nullptr;  // called before each evaluation
 };
 
 struct LbfgsResult {
@@ -67,21 +67,21 @@ struct InversionOptions {
 inline void fields(InversionOptions& o, auto& field) {
   field("step", o.step, above(0), "step length η toward y*");
   field("inverse", o.inverse, Choices{"auto", "analytic", "damped", "newton", "lbfgs"},
-        "local inverse: the problem's own, which damped asks to be a damped one; a saddle-free "
+        "local inverse: the problem's own (damped requires a damped one); a saddle-free "
         "Newton step; or L-BFGS; auto: the problem's own where there is one, else L-BFGS");
   field("max-loss-change", o.max_loss_change, above(0),
         "of inverse=newton: limit Δ on the linear change of a sample's loss along a direction of "
         "low or negative curvature");
   field("inverse-evaluations", o.inverse_evaluations, between(1, 1e6),
-        "of inverse=lbfgs: most evaluations in a step");
+        "for inverse=lbfgs: most evaluations per step");
 }
 
 std::unique_ptr<Inversion> make_inversion(const InversionOptions& options, Inverse kind);
 OracleSet needs_of(const InversionOptions& options, const Problem& problem);  // and the network
-// Why it can't treat a problem, in words; empty if it can.
+// The reason why it cannot treat a problem; empty if it can.
 std::string objection_to(const InversionOptions& options, const Problem& problem);
 
-// The same for the entry of a method whose options hold an `inversion`.
+// The same for the entry of a method whose options contain an `inversion`.
 template <class Options>
 OracleSet needs_of_inversion(const OptionValues& options, const Problem& problem) {
   return needs_of(read_options<Options>(options).inversion, problem);

@@ -6,10 +6,10 @@
 // places were uncorrelated and alike; where the physics correlates them the curvature is larger, by
 // up to the number of places, and the rate must be smaller. g is that of √(∂²ℓ/∂yᵢ²) eᵢ, ℓ a
 // sample's loss, for each output i in turn, so that G is exact; of a convolution, or of more than
-// 64 outputs, that of all outputs at once with random signs, one draw a step. Of the loss's
+// 64 outputs, that of all outputs at once with random signs, one sample per step. Of the loss's
 // curvature the diagonal is used, which for ½‖y − y*‖² is all of it. Batch norm's γ and β have no
 // such form: each steps along its gradient, over λ and the mean of its curvature's diagonal under
-// the same draw. Running means as the paper's; its rescaling by the exact Gauss-Newton matrix,
+// the same signs. Running means as the paper's; its rescaling by the exact Gauss-Newton matrix,
 // momentum and adaptive λ are left out.
 #include <fmt/format.h>
 
@@ -97,7 +97,7 @@ struct Kfac {
     std::vector<LayerMoments> moments;
     Linearization at;
     Matrix unit, cotangent;  // (m, B)
-    Vector gradient, drawn;  // (n) ∇L, and Jᵀ of a drawn cotangent
+    Vector gradient, drawn;  // (n) ∇L, and Jᵀ of a random cotangent
   };
   static void persist(State& s, Archive& archive) {
     std::size_t layers = s.layers.size();
@@ -143,7 +143,7 @@ struct Kfac {
   // The share of the running means that is kept, min(1 − 1/t, decay).
   Real keep(State& s) const { return std::min(1 - 1 / static_cast<Real>(++s.steps), decay); }
 
-  // √(∂²ℓ/∂y²) times `unit`, whose numbers are 0, 1 and −1.
+  // √(∂²ℓ/∂y²) times `unit`, whose entries are 0, 1 and −1.
   static void weigh(State& s) {
     const Real samples = static_cast<Real>(s.unit.cols());
     s.at.loss_curvature(s.unit, s.cotangent);

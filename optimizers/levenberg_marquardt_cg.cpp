@@ -96,7 +96,7 @@ struct LevenbergMarquardtCg {
 
 void fields(LevenbergMarquardtCg& o, auto& field) {
   field("cg-iterations", o.cg_iterations, between(1, 1e6),
-        "most conjugate-gradient iterations within a step");
+        "most conjugate-gradient iterations per step");
 }
 
 }  // namespace

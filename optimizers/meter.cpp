@@ -1,4 +1,4 @@
-// The meter: what a method may ask, counted.
+// The meter: the oracles that a method may call, counted.
 #include "optimizers/meter.h"
 
 #include <fmt/format.h>
@@ -70,9 +70,8 @@ Real Meter::loss(VectorRef theta) {
 }
 
 void Meter::refuse(Oracle oracle) const {
-  throw std::logic_error(
-      fmt::format("the method asked for the oracle '{}', which it does not declare that it needs",
-                  name_of(oracle)));
+  throw std::logic_error(fmt::format(
+      "the method called the oracle '{}', which it does not declare as needed", name_of(oracle)));
 }
 
 void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
@@ -82,7 +81,7 @@ void Meter::name_series(const std::vector<std::string>& names) {
   all.insert(all.end(), names.begin(), names.end());
   const std::string text = fmt::format("{}", fmt::join(all, "\n"));
   require(all.size() <= Trace::kSeries && text.size() < Trace::kText,
-          "there are more series than there is room for");
+          "the trace has no room for so many series");
   set_text(trace_.series_names, text);
 }
 
@@ -130,8 +129,8 @@ Status Meter::begin(VectorRef theta) {
   return status_;
 }
 
-// s = min(f₀ − f_L, the problem's scale). Where x is sought, a target τ is one of its error: the
-// loss is quadratic in that, and is stopped at τ².
+// s = min(f₀ − f_L, the problem's scale). If the criterion is the error in x, a target τ refers to
+// it: the loss is quadratic in that error, and the run stops at τ².
 void Meter::set_scales() {
   trace_.x_scale = problem_.x_scale(judging());
   trace_.x_floor = problem_.x_floor(judging());
@@ -163,8 +162,9 @@ void Meter::persist(Archive& archive) {
   archive(counts_, work_, iteration_, next_kept_, best_loss_, next_target_, target_loss_,
           targets_met_, stall_loss_, stall_iteration_, status_, batch_loss_, batch_x_error_,
           judged_.loss, judged_theta_, previous_, wall, processor);
-  const bool are_spectra_wanted = trace_.spectra.are_wanted;  // by who goes on
-  archive.raw(&trace_, sizeof trace_);  // plain data, but for atomics that nobody waits for
+  const bool are_spectra_wanted =
+      trace_.spectra.are_wanted;        // the caller decides this, not the file
+  archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
   trace_.spectra.are_wanted = are_spectra_wanted;
   if (!archive.is_reading()) return;
   require_sound();
@@ -174,14 +174,14 @@ void Meter::persist(Archive& archive) {
   watch_.resume();
 }
 
-// What a file brought back is this run's, or nothing: sizes and counts are within their laws.
+// The state from a file must be valid for this run: all sizes and counts are in their ranges.
 void Meter::require_sound() const {
   const Index n = problem_.unknowns();
   const bool is_sound = targets_met_ >= 0 && targets_met_ <= kRungs && iteration_ >= 0 &&
                         work_ >= 0 && status_ == Status::running && batch_loss_.is_sound() &&
                         batch_x_error_.is_sound() && previous_.size() == n &&
                         (judged_theta_.size() == n || judged_theta_.size() == 0);
-  require(is_sound, "the state of the meter is none of this run");
+  require(is_sound, "the state of the meter belongs to another run");
   const std::string defect = defect_of(trace_);
   require(defect.empty(), [&] { return "its trace holds " + defect; });
 }
@@ -226,7 +226,7 @@ void Meter::finish(VectorRef theta, Status verdict) {
     measure(theta);
     observe(judged_.loss);
   }
-  trace_.last.counts = counts_;  // a library may have asked much since its last iteration
+  trace_.last.counts = counts_;  // a library may have made many calls since its last iteration
   trace_.last.work = work_;
   trace_.last.wall_seconds = watch_.seconds();
   trace_.last.processor_seconds = watch_.processor_seconds();
@@ -241,7 +241,7 @@ void Meter::finish(VectorRef theta, Status verdict) {
   trace_.status = verdict;
 }
 
-// The loss and what surrounds it at θ, by the harness itself, charged to nobody.
+// The loss and related values at θ, evaluated by the harness; they count for no oracle.
 void Meter::measure(VectorRef theta) {
   judged_theta_ = theta;
   problem_.forward(theta, judging(), judged_);
@@ -381,7 +381,7 @@ void Meter::keep_spectrum(bool is_last) {
   ++kept.taken;
 }
 
-// One forward pass and what is asked of it, each question charged to the meter.
+// One forward pass and its products; the meter counts each.
 
 void Linearization::cotangent(Matrix& g) const {
   g.resize(point_.y.rows(), point_.y.cols());

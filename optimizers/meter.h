@@ -1,5 +1,6 @@
-// The only way from an optimizer to a problem: it counts every oracle by kind, refuses those the
-// method did not ask for, times, budgets and traces. Optimizers never log and never judge.
+// The only access of an optimizer to a problem. It counts every oracle by kind, refuses those that
+// the method did not declare, times, budgets and traces. Optimizers never log and never evaluate
+// success.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +25,7 @@ class RunningMean {
   void add(Real value) { values_[static_cast<std::size_t>(count_++ % kMost)] = value; }
   bool is_sound() const { return count_ >= 0; }  // what a file brought back need not be
   Real last() const { return count_ > 0 ? at(count_ - 1) : 0; }
-  // Over the last `most` values, or as many as there are; nan where there is none.
+  // Over the last `most` values, or all if there are fewer; NaN if there are none.
   Real mean(std::int64_t most) const {
     const std::int64_t taken = std::min(most, count_);
     Real sum = 0;
@@ -49,7 +50,7 @@ using problems::Problem;
 
 class Meter;
 
-// One forward pass and everything asked of it, which never repeats it. Owned by the method, reused.
+// One forward pass and its products, which never repeat it. Owned and reused by the method.
 class Linearization {
  public:
   const Matrix& x() const { return point_.x(); }  // (k, B)
@@ -92,7 +93,7 @@ class Meter {
   void linearize_physics(BatchRef x, Linearization& at);  // at an x, the network left out
   // The samples of this step: the same for every call within it.
   const Matrix& target() const { return samples_->target; }  // y*, (m, B)
-  const Matrix& truth();                                     // x*, (k, B): a privilege
+  const Matrix& truth();                                     // x*, (k, B): extra information
   std::vector<Block> layout() const { return problem_.layout(); }
   Index unknowns() const { return problem_.unknowns(); }
   Index residuals() const { return problem_.residuals(); }
@@ -102,9 +103,9 @@ class Meter {
   bool has_fresh_batches() const { return problem_.has_fresh_batches(); }
   bool is_granted(Oracle oracle) const { return granted_.contains(oracle); }
 
-  // A library's solver reports each iteration here and stops unless told `running`.
+  // The solver of a library reports each iteration here, and stops unless the answer is `running`.
   Status iterate(VectorRef theta);
-  // Work or time are spent: inner loops and library callbacks ask, the loop of the harness knows.
+  // Whether work or time is spent, for inner loops and library callbacks; the harness's loop knows.
   bool is_spent() const {
     return work_ >= budget_.work || iteration_ >= budget_.iterations || is_out_of_time();
   }
@@ -132,7 +133,7 @@ class Meter {
     work_ += prices_[kind];
   }
   [[noreturn]] void refuse(Oracle oracle) const;
-  // What a learning problem is judged by is its validation, not the batch of a step.
+  // A learning problem is judged by its validation samples, not by the batch of a step.
   void see(Real loss) {
     if (problem_.is_learned()) return;
     observe(loss);

@@ -1,9 +1,9 @@
-// Muon, Jordan (2024), in the form of Liu and others (2025), arXiv 2502.16982, algorithm 1: of each
-// matrix of weights the momentum is brought near to its orthogonal factor UVᵀ by five steps of a
-// Newton-Schulz iteration, X ← a X + b (XXᵀ) X + c (XXᵀ)² X from X = M/‖M‖, whose coefficients take
-// every singular value to between 0.68 and 1.13 or so; W ← W − 0.2 η √max(rows, columns) X, which
-// has the mean square of a step of Adam. Vectors are stepped by Adam at the same rate. Without
-// weight decay.
+// Muon, Jordan (2024), in the form of Liu and others (2025), arXiv 2502.16982, algorithm 1: for
+// each matrix of weights, the momentum is brought near to its orthogonal factor UVᵀ by five steps
+// of a Newton-Schulz iteration, X ← a X + b (XXᵀ) X + c (XXᵀ)² X from X = M/‖M‖, whose coefficients
+// take every singular value to between 0.68 and 1.13 or so; W ← W − 0.2 η √max(rows, columns) X,
+// which has the mean square of a step of Adam. Vectors are stepped by Adam at the same rate.
+// Without weight decay.
 #include <cmath>
 
 #include "core/product.h"
@@ -111,7 +111,7 @@ void fields(Muon& o, auto& field) {
 }
 
 std::string objection(const OptionValues&, const Problem& problem) {
-  return has_matrix(problem) ? "" : "muon is for matrices of weights, and there is none";
+  return has_matrix(problem) ? "" : "muon needs a matrix of weights, and the problem has none";
 }
 
 }  // namespace

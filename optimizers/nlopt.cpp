@@ -1,6 +1,7 @@
-// The door to NLopt (Johnson, github.com/stevengj/nlopt), on L. NLopt keeps its own loop; each new
-// best evaluation is an iteration. Its tolerances are off but for steps below the rounding of θ; a
-// search long without a new best is stopped. It reports success on plateaus: its word is recorded.
+// The adapter to NLopt (Johnson, github.com/stevengj/nlopt), on L. NLopt keeps its own loop; each
+// new best evaluation is an iteration. Its tolerances are off, except for steps below the rounding
+// of θ; a long search without a new best is stopped. NLopt reports success on plateaus; the record
+// stores it.
 #include <nlopt.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ using Handle = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
 
 constexpr Real kRounding = 1e-15;  // relative step below which θ no longer changes
 constexpr Index kPatience = 100;   // evaluations an unknown without a new best
-constexpr Real kWall = 1e20;       // what a loss that is not finite is told as: inf hangs COBYLA
+constexpr Real kWall = 1e20;       // replaces a loss that is not finite: infinity hangs COBYLA
 // Steps that Luksan's methods remember. NLopt's own 10 MB take 7 ms at n = 2; ten cost digits.
 constexpr Index kMemory = 100;
 
@@ -31,7 +32,7 @@ Handle make_handle(nlopt_algorithm algorithm, Index n, Index memory = kMemory) {
   return handle;
 }
 
-// One evaluation for NLopt: nothing is thrown across it, and what is not finite is told as a wall.
+// One evaluation for NLopt. No exception crosses NLopt; a loss that is not finite becomes a wall.
 template <class Solve>
 double evaluate(unsigned, const double* at, double* out, void* self) {
   Solve& solve = *static_cast<Solve*>(self);
@@ -133,7 +134,7 @@ const Method kByGradient[] = {
      kFirstStepNote},
     {NLOPT_LD_VAR2, Kind::quasi_newton, "nlopt-var2",
      "Shifted limited-memory variable metric (NLopt)",
-     "θ ← θ − α (μI + S) ∇L,  S of rank two a step",
+     "θ ← θ − α (μI + S) ∇L,  S of rank two per step",
      "NLopt 2.7, Luksan's PLIP; Vlcek, Luksan (2006)", kFirstStepNote},
     {NLOPT_LD_TNEWTON_PRECOND_RESTART, Kind::second_order, "nlopt-tnewton",
      "Truncated Newton, preconditioned, restarted (NLopt)",
@@ -142,7 +143,7 @@ const Method kByGradient[] = {
     {NLOPT_LD_SLSQP, Kind::quasi_newton, "nlopt-slsqp",
      "Sequential least-squares programming (NLopt)", "min ∇Lᵀd + ½ dᵀB d,  θ ← θ + α d",
      "NLopt 2.7; Kraft (1994)",
-     "Dense, O(n³) a step; between evaluations it does not look at the clock.", false, 1000},
+     "Dense, O(n³) per step; does not check the clock between evaluations.", false, 1000},
     {NLOPT_LD_MMA, Kind::gradient, "nlopt-mma", "Method of moving asymptotes (NLopt)",
      "min of a convex separable upper approximation of L", "NLopt 2.7; Svanberg (2002)"},
     {NLOPT_LD_CCSAQ, Kind::gradient, "nlopt-ccsaq",

@@ -45,7 +45,7 @@ std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& op
                        entry.most_unknowns);
   if (entry.kind == Kind::least_squares && !problem.is_least_squares())
     return "the loss is no multiple of ‖y − y*‖², which least squares would descend instead";
-  // What asks for products alone factorizes nothing.
+  // A method that needs products only factorizes nothing.
   const bool factorizes = needs.contains(Oracle::jacobian) || needs.contains(Oracle::layer_factors);
   const Index rank = std::min(problem.unknowns(), problem.residuals());
   if (factorizes && rank > entry.most_rank)

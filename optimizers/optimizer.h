@@ -1,5 +1,5 @@
-// An optimizer is a const description of a method, plus a State that its step() advances. The loop,
-// the clock, the stopping and the verdict belong to the harness.
+// An optimizer is a const description of a method, with a State that its step() advances. The
+// harness owns the loop, the clock, the stopping tests and the evaluation of success.
 #pragma once
 
 #include <concepts>
@@ -19,7 +19,8 @@ concept Stepper = requires(const M method, Meter& f, Vector& theta, typename M::
   { method.step(f, theta, state) } -> std::same_as<Status>;  // running unless it must stop
 };
 
-// A method that turns a gradient into a step and asks for nothing else; others can use it inside.
+// A method that turns a gradient into a step and needs nothing else; other methods can use it
+// inside.
 template <class M>
 concept GradientRule = requires(const M rule, VectorRef g, Vector& theta, typename M::State state) {
   { rule.init(Index{}) } -> std::same_as<typename M::State>;
@@ -46,7 +47,7 @@ class Descent {
   virtual bool persist(Archive&) { return false; }
 };
 
-// A method or rule whose State is more than scratch names what it carries from step to step:
+// A method or rule whose State is more than scratch arrays lists the members that survive a step:
 //
 //   static void persist(State& s, Archive& archive) { archive(s.m, s.v); }
 template <class M>
@@ -58,7 +59,7 @@ bool persist_state(typename M::State& state, Archive& archive) {
   return std::is_empty_v<typename M::State>;
 }
 
-// What this optimizer asks of this problem: what the meter is to grant.
+// The oracles that this optimizer needs for this problem: the meter grants these.
 OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options,
                    const Problem& problem);
 

@@ -39,7 +39,7 @@ inline std::string_view name_of(Family family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }
 
-// What a step is by its mathematics, whoever wrote it: charts colour by it.
+// The kind of a step by its mathematics, not by its library: charts use it for colours.
 enum class Kind {
   other,
   gradient,         // along ∇L, with momentum, a line search or a separable model
@@ -61,7 +61,7 @@ inline std::string_view name_of(Kind kind) { return kKindNames[static_cast<std::
 struct Tunable {
   enum class Unit {
     option,  // the default itself
-    cauchy,  // ‖∇L‖²/‖J∇L‖² at a problem's start: of a step along ∇L, whose size has no other
+    cauchy,  // ‖∇L‖²/‖J∇L‖² at a problem's start, for steps along ∇L, which have no other unit of
   };
   std::string option = {};  // empty: there is nothing to tune
   int below = 3;
@@ -92,8 +92,8 @@ struct OptimizerEntry {
   // Whether `*` of a suite means it: not where an argument is required, nor what is a variant of
   // another for one experiment.
   bool in_all = true;
-  // As a problem's: how to name one where the name alone means nothing, and who computes it where
-  // that is another program.
+  // As for a problem: how to name it where the name alone is incomplete, and the external program,
+  // if there is one.
   std::string needs_argument = {};
   std::function<Foreign(const OptionValues& complete_options)> introduce = {};
   std::string file = {};  // that registers it, as the registry saw it

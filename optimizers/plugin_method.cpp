@@ -22,7 +22,7 @@ struct Questions : isoline_oracles {
   bool is_linearized = false;
   Linearization at;
   std::exception_ptr error = nullptr;
-  Vector theta, wide;  // (n), (m·B): what comes from the library, aligned as ours is
+  Vector theta, wide;  // (n), (m·B): copies of the library's arrays, aligned like ours
   Matrix narrow;       // (m, B)
 
   Questions(Meter& meter, bool solves);

@@ -1,6 +1,6 @@
-// An optimizer that another program runs: process[command="python3 mine.py"]. Here the roles turn:
-// it asks the oracles over frames on a private socket (docs/wire-format.md), the meter counts them,
-// and what its handshake did not declare is refused. Questions at the same θ share one forward.
+// An optimizer in another program: process[command="python3 mine.py"]. The program calls the
+// oracles over frames on a private socket (docs/wire-format.md), and the meter counts them. Oracles
+// that its handshake did not declare are refused. Calls at the same θ share one forward.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -70,7 +70,7 @@ class Service {
   auto behind_theta(Index count) const { return room_.segment(f_.unknowns(), count); }
   void reply(Verb verb, std::span<const Real> numbers) { line_.send(verb, kDone, numbers); }
 
-  // One forward a point, whatever is asked there.
+  // One forward per point, for all calls there.
   Linearization& at_given() {
     const bool is_same = point_theta_.size() > 0 &&
                          std::memcmp(point_theta_.data(), room_.data(),
@@ -111,7 +111,7 @@ class Service {
         f_.iterate(theta_);
         return reply(verb, {});
       default:
-        line_.fail("asks by verb " + std::to_string(head.verb) + ", which is no question");
+        line_.fail("asks by verb " + std::to_string(head.verb) + ", which is not a request");
     }
   }
 
@@ -204,8 +204,8 @@ class ProcessMethod final : public Optimizer {
   }
 
  private:
-  // Off the clock. Whatever it asks from now on, it is told that there is no more: most leave then,
-  // and one that goes on is killed.
+  // Off the clock. Every further request gets the status stop: most programs exit then; one that
+  // continues is killed.
   void end() {
     constexpr int kMost = 100;
     constexpr double kSeconds = 1;
@@ -222,7 +222,7 @@ class ProcessMethod final : public Optimizer {
   Line line_;
   MethodHandshake said_;
   bool has_begun_ = false;
-  std::optional<Verb> open_;  // a question that nobody has answered
+  std::optional<Verb> open_;  // a request without an answer
 };
 
 const MethodHandshake& introduced(const OptionValues& options) {
@@ -248,7 +248,7 @@ void register_process(OptimizerRegistry& registry) {
   registry.add({.name = "process",
                 .title = "An optimizer that another program runs",
                 .family = Family::foreign,
-                .formula = "θ as the program chooses it, from oracles that it asks for",
+                .formula = "θ as the program chooses it, from the oracles that it calls",
                 .source = "the program's own, which its record names",
                 .needs = {Oracle::forward},
                 .needs_same_samples = true,

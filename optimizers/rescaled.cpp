@@ -1,5 +1,5 @@
-// Gradients rescaled to unit length in x, Holl, Koltun, Thuerey (2022), Fig. 2: the network is
-// drawn to x̃ = x − d/‖d‖, d = ∂L/∂x, sample by sample, by (1/B) Σ ½‖x − x̃‖². The published script
+// Gradients rescaled to unit length in x, Holl, Koltun, Thuerey (2022), Fig. 2: the network moves
+// toward x̃ = x − d/‖d‖, d = ∂L/∂x, sample by sample, by (1/B) Σ ½‖x − x̃‖². The published script
 // has one x and takes its sign from the known solution, x̃ = x + sign(x* − x), which for a monotone
 // P is the same.
 
@@ -13,7 +13,7 @@ struct Options {
 };
 void fields(Options& o, auto& field) {
   field("by", o.by, Choices{"gradient", "truth"},
-        "where the direction comes from: −∂L/∂x, or x* − x, a privilege");
+        "where the direction comes from: −∂L/∂x, or x* − x (extra information)");
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
 }
 

@@ -3,7 +3,7 @@
 // step of the network's optimizer on (1/B) Σ ½‖x − x̃‖², x̃ held. With the identity network and unit
 // rates it is x ← x̃, the inverse-simulator update. Several steps of the inversion may be taken for
 // one of the network, each from the x̃ of the last, and several of the network for one x̃; as many
-// as the paper's theorem 3 asks for are those of sip-theorem-3.
+// as theorem 3 of the paper requires are those of sip-theorem-3.
 #include "optimizers/inversion.h"
 #include "optimizers/network_descent.h"
 

@@ -128,7 +128,7 @@ void fields(Soap& o, auto& field) {
 }
 
 std::string objection(const OptionValues&, const Problem& problem) {
-  return has_matrix(problem) ? "" : "soap is for matrices of weights, and there is none";
+  return has_matrix(problem) ? "" : "soap needs a matrix of weights, and the problem has none";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What a step makes of the singular values of J = U diag(σ) Vᵀ: every method over the spectrum is
-// Δθ = −η V f(σ) Uᵀ g, and every f of ours is one formula,
+// The filter of the singular values of J = U diag(σ) Vᵀ: every spectral method steps by
+// Δθ = −η V f(σ) Uᵀ g, and every f here is one formula,
 //
 //   f(σ) = σ (σ² + μ)^(−(κ+1)/2)  where σ > τ σ₁,  else 0,
 //

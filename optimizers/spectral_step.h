@@ -42,21 +42,21 @@ bool never_by_gram(const SpectralFilter& filter);
 // Whether one number is enough of a spectrum: Tikhonov's filter with μ in units of the mean.
 bool is_tikhonov(const SpectralFilter& filter);
 
-// What a method with a SpectralStep asks of a problem, by its way.
+// The oracles that a method with a SpectralStep needs, by its factorization.
 OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem);
-// Why it can't treat a problem, in words; empty if it can.
+// The reason why it cannot treat a problem; empty if it can.
 std::string objection_to(Way way, const Problem& problem);
 
-// A spectral step by JJᵀ where its least singular values would be lost in it: K = JJᵀ is rounded by
-// ε σ₁², and so are its eigenvalues. Its eigenvectors V₂ of small ones still span what they belong
-// to, and Z₂ = Jᵀ V₂ is small: S = Z₂ᵀ Z₂ gives these eigenvalues again, rounded by ε (s σ₁)² where
-// all of them have σ < s σ₁.
+// A spectral step by JJᵀ that recovers its smallest singular values: K = JJᵀ is rounded by ε σ₁²,
+// and so are its eigenvalues. The eigenvectors V₂ of the small ones still span the right subspace,
+// and Z₂ = Jᵀ V₂ is small: S = Z₂ᵀ Z₂ gives these eigenvalues again, rounded by ε (s σ₁)² if all of
+// them have σ < s σ₁.
 //
-// V = (V₁ V₂ V₃), σ falling, V₃ being discarded and far below the cut-off, is off by what K was
-// rounded by. The blocks Eᵢⱼ = Vᵢᵀ K Vⱼ, i ≠ j, which should be 0, tell by how much, and to first
-// order, where eigenvalues lie far apart,
+// V = (V₁ V₂ V₃), σ falling, V₃ discarded and far below the cut-off, has the error of the rounding
+// of K. The blocks Eᵢⱼ = Vᵢᵀ K Vⱼ, i ≠ j, should be 0. They give the error to first order, if the
+// eigenvalues are well separated,
 //   V₁ ← V₁ + (V₂ E₂₁ + V₃ E₃₁) Λ₁⁻¹,   V₂ ← V₂ − V₁ Λ₁⁻¹ E₁₂ + V₃ E₃₂ S⁻¹,
-// of which only products with a vector are needed, by J and Jᵀ. What is left is of second order.
+// which needs only products of J and Jᵀ with a vector. The remaining error is of second order.
 
 // s, a share of σ₁: large ones are off by ε/s² where small ones are off by ε s² σ₁²/σ².
 inline constexpr Real kSplit = 4e-4;

@@ -1,5 +1,5 @@
 // Self-scaled Broyden: a dense quasi-Newton method with a line search, θ ← θ − α H ∇L, whose H is
-// scaled down at each update as far as the curvature just seen asks for, and lies between the
+// scaled down at each update as far as the curvature just seen requires, and lies between the
 // updates of BFGS and DFP as Al-Baali, Khalfan (2005), "Wide interval for efficient self-scaling
 // quasi-Newton algorithms", choose it; found by Urbán, Stefanou, Pons (2025), J. Comput. Phys. 523
 // to train physics-informed networks to far smaller losses than BFGS. Full batch. The
@@ -24,8 +24,9 @@ struct WolfeSearch {
     Real length = 0, value = 0, slope = 0;  // α, φ(α), φ'(α)
   };
 
-  // evaluate(α) -> Trial; is_over() -> bool, asked before each. True where both conditions hold at
-  // `found`; else it is the best trial that lowers φ enough, of length 0 where there is none.
+  // evaluate(α) -> Trial; is_over() -> bool, called before each. True if both conditions hold at
+  // `found`; otherwise `found` is the best trial that lowers φ enough, or has length 0 if there is
+  // none.
   template <class Evaluate, class IsOver>
   bool operator()(const Trial& start, Real first, Evaluate&& evaluate, IsOver&& is_over,
                   Trial& found) const {
@@ -149,7 +150,7 @@ struct SelfScaledBroyden {
     return Status::running;
   }
 
-  // Of length 1 at first; along the gradient, whose size has no other, of a step of length 1.
+  // Of length 1 at first; along the gradient, which has no other unit, of a step of length 1.
   void search(Meter& f, const Vector& theta, State& s, Real slope,
               WolfeSearch::Trial& found) const {
     const auto evaluate = [&](Real length) -> WolfeSearch::Trial {

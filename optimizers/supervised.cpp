@@ -1,5 +1,5 @@
 // Two-stage supervised training: the network learns labels alone, (1/B) Σ ½‖x − x*‖², with x* the
-// input that made y*; the physics has made the data and is not asked again. Where several x give
+// input that produced y*. The physics is used only for the data. Where several x give
 // the same y* it learns their mean, which solves nothing: Holl, Koltun, Thuerey (2022).
 
 #include "optimizers/network_descent.h"
@@ -27,9 +27,9 @@ class Supervised final : public ProxyMethod {
  private:
 };
 
-// Without a network its first step would be the answer it was told.
+// Without a network, its first step would be the answer itself.
 std::string objection(const OptionValues&, const Problem& problem) {
-  return problem.has_identity_network() ? "it is told x*, and there is no network to learn it" : "";
+  return problem.has_identity_network() ? "it uses x*, and there is no network to learn it" : "";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Brown and Dennis' function: fᵢ = (x1 + tᵢ x2 − e^tᵢ)² + (x3 + x4 sin tᵢ − cos tᵢ)², tᵢ = i/5,
 // i = 1…m. Moré, Garbow, Hillstrom (1981), problem 16. The residuals do not vanish:
-// Σ fᵢ² = 85822.2… at m = 20, the one m whose minimum is given.
+// Σ fᵢ² = 85822.2… at m = 20, the only m with a published minimum.
 #include <cmath>
 
 #include "problems/dense_physics.h"

@@ -1,6 +1,6 @@
-// Viscous flow on a ring backwards: the state u(0) sought from u(T) under Burgers' equation. It is
-// the first nonlinear inverse problem of Thuerey et al., Physics-based Deep Learning; the initial
-// states and sizes here are ours, and burgers_flow.h has the physics.
+// Viscous flow on a ring backwards: u(0) from u(T) under Burgers' equation. It is the first
+// nonlinear inverse problem of Thuerey et al., Physics-based Deep Learning. The initial states and
+// sizes are our own; burgers_flow.h has the physics.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -21,7 +21,7 @@ struct Options {
 void fields(Options& o, auto& field) {
   field("N", o.N, between(4, 4096), "cells of the ring");
   field("steps", o.steps, between(0, 1e6),
-        "time steps; 0: as many as T N/steps ≤ ½ and ν T N²/steps ≤ 0.4 ask for");
+        "time steps; 0: the number that T N/steps ≤ ½ and ν T N²/steps ≤ 0.4 require");
   field("viscosity", o.viscosity, between(0, 10), "viscosity ν");
   field("time", o.time, between(1e-6, 10), "time T between the two states");
   fields(o.learning, field);
@@ -46,7 +46,7 @@ Vector random_state(Index N, RandomStream& stream) {
   return state / state.cwiseAbs().maxCoeff();
 }
 
-// Of all steps, where they are few enough to be told apart and have room.
+// All steps if they are few, otherwise as many as can be distinguished and stored.
 Field field_of(const BurgersFlow& flow, Real time) {
   constexpr Index kMostTimes = 65;
   const Index room = Trace::Frames::kCells / flow.inputs();
@@ -99,7 +99,7 @@ void register_burgers(ProblemRegistry& registry) {
        .formula = "u̇ = −u ∂u + ν ∂²u,  x = u(0),  P(x) = u(T),  L = ½‖P(x) − y*‖²",
        .source = "Thuerey et al., Physics-based Deep Learning, chapters on Burgers’ equation",
        .note =
-           "The sought x* is a sum of four waves of our own streams, for seed 0 too, its largest speed 1; by the time T its slopes have steepened and viscosity has smoothed them. P is one to one, but of the finest waves of x it leaves less than a thousandth: seeds from 1 on start with noise of 0.1 a cell, of which the data tell little. The local inverse simulates backward without viscosity.",
+           "x* is a sum of four waves with a largest speed of 1, from our own random streams for seed 0, too. By the time T its slopes have steepened, and viscosity has smoothed them. P is one to one but keeps less than a thousandth of the finest waves. Seeds from 1 on start with noise of 0.1 per cell, which the data hardly determine. The local inverse simulates backward without viscosity.",
        .aim = Aim::x,
        .panels = {{.title = "Learning curves", .kind = "curve"}}},
       make_burgers));

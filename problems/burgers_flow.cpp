@@ -10,8 +10,8 @@
 namespace isoline::problems {
 namespace {
 
-// The N cells of a ring in a column of N + 2: the cell at each end is repeated beyond the other, so
-// that no stencil asks where the ring closes.
+// The N cells of a ring in a column of N + 2: each end repeats the cell at the other end, so that
+// stencils need no special case at the ends.
 void close(Real* cells, Index N) {
   cells[-1] = cells[N - 1];
   cells[N] = cells[0];

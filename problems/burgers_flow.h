@@ -7,10 +7,10 @@
 // v = u + Δt r(u), u' = ½ (u + v + Δt r(v)). Both are of second order and polynomials in u: without
 // limiter or interpolation, the derivatives are those of the steps themselves everywhere.
 //
-// The local inverse is by a reverse simulation R, the same steps backward without viscosity, which
-// run backward would amplify the finest waves without bound. R gives back where things were, and
-// not what viscosity took; it is approximate, and corrects x₀ by as much as it differs, x̃ = x₀ +
-// R(y) − R(P(x₀)), so that x̃ = x₀ where y is reached.
+// The local inverse uses a reverse simulation R: the same steps backward without viscosity, which
+// would amplify the finest waves without bound. R restores the transport but not what viscosity has
+// smoothed. It is approximate, and corrects x₀ by the difference, x̃ = x₀ + R(y) − R(P(x₀)), so that
+// x̃ = x₀ if y is already reached.
 #pragma once
 
 #include "problems/physics.h"
@@ -19,8 +19,8 @@ namespace isoline::problems {
 
 class BurgersFlow final : public Physics {
  public:
-  // steps = 0: as many as Δt/h ≤ ½ and νΔt/h² ≤ 0.4 ask for. A usage error where they would be too
-  // few to be stable at speeds of 1.
+  // steps = 0: the number that Δt/h ≤ ½ and νΔt/h² ≤ 0.4 require. A usage error if the steps are
+  // too few to be stable at speeds of 1.
   BurgersFlow(Index N, Index steps, Real viscosity, Real time);
   Index inputs() const override { return N_; }
   Index outputs() const override { return N_; }

@@ -14,7 +14,7 @@ namespace {
 constexpr Real kFirstStep = 1e-2;  // of Taylor's remainder, and how often it is halved
 constexpr int kHalvings = 16;
 constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
-constexpr const char* kRounding = "rounding in double, with room for cancellation";
+constexpr const char* kRounding = "rounding in double precision, with a margin for cancellation";
 constexpr const char* kDifferences =
     "central differences at h = 6e-6 = ε^⅓ leave h² of a third derivative and ε/h of rounding";
 
@@ -37,10 +37,10 @@ class Examination {
     problem_.forward(theta_, again);
     add("forward gives the same bits twice",
         same_bits(again.y, at_.y) && again.loss == at_.loss ? 0 : 1, 0,
-        "nothing random is left in it");
+        "forward must not be random");
   }
 
-  // Elsewhere than here a product may draw numbers of its own, or go by what was asked before.
+  // At other points, a product may use random numbers of its own, or depend on earlier calls.
   void purity() {
     const Vector v = direction();
     const Matrix u = cotangent();
@@ -58,8 +58,8 @@ class Examination {
       same = same && same_bits(out, Jv);
     }
     if (pulls) same = same && same_bits(pull(u, again), JTu);
-    add("the same call gives the same bits, whatever was asked between", same ? 0 : 1, 0,
-        "a run is repeated bit for bit");
+    add("the same call gives the same bits after other calls", same ? 0 : 1, 0,
+        "runs must be repeatable bit for bit");
   }
 
   void adjoint() {
@@ -70,11 +70,12 @@ class Examination {
     const Real gap = std::abs(u.cwiseProduct(Jv).sum() - v.dot(pull(u, at_)));
     const bool is_single = problem_.network().is_single_precision();
     add("⟨u, J v⟩ = ⟨Jᵀu, v⟩", relative(gap, scale), is_single ? 1e-5 : product_limit(),
-        is_single ? "rounding in single precision, with room for cancellation" : product_reason());
+        is_single ? "rounding in single precision, with a margin for cancellation"
+                  : product_reason());
   }
 
-  // ‖y(θ + h v) − y(θ) − h J v‖ falls by 4 when h is halved: the median over the halvings whose
-  // remainder stands well above rounding; none does where the problem is linear.
+  // ‖y(θ + h v) − y(θ) − h J v‖ falls by 4 when h is halved. The median is over the halvings whose
+  // remainder is well above rounding; a linear problem has none.
   void taylor() {
     Real h = kFirstStep;
     const Vector v = smooth_direction(h, kHalvings);
@@ -85,7 +86,7 @@ class Examination {
         "a third-order term bends the slope by O(h); a wrong J v gives slope 1");
   }
 
-  // The same of Jᵀu, for who has no J v: |⟨u, y(θ + h v) − y(θ)⟩ − h ⟨Jᵀu, v⟩|.
+  // The same for Jᵀu, for a problem without J v: |⟨u, y(θ + h v) − y(θ)⟩ − h ⟨Jᵀu, v⟩|.
   void taylor_of_pullback() {
     Real h = kFirstStep;
     const Vector v = smooth_direction(h, kHalvings);
@@ -178,14 +179,15 @@ class Examination {
         kDifferences);
   }
 
-  // For y that some x reaches. The physics alone is asked, whatever the network.
+  // For a y that some x reaches. Uses the physics alone, without the network.
   void inverse() {
     if (problem_.inverse_kind() != Inverse::exact) return;
     Point reached, back;
     problem_.forward(near_start(), reached);
     Matrix x(problem_.inputs(), problem_.samples());
     const bool success = problem_.local_inverse(reached.y, x, at_).all();
-    add("the inverse succeeds where y is reachable", success ? 0 : 1, 0, "it is declared exact");
+    add("the inverse succeeds where y is reachable", success ? 0 : 1, 0,
+        "the inverse is declared exact");
     problem_.physics_forward(x, problem_.batch(), back);
     add("P(P⁻¹(y)) = y", relative((back.y - reached.y).norm(), reached.y.norm()), 1e-10,
         "rounding, amplified by the condition of P⁻¹");
@@ -213,7 +215,7 @@ class Examination {
     problem_.local_inverse(reached.y, x, nowhere);
     add("the damped inverse undoes P on what P has smoothed",
         relative((x - wanted).norm(), wanted.norm()), 1e-3,
-        "modes as weak as the noise it assumes are held back, and they are a small part");
+        "the inverse suppresses modes below its assumed noise, a small part");
   }
 
   void solution() {
@@ -223,16 +225,16 @@ class Examination {
       const Real minimum = *problem_.minimum(), error = problem_.minimum_error();
       add("the loss is above the declared minimum around the start",
           std::max(minimum - at_.loss, minimum - start.loss), error,
-          "it is the least attainable, but for its declared error");
+          "the minimum is the least attainable loss, within its declared error");
       if (problem_.truth() && problem_.has_identity_network())
         add("the truth attains the declared minimum",
             relative(std::abs(loss(problem_.truth()->reshaped()) - minimum), start.loss),
             1e-13 + error / start.loss,
-            "squares of residuals that are zero but for rounding, and the declared error");
+            "squared residuals are zero except for rounding and the declared error");
     }
     if (problem_.aim() == Aim::x)
-      add("the size of the x that is sought is known",
-          problem_.x_scale(problem_.batch()) > 0 ? 0 : 1, 0, "errors in x are measured by it");
+      add("the scale of x is known", problem_.x_scale(problem_.batch()) > 0 ? 0 : 1, 0,
+          "errors in x are relative to it");
     if (problem_.truth() && !std::isnan(problem_.x_error(*problem_.truth())))
       add("the error in x of the truth is zero",
           problem_.x_error(*problem_.truth()) / std::max(1.0, problem_.truth()->norm()), 1e-14,
@@ -271,8 +273,9 @@ class Examination {
     findings.push_back({std::move(property), figure, limit, std::move(reason)});
   }
 
-  // One that crosses no kink that the problem declares, at any of the points ±h, ±h/2, … along it:
-  // others are drawn anew, over shorter ways after some tries, of which h tells.
+  // A direction that crosses no nondifferentiable point of the problem, at any of the points ±h,
+  // ±h/2, … along it. Others are resampled; after some tries, over shorter distances, returned in
+  // h.
   Vector smooth_direction(Real& h, int halvings) {
     constexpr int kTries = 20, kShortenings = 6;
     Vector v;
@@ -281,8 +284,8 @@ class Examination {
       v = direction();
       if (is_smooth_along(v, h, halvings)) return v;
     }
-    add("a direction along which no kink is crossed is found", 1, 0,
-        "the pieces that the problem declares have an extent");
+    add("a direction without nondifferentiable points exists", 1, 0,
+        "the differentiable pieces that the problem declares must have an extent");
     return v;
   }
   Vector smooth_direction() {

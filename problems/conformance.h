@@ -17,8 +17,8 @@ struct Finding {
   bool holds() const { return figure <= limit; }  // false for nan
 };
 
-// Measured at a random point around the start, as near as seeds draw theirs. What a
-// problem does not offer is not examined; dense matrices only up to some millions of entries.
+// Measures at a random point as close to the start as the starts of seeds. Skips what a problem
+// does not offer; uses dense matrices only up to some millions of entries.
 std::vector<Finding> examine(const Problem& problem, RandomStream& stream);
 
 }  // namespace isoline::problems

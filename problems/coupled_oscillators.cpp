@@ -32,7 +32,7 @@ void register_coupled_oscillators(ProblemRegistry& registry) {
        .formula = "ẍ₁ = −x₁ + (x₂ − x₁)³,  ẍ₂ = −x₂ − (x₂ − x₁)³ + 3u(t),  y* = the initial state",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
        .note = "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
-               "default it is half of that, and what η does there 2η does here. mode=direct seeks "
+               "default half of that, so that 2η here equals η there. mode=direct finds "
                "the 96 controls of one initial state. The network is the scripts'; the book's has "
                "activation=tanh.",
        .aim = Aim::loss,  // any control that returns will do

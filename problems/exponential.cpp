@@ -1,6 +1,7 @@
 // P(x) = eˣ, component by component: targets that span orders of magnitude. Holl, Koltun, Thuerey
-// (2022), Fig. 2, which learns the inverse over x* = −12u, u ~ U[0, 1); here one x* of that law is
-// sought from x = 0. Seed 0 takes its quantiles x*ᵢ = −12 (i + ½)/n, so y* = e⁻⁶ for n = 1.
+// (2022), Fig. 2, learns the inverse over x* = −12u, u ~ U[0, 1). The direct problem finds one x*
+// of this distribution from x = 0. Seed 0 has its quantiles x*ᵢ = −12 (i + ½)/n, so y* = e⁻⁶ for n
+// = 1.
 #include <algorithm>
 #include <array>
 #include <cmath>

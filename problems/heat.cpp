@@ -82,7 +82,7 @@ class Heat final : public SelfAdjointPhysics {
 
   // α in [−1, 1]; the factors ½ of the densities cancel.
   static Real action(Real amplitude, Real s, Real sigma) {
-    constexpr Real kOneSigma = 0.68;  // the evidence asked for before a mode is amplified
+    constexpr Real kOneSigma = 0.68;  // the evidence required to amplify a mode
     const Real S = std::exp(-0.5 * std::pow(amplitude / s, 2));
     const Real M = std::exp(-0.5 * std::pow(amplitude / sigma, 2));
     const Real p = S + M > 0 ? S / (S + M) : 0;
@@ -151,9 +151,9 @@ void register_heat(ProblemRegistry& registry) {
        .formula = "ŷₖ = x̂ₖ exp(−8 (2π)² |k|²),  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 6c",
        .note =
-           "The sought x* is a sum of soft rectangles of our own streams, for seed 0 too: no "
+           "x* is a sum of soft rectangles from our own random streams, for seed 0, too: no "
            "instance is published; its lengths scale with N/64. Seeds from 1 on start with "
-           "noise of 0.1 a cell, most of which the data cannot tell: it stays as a floor under "
+           "noise of 0.1 per cell, most of which the data do not determine: it is a floor under "
            "the error in x of every method. Published curves sum |x − x*| over cells, and so does "
            "mode=learn, which gives the network the mean of x*; the error of one instance is "
            "‖x − x*‖. The damped inverse has the authors' floor for single problems, "
@@ -162,13 +162,13 @@ void register_heat(ProblemRegistry& registry) {
        .panels = {{.title = "Fig. 6d: learning curves", .kind = "curve"},
                   {.title = "Fig. 6c: one sample of the validation", .kind = "pictures"},
                   {.title = "Detail in the gradient (watch=spectrum): share of its power at wave "
-                            "numbers from 0.1 to 0.2 cycles a cell",
+                            "numbers from 0.1 to 0.2 cycles per cell",
                    .kind = "series",
                    .quantity = "spectrum of ∂L/∂x, 0.1 < k ≤ 0.2"},
-                  {.title = "Detail in the update U of SIP, likewise",
+                  {.title = "Detail in the update U of SIP, same wave numbers",
                    .kind = "series",
                    .quantity = "spectrum of U, 0.1 < k ≤ 0.2"},
-                  {.title = "Detail in what is missing, x* − x, likewise",
+                  {.title = "Detail in the error x* − x, same wave numbers",
                    .kind = "series",
                    .quantity = "spectrum of x* − x, 0.1 < k ≤ 0.2"}}},
       make_heat));

@@ -1,6 +1,6 @@
 // The helical valley: f1 = 10 (x3 − 10 θ), f2 = 10 (ρ − 1), f3 = x3, with (ρ, 2πθ) the polar
-// coordinates of (x1, x2), θ in (−¼, ¾). Moré, Garbow, Hillstrom (1981), problem 7, who leave
-// x1 = 0 open: here θ = ±¼ there, by the sign of x2.
+// coordinates of (x1, x2), θ in (−¼, ¾). Moré, Garbow, Hillstrom (1981), problem 7, which leaves
+// x1 = 0 undefined: here θ = ±¼ there, with the sign of x2.
 #include <cmath>
 #include <numbers>
 

@@ -1,4 +1,4 @@
-// The toy of half-inverse gradients, Schnell, Holl, Thuerey (2022), as drawn in the
+// The toy of half-inverse gradients, Schnell, Holl, Thuerey (2022), as in the figure of the
 // Physics-based Deep Learning book: a network t ↦ x of seven tanh neurons fits ŷ(t) = (sin 6t, cos
 // 9t) for t ∈ [−1, 1] by ½(x₁ − ŷ₁)² + ½(λx₂ − ŷ₂)². The plotted state is (x₁, λx₂), so λ is the
 // physics, P(x) = (x₁, λx₂), and J carries it: at λ = 0.01 the network must reach 100. With x₁
@@ -84,10 +84,10 @@ void register_hig_toy(ProblemRegistry& registry) {
        .title = "Toy of half-inverse gradients",
        .group = Group::toy,
        .formula = "x = N(t; θ),  P(x) = (x₁, λx₂),  y*(t) = (sin 6t, cos 9t)",
-       .source = "Schnell, Holl, Thuerey (2022), toy example, as drawn in the book",
+       .source = "Schnell, Holl, Thuerey (2022), toy example, as in the book's figure",
        .note = "The published batch, start and rates are unknown: 256 fixed samples of t and "
-               "Glorot's start are ours.",
-       .aim = Aim::loss,  // a curve is fitted: nobody asks for an x
+               "Glorot's start are our own choices.",
+       .aim = Aim::loss,  // the user fits a curve; x has no meaning
        .panels = {{.title = "Mean of the hidden neurons",
                    .kind = "series",
                    .quantity = "mean of the hidden neurons"},

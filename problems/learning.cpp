@@ -74,7 +74,7 @@ struct Noise {
   Real length, direction;
 };
 
-// Of gradients, one a column. With unit vectors u_i the mean cosine of two of n is
+// For gradients, one per column. With unit vectors u_i the mean cosine of two of n is
 // (‖Σ uᵢ‖² − n)/(n² − n).
 Noise noise_of(const Matrix& gradients) {
   const Vector norms = gradients.colwise().norm();
@@ -112,7 +112,7 @@ struct Parts {
   }
 };
 
-constexpr std::array kEdges = {0.05, 0.1, 0.2};  // of the bands, in cycles a cell
+constexpr std::array kEdges = {0.05, 0.1, 0.2};  // limits of the bands, in cycles per cell
 constexpr std::array kBands = {"k ≤ 0.05", "0.05 < k ≤ 0.1", "0.1 < k ≤ 0.2", "k > 0.2"};
 constexpr std::array kSpectra = {"x* − x", "∂L/∂x", "U"};
 

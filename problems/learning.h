@@ -15,11 +15,11 @@ Series joined(Series first, Series second);
 // where the network has no layers of neurons.
 Series hidden_activity(const Network& network);
 
-// How many hidden neurons are saturated, and mean and spread of the first `shown` of the last
-// layer. A neuron is saturated whose value is 1 or −1 for every sample, or, of one that rectifies,
-// 0: it gives the network no more than a bias, and its weights no gradient. The mean over all
-// neurons can't show that, for some saturate at 1 and others at −1; nor can a spread of 0 alone,
-// which a neuron of small weights has too, and learns.
+// The number of saturated hidden neurons, and mean and spread of the first `shown` of the last
+// layer. A neuron is saturated if its value is 1 or −1 for every sample, or 0 for a rectifier. It
+// then acts as a constant, and its weights have no gradient. The mean over all neurons cannot show
+// this, since some saturate at 1 and others at −1. Nor can a spread of 0 alone: a neuron with small
+// weights has it, too, and still learns.
 Series saturation(const Network& network, Index shown);
 
 // The components of y that are named, of the sample that `which` chooses.
@@ -35,9 +35,9 @@ Series half_squared_error();
 // gradients' norms over their mean, `direction` 1 − the mean cosine of two of them.
 Series batch_noise();
 
-// The shares of the power in bands of the wave number k = |k|, in cycles a cell, of what is missing
-// in x, of the gradient ∂L/∂x, and of the update U = P⁻¹(y*; x) − x; means over samples. The
-// constant is left out.
+// The shares of the power in bands of the wave number k = |k|, in cycles per cell: of x* − x, of
+// the gradient ∂L/∂x, and of the update U = P⁻¹(y*; x) − x; means over samples, without the
+// constant mode.
 Series spectrum(Index grid);
 
 // The learning problem over a physics: x = N(y*; θ) for every y* of a distribution. Its options are
@@ -57,12 +57,14 @@ inline void fields(Learning& o, auto& field) {
   field(kModeOption, o.mode, {kDirectMode, kLearnMode},
         "one y*, or a network that learns x = N(y*; θ)");
   field(kNetworkOption, o.network, Choices{}, "network of mode=learn");
-  field(kBatchOption, o.batch, between(1, 1e6), "samples drawn anew for each step of mode=learn");
+  field(kBatchOption, o.batch, between(1, 1e6),
+        "samples per step of mode=learn, new ones in each step");
   field(kDataOption, o.data, between(0, 1e6),
-        "0: fresh samples each step; N: the same N samples at every step of mode=learn");
-  field(kWatchOption, o.watch, {"", "noise", "spectrum"},
-        "what mode=learn traces besides: noise: of gradients between batches; spectrum: of grids, "
-        "the share of power by wave number");
+        "0: new samples in each step; N: the same N samples in every step of mode=learn");
+  field(
+      kWatchOption, o.watch, {"", "noise", "spectrum"},
+      "additional series of mode=learn: noise: differences of gradients between batches; spectrum, for grids: "
+      "the share of power by wave number");
 }
 
 // The published error of grids: |x − x*| summed over cells, the mean over samples.

@@ -81,7 +81,7 @@ void register_linear_chain(ProblemRegistry& registry) {
        .source = "Thuerey et al., Physics-based Deep Learning, chapter on half-inverse gradients; "
                  "Schnell, Holl, Thuerey (2022)",
        .note = "Published as a learning problem, with the loss ‖y − y*‖², loss=square here; by "
-               "default it is half of that, and what η does there 2η does here. mode=direct seeks "
+               "default half of that, so that 2η here equals η there. mode=direct finds "
                "the 24 controls of one initial state. Infinitely many of them return to it, and "
                "the error in x is the distance from the nearest.",
        .aim = Aim::loss,  // any control that returns will do

@@ -39,25 +39,27 @@ void fields(Options& o, auto& field) {
   field("steps", o.steps, between(1, 1000), "time steps");
   field("dt", o.dt, above(0), "time step Δt; a cell is 128/N wide");
   field("viscosity", o.viscosity, at_least(0), "viscosity ν, 0 as published");
-  field("ground-truth", o.ground_truth, {"staggered", "collocated"},
-        "who makes the data: the solver itself, or one on a collocated grid, as published, whose "
-        "data no x gives exactly");
+  field(
+      "ground-truth", o.ground_truth, {"staggered", "collocated"},
+      "the generator of the data: the solver itself, or one on a collocated grid, as published, whose "
+      "data cannot be fitted exactly");
   field("rescale", o.rescale, {"component", "none"},
         "component: each component of the velocity is brought back to its energy after every step, "
         "as published");
   field("loss", o.loss, {"", "amplitude"},
         "amplitude: Σ √max(w² |F (m_T − m_T*)|², 1e-5), as published, instead of half the sum of "
         "squares");
-  field("inverse", o.inverse, {"generator", "coarse"},
-        "the local inverse: translation and vortex, estimated by how the data were made; or a few "
-        "steps of Gauss-Newton over ten coarse modes, by nothing that others lack");
+  field(
+      "inverse", o.inverse, {"generator", "coarse"},
+      "the local inverse: translation and vortex, estimated from how the data were made; or a few "
+      "steps of Gauss-Newton over ten coarse modes, without extra information");
   field("track", o.track, {"consistent", "published"},
-        "of inverse=generator: the marker's way, or the published one, which lacks a factor Δt");
+        "for inverse=generator: the marker's path, or the published one, which lacks a factor Δt");
   fields(o.learning, field);
 }
 
-// The fastest that draw_flow makes must not pass more than half the domain within a step: a
-// back-trace would come round from the other side.
+// The fastest flow of draw_flow must not cross more than half the domain in one step: otherwise a
+// back-trace would come from the other side.
 void check_speed(const Options& o) {
   constexpr Real kVortex = 25, kFluctuation = 1;  // 2 · 20 e^(−½), and above ten deviations
   const Real fastest = 32 / o.time() + kVortex + kFluctuation;
@@ -77,7 +79,7 @@ std::unique_ptr<FlowPhysics> physics_of(const Options& o) {
   return std::make_unique<FlowPhysics>(o.flow(Arrangement::staggered), o.steps, back);
 }
 
-// Draws a flow and runs it as the data's maker does.
+// Samples a flow and simulates it as the generator of the data does.
 class Generator {
  public:
   explicit Generator(const Options& o)
@@ -120,7 +122,7 @@ ProblemParts flow_parts(const Options& o) {
 
 ProblemParts learn_navier_stokes(const Options& o, const Draw& draw) {
   require(o.learning.watch != "spectrum",
-          "navier-stokes: watch=spectrum is for an x of one number a cell, and a velocity has two");
+          "navier-stokes: watch=spectrum needs one number per cell in x; a velocity has two");
   const auto generator = std::make_shared<Generator>(o);
   const auto low_pass = std::make_shared<LowPass>(o.N);
   ProblemParts parts = flow_parts(o);
@@ -142,7 +144,7 @@ ProblemParts learn_navier_stokes(const Options& o, const Draw& draw) {
 }
 
 // The standard start is the uniform flow that carries the marker's centre from its first place to
-// its last: 0 would be a kink of every advection.
+// its last. All advections are nondifferentiable at 0.
 ProblemParts make_navier_stokes(const Options& o, const Draw& draw) {
   check(o.flow(Arrangement::staggered));
   check_speed(o);
@@ -177,15 +179,15 @@ void register_navier_stokes(ProblemRegistry& registry) {
                   "L = ½ Σ wₖ² |F (m(T) − m*)ₖ|²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 7",
        .note =
-           "The data are of our own streams, for seed 0 too: no instance is published. As in the "
+           "The data come from our own random streams, for seed 0, too: no instance is published. As in the "
            "published scripts ν is 0 and each component keeps its energy; the paper's equation has "
            "ν∇²v. By default the data are made by the solver itself, so that the truth is "
-           "reachable; theirs are made on a collocated grid, ground-truth=collocated. Their loss "
-           "is loss=amplitude. The share of cells that the marker fills is drawn for each sample, "
-           "theirs for each batch. Where velocity and marker's gradient are orthogonal the data "
-           "say nothing, and the low pass hides what is finer than a quarter of the domain. The "
+           "reachable; the published ones use a collocated grid, ground-truth=collocated. The published loss "
+           "is loss=amplitude. The share of cells with marker is sampled per sample, "
+           "in the paper per batch. Where velocity and marker's gradient are orthogonal, the data "
+           "do not determine the velocity, and the low pass hides scales below a quarter of the domain. The "
            "error is |v − v*| after the first projection, the mean over cells. inverse=generator "
-           "uses how the data were made, a privilege; inverse=coarse does not.",
+           "uses knowledge of how the data were made (extra information); inverse=coarse does not.",
        .aim = Aim::x,
        .in_all = false,
        .panels = {{.title = "Fig. 7b: learning curves", .kind = "curve"},

@@ -42,7 +42,7 @@ State motion_transposed(const State& r, const Lanes& D) {
 
 Lanes stretch(const State& s) { return s.col(1) - s.col(0); }  // δ
 
-// What stays of a forward pass, and room for the controls of a group.
+// The results of a forward pass, and scratch arrays for the controls of a group.
 struct Steps {
   Matrix& slopes;  // D = c + 3αδ² of each stage, (8, 4 T ⌈B/8⌉)
   Matrix& lanes;   // of controls, (8, T)

@@ -1,5 +1,5 @@
-// Two coupled oscillators, the control of the second of which is sought that brings both back to
-// where they began: the physics and the data that linear-chain and coupled-oscillators share.
+// Two coupled oscillators. The unknown is the control of the second one that returns both to their
+// initial state. linear-chain and coupled-oscillators share this physics and data.
 // Schnell, Holl, Thuerey (2022), published scripts, and the Physics-based Deep Learning book.
 #pragma once
 
@@ -41,13 +41,13 @@ struct ReturnOptions {
 inline void fields(ReturnOptions& o, auto& field) {
   field("loss", o.loss, {"", "square"}, "square: ‖y − y*‖², as published, instead of half of it");
   field(kEpochOption, o.epoch, between(0, 1e6),
-        "N: mode=learn goes through the same N samples again and again, batch by batch; 0: fresh "
-        "samples each step");
+        "N: mode=learn takes the same N samples batch by batch, again and again; 0: new "
+        "samples in each step");
   fields(o.learning, field);
 }
 
-// Data and start of the problem over that physics: y* is the state at the beginning, drawn from
-// U[0, 1)⁴, and what the network sees; the standard start of one problem is u = 0.
+// Data and start of the problem over that physics: y* is the initial state, sampled from U[0, 1)⁴,
+// and the network's input; the standard start of one problem is u = 0.
 ProblemParts return_to_start(const ReturnOptions& options, std::unique_ptr<Physics> physics,
                              const Draw& draw);
 

@@ -82,7 +82,7 @@ const State& ground_state() {
   return everywhere;
 }
 
-// What stays of a forward pass, φ of each step, and room.
+// The results of a forward pass: φ of each step, and scratch arrays.
 struct Passes {
   Matrix &phis, &controls, &changes, &cotangents;  // (8, 28 T ⌈B/8⌉), (8, T), (8, T), (28, B)
 

@@ -42,12 +42,12 @@ class HalfSquared final : public Loss {
 
 // The samples of one evaluation, and where those of a learning problem come from.
 
-// One sample a column.
+// One sample per column.
 struct Batch {
   Matrix input;    // what the network sees, (i, B)
   Matrix context;  // c, (p, B), empty for most
   Matrix target;   // y*, (m, B)
-  Matrix truth;    // the x* that made y*, (k, B), empty where there is none
+  Matrix truth;    // the x* that produced y*, (k, B), empty if unknown
 
   Index samples() const { return target.cols(); }
   void resize(Index inputs, Index contexts, Index outputs, Index truths, Index samples) {
@@ -60,20 +60,20 @@ struct Batch {
 
 // The distribution that a learning problem is posed over.
 struct Samples {
-  Index batch = 0;          // B, drawn anew each step; 0: a direct problem
+  Index batch = 0;          // B, sampled in each step; 0: a direct problem
   Index data = 0;           // N: the same N samples at every step instead
   Index epoch = 0;          // N: batches are consecutive slices of the same N, a multiple of B
   Index validation = 1024;  // samples that the curves are measured on
   Index contexts = 0;       // p
-  bool has_truth = true;    // whether `draw` fills Batch::truth
+  bool has_truth = true;    // whether `draw` sets Batch::truth
   std::function<RandomStream(std::string_view purpose)> stream = {};
   // Fills column b of every array of the batch from the sample's own stream.
   std::function<void(RandomStream& stream, Index b, Batch& batch)> draw = {};
 };
 
-// A differentiable process P : x (k, B) -> y (m, B), given a context c (p, B), empty for most. One
-// sample a column. Const: what a forward pass leaves behind lives in the caller's Workspace, and
-// the products are taken at the x of the last forward, which the caller has put into w.x.
+// A differentiable process P : x (k, B) -> y (m, B), given a context c (p, B), often empty. One
+// sample per column. Const: the results of a forward pass live in the caller's Workspace, and the
+// products are taken at the x of the last forward, which the caller has stored in w.x.
 
 // How far a local inverse can be trusted.
 enum class Inverse {
@@ -102,9 +102,9 @@ class Physics {
   virtual void pushforward(BatchRef v, BatchOut Jv, Workspace& w) const = 0;  // (k, B) -> (m, B)
   virtual void pullback(BatchRef u, BatchOut JTu, Workspace& w) const = 0;    // (m, B) -> (k, B)
 
-  // Who lacks one leaves it out here, and is not asked for it.
+  // A physics without one of these products omits it here, and the harness never calls it.
   virtual Products products() const { return {}; }
-  // Another process computes it, whose time is not this one's.
+  // Another process computes it; its time does not count as this process's time.
   virtual bool is_elsewhere() const { return false; }
 
   // J of each sample, side by side: (m, k·B). By default from the cheaper product.

@@ -66,10 +66,10 @@ void register_poisson(ProblemRegistry& registry) {
        .formula = "P(x) = ∇⁻²x,  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 6a",
        .note =
-           "The sought x* is smooth noise of our own streams, for seed 0 too: no instance is "
+           "x* is smooth noise from our own random streams, for seed 0, too: no instance is "
            "published. The standard start is 0. Published curves sum |x − x*| over cells, and "
            "so does mode=learn; the error of one instance is ‖x − x*‖. P is linear and inverted "
-           "exactly, so what SIP aims at is x* itself: here SIP is, numerically, supervised "
+           "exactly, so SIP's target is x* itself: here SIP equals supervised "
            "training on exact labels.",
        .aim = Aim::x,  // P is one to one
        .panels = {{.title = "Fig. 6b: learning curves", .kind = "curve"},

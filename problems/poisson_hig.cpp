@@ -45,8 +45,8 @@ class PoissonHig final : public SelfAdjointPhysics {
   Laplacian laplacian_;
 };
 
-// The noise's scale is a factor that its normalization takes away, but for the least wave number
-// that is let through, which at a scale of N is none.
+// The scale of the noise is a factor that the normalization removes, except for the smallest wave
+// number that passes, and at a scale of N there is no such limit.
 Vector noise(Index N, RandomStream& stream) {
   return smooth_noise(N, static_cast<Real>(N), 1, stream);
 }
@@ -87,9 +87,9 @@ void register_poisson_hig(ProblemRegistry& registry) {
        .formula = "P(x) = ∇²x,  L = ½‖P(x) − y*‖²",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
        .note = "Published as a learning problem, with the loss summed over the batch; here it is "
-               "the mean, and what η = 0.01 does there at B = 64 η = 0.64 does here. The problem "
+               "the mean, so that η = 0.64 here equals η = 0.01 there at B = 64. The problem "
                "`poisson` has the inverse physics, P = ∇⁻². P is linear and inverted exactly, so "
-               "what SIP aims at is x* itself.",
+               "SIP's target is x* itself.",
        .aim = Aim::loss,  // what the published curve shows
        .in_all = false,
        .panels = {{.title = "Learning curves", .kind = "curve"},

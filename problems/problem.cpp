@@ -26,7 +26,7 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   if (!parts_.field) return;
   const Field& field = *parts_.field;
   const Index cells = field.is_history() ? field.columns : field.rows * field.columns;
-  // Of two numbers a cell, a velocity, the curl is shown.
+  // A field of two numbers per cell, a velocity, is shown by its curl.
   const bool has_curl = !field.is_history() && inputs() == 2 * cells;
   require((inputs() == cells || has_curl) && outputs() == cells,
           "x and y do not fit the grid of the field");
@@ -38,8 +38,8 @@ Real Problem::x_error(BatchRef x, const Batch& batch) const {
   return parts_.x_error ? parts_.x_error(x, batch) : std::nan("");
 }
 
-// L at y = 0 where there is a signal y*, and at the standard start where there is none; f_L itself
-// where it is more than rounding beside that.
+// L at y = 0 if there is a signal y*, otherwise at the standard start; f_L itself if it is more
+// than rounding compared with that.
 Real Problem::loss_scale(const Batch& batch) const {
   constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
   if (parts_.scale) return *parts_.scale;
@@ -94,8 +94,8 @@ OracleSet Problem::offers() const {
   const Products has = products();
   if (has.has_pullback) offered.add(Oracle::pullback);
   if (has.has_pushforward) offered.add(Oracle::pushforward);
-  // A dense matrix of more than 1 GiB is not offered, nor more than a few products a sample: the
-  // Jacobian of a grid costs as many solves as it has cells.
+  // A dense matrix must need at most 1 GiB and at most a few products per sample: the Jacobian of a
+  // grid costs as many solves as the grid has cells.
   constexpr Real kMostEntries = 1 << 27;
   constexpr Index kMostProducts = 64;
   const Real entries = static_cast<Real>(residuals()) * static_cast<Real>(unknowns());

@@ -47,14 +47,14 @@ struct Series {
       evaluate = {};
 };
 
-// What the tenth is taken of by which starts are drawn around the standard one: max(1, |θᵢ|), or
-// |θᵢ| where each unknown has a scale of its own, as 1e-4 among thousands.
+// The scale of the perturbation for sampled starts, a tenth of it: max(1, |θᵢ|), or |θᵢ| where each
+// unknown has a scale of its own, such as 1e-4 beside thousands.
 enum class StartScale { at_least_one, own };
 
 // standard + 0.1 s N(0, 1), s the scale of each component.
 Vector near(const Vector& standard, StartScale scale, RandomStream& noise);
 
-// θ₀ of a run, and the standard start that it was drawn around: it itself where nothing is drawn.
+// θ₀ of a run, and the standard start that it was sampled around; both are equal without sampling.
 struct Start {
   Start() = default;
   template <std::convertible_to<Vector> Theta>
@@ -64,8 +64,8 @@ struct Start {
   Vector drawn, standard;  // (n)
 };
 
-// What a problem is made of. A direct problem leaves network, input and samples empty; a learning
-// problem leaves target, input, context and truth empty, which `samples` draws.
+// The parts of a problem. A direct problem leaves network, input and samples empty. A learning
+// problem leaves target, input, context and truth empty, which `samples` provides.
 struct ProblemParts {
   std::unique_ptr<Physics> physics;
   Start start;  // θ₀, (n)
@@ -89,7 +89,7 @@ struct ProblemParts {
   std::optional<Field> field = {};  // where x and y are numbers on one grid, for pictures
   History history = {};             // where the field is one: the states between x and y
   Series series = {};               // further quantities to be traced, at most Trace::kSeries
-  // Where to draw the landscape of a two-dimensional problem: low and high corner in x.
+  // The plotted region of a two-dimensional problem: low and high corner in x.
   std::optional<std::array<Real, 4>> window;    // x1 low, x1 high, x2 low, x2 high
   std::optional<std::array<Real, 4>> y_window;  // of y; what the window maps into where empty
   std::string contour_spacing = "logarithm";    // or "fifth root", or "powers of two"
@@ -132,13 +132,13 @@ class Problem {
   Real x_error(BatchRef x, const Batch& batch) const;  // nan where no solution is known
   Real x_error(BatchRef x) const { return x_error(x, batch_); }
 
-  // By what distances from f_L and from x* are called small, on the samples that judge. None hangs
-  // on the drawn start.
+  // The scales for distances from f_L and from x*, on the validation samples. They do not depend on
+  // the sampled start.
   Real loss_scale(const Batch& batch) const;  // of L; not finite where L is not at any reference
   Real x_scale(const Batch& batch) const;     // nan where no solution is known
   Real x_floor(const Batch& batch) const { return parts_.x_floor ? parts_.x_floor(batch) : 0; }
 
-  // Of a learning problem: the batch of a step, counted from 0, and the samples that judge it.
+  // For a learning problem: the batch of a step, counted from 0, and the validation samples.
   void draw_batch(std::int64_t step, Batch& out) const;
   void draw_validation(Batch& out) const;
 
@@ -175,12 +175,12 @@ class Problem {
   Batch batch_;
 };
 
-// What an entry draws its instance from. Seed 0 is the published one.
+// The random numbers and the start of an instance. Seed 0 is the published one.
 class Draw {
  public:
   Draw(std::uint64_t seed, std::string problem) : seed_(seed), problem_(std::move(problem)) {}
   bool is_published() const { return seed_ == 0; }
-  std::uint64_t seed() const { return seed_; }  // for who draws by streams of its own
+  std::uint64_t seed() const { return seed_; }  // for entries that sample from streams of their own
   RandomStream stream(std::string_view purpose, std::uint64_t index = 0) const {
     return {seed_, problem_, purpose, index};
   }
@@ -190,10 +190,10 @@ class Draw {
 
  private:
   std::uint64_t seed_;
-  std::string problem_;  // without options: sweeps see the same draws
+  std::string problem_;  // without options: sweeps see the same samples
 };
 
-// An entry whose `make` is given as a function of the options struct and the draw.
+// An entry with `make` as a function of the options struct and the draw.
 template <class Options>
 ProblemEntry problem_entry(ProblemEntry entry, ProblemParts (*make)(const Options&, const Draw&)) {
   entry.options = option_table<Options>();

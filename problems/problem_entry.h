@@ -1,4 +1,4 @@
-// What the registry knows of a problem: its name, description and options, and how it is made.
+// The registry's view of a problem: its name, description and options, and how to create it.
 // Without Eigen, for code that names problems and does not compute with them.
 #pragma once
 
@@ -39,7 +39,7 @@ struct ProblemEntry {
   std::string formula;    // plain text with the mathematical letters of Unicode
   std::string source;     // author, year, equation
   std::string note = {};  // deviations and what a reader should know
-  Aim aim = Aim::loss;    // what its user wants: a small loss, or the x that was sought
+  Aim aim = Aim::loss;    // success criterion: a small loss, or the true x
   OptionTable options = {};
   // Whether `*` of a suite means it: not where a forward solve takes over a millisecond or an
   // argument is required.
@@ -48,9 +48,9 @@ struct ProblemEntry {
   // false.
   std::string needs_argument = {};
   std::string file = {};           // that registers it, as the registry saw it
-  std::vector<Panel> panels = {};  // figures to draw of its runs
-  // Who computes it, where that is another program: asked of every component that is named, so it
-  // should remember. UsageError where an argument is missing or the other does not answer.
+  std::vector<Panel> panels = {};  // plots of its runs
+  // The external program, if there is one. Called for every component that is named, so it should
+  // cache the answer. UsageError if an argument is missing or the program does not answer.
   std::function<Foreign(const OptionValues& complete_options)> introduce = {};
   std::function<Problem(const OptionValues& complete_options, const Draw&)> make = {};
 };

@@ -1,6 +1,6 @@
 // A problem that another program computes, over frames on a private socket (docs/wire-format.md):
-// process[command="python3 mine.py"]. Each problem that is made has a program of its own, which
-// ends with it. A forward is asked for once a point; products there come from what it left behind.
+// process[command="python3 mine.py"]. Each problem object has its own program, which ends with it.
+// A point needs one forward; the products there use its results.
 #include <array>
 #include <limits>
 
@@ -18,7 +18,7 @@ struct Box {
   bool holds(VectorRef x) const {
     return is_everything() || ((x.array() >= lower.array()) && (x.array() <= upper.array())).all();
   }
-  // What is no number is moved to a lower bound.
+  // NaN is moved to the lower bound.
   Vector nearest(VectorRef x) const {
     if (is_everything()) return x;
     const Vector above = (x.array() > lower.array()).select(x, lower);
@@ -50,7 +50,7 @@ struct Session {
   std::vector<std::uint32_t> free_points;
 };
 
-// Of a workspace: where its products are taken, and room for what does not lie in one piece.
+// Per workspace: the point of its products, and buffers for data that is not contiguous.
 struct OwnPoint final : Scratch {
   ~OwnPoint() override {
     if (session) session->free_points.push_back(number);
@@ -95,7 +95,7 @@ class ProcessPhysics final : public Physics {
   Inverse inverse_kind() const override { return inverse_; }
   Index inverse_price() const override { return inverse_price_; }
 
-  // Outside its bounds there is no value; the program is asked at the nearest x within.
+  // Outside the bounds P has no value; the program computes the nearest x inside.
   void forward(BatchRef x, BatchRef, BatchOut y, Workspace& w) const override {
     OwnPoint& point = point_of(w);
     if (box_.is_everything()) return ask(Verb::linearize, x, y, point);
@@ -120,7 +120,7 @@ class ProcessPhysics final : public Physics {
 
   Success local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const override {
     const Matrix targets = y, starts = x0;  // each in one piece
-    Vector answer(x.size() + y.cols());     // x, then a verdict a sample
+    Vector answer(x.size() + y.cols());     // x, then one success flag per sample
     const std::array<std::span<const Real>, 2> given = {numbers_of(targets), numbers_of(starts)};
     session_->line.send(Verb::inverse, 0, given);
     session_->line.receive_answer(Verb::inverse,
@@ -183,7 +183,8 @@ ProblemParts process_parts(const ProblemHandshake& said, std::shared_ptr<Session
                      .aim = said.aim,
                      .minimum = said.minimum};
   if (!said.drawn.empty()) parts.start = Start(vector_of(said.drawn), standard);
-  parts.start.drawn = box_of(said).nearest(parts.start.drawn);  // drawn around, it may lie without
+  parts.start.drawn =
+      box_of(said).nearest(parts.start.drawn);  // a sampled start may lie outside the bounds
   if (said.truth.empty()) return parts;
   const Matrix truth = vector_of(said.truth);
   parts.truth = truth;
@@ -214,7 +215,7 @@ void register_process(ProblemRegistry& registry) {
   registry.add({.name = "process",
                 .title = "A problem that another program computes",
                 .formula = "y = P(x) and its products, by frames over a private socket",
-                .source = "the program's own, which its record names",
+                .source = "see the record",
                 .options = option_table<ProcessOptions>(),
                 .in_all = false,
                 .needs_argument = "process[command=…]",

@@ -20,8 +20,8 @@ void fields(Options& o, auto& field) {
   field("loss", o.loss, {"", "residual"},
         "residual: y = (I − aaᵀ)ψ and y* = 0, the same loss as a sum of squares");
   field(kEpochOption, o.epoch, between(0, 1e6),
-        "N: mode=learn goes through the same N samples again and again, batch by batch; 0: fresh "
-        "samples each step");
+        "N: mode=learn takes the same N samples batch by batch, again and again; 0: new "
+        "samples in each step");
   fields(o.learning, field);
 }
 
@@ -47,8 +47,8 @@ class Infidelity final : public Loss {
   }
 };
 
-// a = f₁ψ₂ + f₂ψ₃, (f₁, f₂) a normalized pair of Gaussians: real, for the published scripts draw
-// phases and leave them out.
+// a = f₁ψ₂ + f₂ψ₃, (f₁, f₂) a normalized pair of Gaussians. It is real: the published scripts
+// sample phases but do not use them.
 Vector superposition(RandomStream& stream) {
   const Eigen::Vector2d f = stream.normal_vector(2).normalized();
   return f[0] * ParticleInABox::eigenstate(2) + f[1] * ParticleInABox::eigenstate(3);
@@ -115,10 +115,10 @@ void register_quantum_dipole(ProblemRegistry& registry) {
        .formula = "iψ̇ = (−∂² + u(t) x) ψ on [0, 2],  ψ(0) = ψ₁,  L = 1 − |⟨a, ψ(T)⟩|²,  "
                   "a = f₁ψ₂ + f₂ψ₃",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
-       .note = "Published as a learning problem. mode=direct seeks the 384 controls of one target, "
+       .note = "Published as a learning problem. mode=direct finds the 384 controls of one target, "
                "from u = 1, for at u = 0 the gradient vanishes. loss=residual has the same loss as "
                "the sum of squares ‖(I − aaᵀ)ψ‖², of which methods of least squares have "
-               "a use. The targets are real, as published: the phases that the scripts draw are "
+               "a use. The targets are real, as published: the phases that the scripts sample are "
                "not used.",
        .aim = Aim::loss,  // any control that arrives will do
        .in_all = false,

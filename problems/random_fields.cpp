@@ -1,6 +1,6 @@
 // Random fields on a grid: the generators of Holl, Koltun, Thuerey (2022), published scripts for
 // Poisson and heat, with the noise and the masks as PhiFlow 2.2.3 defines them. The streams are
-// ours, so the fields are of the same law, not the same numbers.
+// our own, so the fields have the same distribution but not the same numbers.
 #include "problems/random_fields.h"
 
 #include <algorithm>
@@ -31,8 +31,8 @@ Vector smooth_noise(Index N, Real scale, Real smoothness, RandomStream& stream) 
 }
 
 Vector soft_rectangles(Index N, RandomStream& stream) {
-  constexpr Index kSlots = 10;                  // all are drawn, the first `count` have a strength
-  const Real radius = std::numbers::sqrt2 / 2;  // of a cell: the width of a soft edge
+  constexpr Index kSlots = 10;  // all are sampled; only the first `count` have a strength
+  const Real radius = std::numbers::sqrt2 / 2;  // in cells: the width of a soft edge
   const Real unit = static_cast<Real>(N) / 64;
   const auto count = static_cast<Index>(4 + 7 * stream.uniform());
   Matrix field = Matrix::Zero(N, N);

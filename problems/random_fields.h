@@ -1,4 +1,4 @@
-// Random fields on an N×N grid of unit cells, the inputs x* that the grid problems seek.
+// Random fields on an N×N grid of unit cells: the truths x* of the grid problems.
 #pragma once
 
 #include "core/random.h"

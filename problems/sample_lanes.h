@@ -11,7 +11,7 @@ namespace isoline::problems {
 inline constexpr Index kLanes = 8;
 using Lanes = Eigen::Array<Real, kLanes, 1>;
 template <Index components>
-using LanesOf = Eigen::Array<Real, kLanes, static_cast<int>(components)>;  // one a column
+using LanesOf = Eigen::Array<Real, kLanes, static_cast<int>(components)>;  // one per column
 
 inline Index groups_of_lanes(Index samples) { return (samples + kLanes - 1) / kLanes; }
 

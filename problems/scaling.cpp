@@ -1,7 +1,7 @@
-// P(x) = (x1, α x2), y* = 0: nothing but a change of units. A method invariant under linear maps of
-// x takes the same path in y for every α. Thuerey et al., Physics-based Deep Learning, chapter
-// "Scale-Invariance and Inversion"; the start P⁻¹(3, 3), which all α share, is ours. The book's
-// loss is |P|², ours by default half of that, as of all problems here; loss=square is the book's.
+// P(x) = (x1, α x2), y* = 0: a change of units. A method that is invariant under linear maps of x
+// takes the same path in y for every α. Thuerey et al., Physics-based Deep Learning, chapter
+// "Scale-Invariance and Inversion". The start P⁻¹(3, 3), equal for all α, is our own choice. The
+// book's loss is |P|²; here, as in all problems, half of that. loss=square is the book's.
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
 

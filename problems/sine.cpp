@@ -143,9 +143,10 @@ void register_sine(ProblemRegistry& registry) {
        .group = Group::toy,
        .formula = "P(x) = (sin(γz₁/ξ), γξz₂),  z = R_φ x,  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 5",
-       .note = "form=code is what the published scripts compute; form=paper, (sin(γz₁)/ξ, γξz₂), "
-               "is what the paper prints, its y₁* divided by ξ. Published as a learning problem; "
-               "the start (6, 3)/γ, half-way to the corner of its landscape, is ours.",
+       .note =
+           "form=code is what the published scripts compute; form=paper, (sin(γz₁)/ξ, γξz₂), "
+           "is what the paper prints, its y₁* divided by ξ. Published as a learning problem; "
+           "the start (6, 3)/γ, half-way to the corner of the plotted region, is our own choice.",
        .aim = Aim::loss,  // infinitely many x give y*, and any of them will do
        .panels = {{.title = "Fig. 5b: ξ = 1, φ = 45°",
                    .kind = "curve",

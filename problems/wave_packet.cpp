@@ -2,10 +2,10 @@
 //
 //   P(x)ᵢ = a e^(−τ²/2w²) cos(ωτ),  τ = tᵢ − c,  x = (a, c, w, ω),  y* = P(x*) + σ N(0, 1).
 //
-// A period more or less between the packet sought and the one tried leaves a minimum of its own, so
-// that most searches end in one that is not x*. Holl, Koltun, Thuerey (2022) fit wave packets in
-// their appendix, which was not at hand: formula, ranges and noise here are ours. The local inverse
-// is five steps of Levenberg's and Marquardt's toward y from x₀, approximate.
+// If the candidate has one period more or less than the true packet, there is another local
+// minimum, where most searches end. Holl, Koltun, Thuerey (2022) fit wave packets in their
+// appendix, which was not available: formula, ranges and noise are our own. The local inverse is
+// five steps of Levenberg-Marquardt toward y from x₀, approximate.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@ void fields(Options& o, auto& field) {
 constexpr Index kTimes = 64;
 constexpr Real kFirst = -8, kLast = 8;
 
-// Where x* is drawn from, uniformly; the standard start is in the middle of it.
+// The range of x*, sampled uniformly; the standard start is its centre.
 constexpr std::array<Real, 4> kLeast = {0.5, -1.5, 0.5, 2}, kMost = {1.5, 1.5, 1.5, 4};
 
 class WavePacket final : public DensePhysics {
@@ -103,7 +103,7 @@ class WavePacket final : public DensePhysics {
 
 bool WavePacket::fit(VectorRef y, VectorRef x0, int steps, VectorOut x) const {
   x = x0;
-  Vector r(kTimes), left(kTimes), moved(4);  // y − P(x) before and after a step
+  Vector r(kTimes), left(kTimes), moved(4);  // y − P(x) before and after a step; the moved x
   Matrix J(kTimes, 4), A(4, 4), step(4, 1);
   Real damping = 1e-3;  // of JᵀJ's diagonal
   value(x, r);
@@ -201,7 +201,7 @@ void register_wave_packet(ProblemRegistry& registry) {
                   "L = ½‖P(x) − y*‖²",
        .source = "after Holl, Koltun, Thuerey (2022), appendix",
        .note =
-           "The appendix was not at hand: formula, ranges, noise and the standard start, the middle of the ranges, are ours. x* is drawn for each seed. Levenberg-Marquardt’s method ends near x* in 87 of the first 200 seeds and gradient descent of rate 0.01 in 133; what traps the others is the packet’s own periods. The least loss is that of the fit from x*, its distance from x* the floor under the error in x, in which w and ω count without their signs.",
+           "The appendix was not available: formula, ranges, noise and the standard start, the centre of the ranges, are our own. x* is sampled for each seed. Levenberg-Marquardt ends near x* in 87 of the first 200 seeds, and gradient descent with rate 0.01 in 133; the packet’s periods trap the others. The least loss is that of the fit from x*. The distance of this fit from x* is the floor under the error in x, which ignores the signs of w and ω.",
        .aim = Aim::x,
        .panels = {{.title = "Learning curves", .kind = "curve"}}},
       make_wave_packet));

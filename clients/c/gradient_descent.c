@@ -1,5 +1,5 @@
-// Steepest descent in C: θ ← θ − η ∇L. Cauchy (1847). It is `gd` of Isoline itself, and gives the
-// same runs.
+// Steepest descent in C: θ ← θ − η ∇L. Cauchy (1847). Gives the same runs as Isoline's
+// `gd`.
 #include <stdlib.h>
 
 #include "isoline.h"

@@ -1,5 +1,5 @@
 // Rosenbrock's valley in C: P(x) = (10 (x2 − x1²), 1 − x1), y* = 0. Moré, Garbow, Hillstrom (1981),
-// problem 1. It is `rosenbrock` of Isoline itself, and gives the same runs.
+// problem 1. Gives the same runs as Isoline's `rosenbrock`.
 #include <stddef.h>
 
 #include "isoline.h"

@@ -1,11 +1,11 @@
-"""Writes a curve that others computed as a record of a result folder.
+"""Converts a published curve to a record in a result folder.
 
     python3 clients/python/import_curve.py theirs.csv --out results/ours
 
-theirs.csv has a point a row; theirs.json beside it says what the curve is of and which column holds
-what (schema isoline.import/1, docs/exchanging-results.md). The record is judged by its own figures
-and marked as imported; nothing of it is verified. A curve on a problem of Isoline is measured by
-the targets of that problem and seed, which are read from a record in the same folder.
+theirs.csv has one point per row. theirs.json beside it describes the curve and its columns (schema
+isoline.import/1, docs/exchanging-results.md). The record is marked as imported, and its values are not
+verified. The targets for a curve on a problem of Isoline come from a record of the same problem and
+seed in the same folder.
 """
 
 import argparse
@@ -31,7 +31,7 @@ MOST_COUNT = 2 ** 53  # above it doubles skip whole numbers
 
 
 class Refused(Exception):
-    """What is wrong with a file, in one sentence."""
+    """An error in a file, in one sentence."""
 
 
 def number(text):
@@ -46,7 +46,7 @@ def fnv1a(text):
 
 
 def plain(value):
-    """JSON of Isoline: infinities and not-a-number as texts."""
+    """Isoline's JSON: infinities and NaN as texts."""
     if isinstance(value, float) and not math.isfinite(value):
         return "nan" if math.isnan(value) else "inf" if value > 0 else "-inf"
     if isinstance(value, dict):
@@ -59,7 +59,7 @@ def json_text(value):
 
 
 def cell_digest(request):
-    """The digest that names a cell, as core/records/request.cpp has it."""
+    """The digest that names a cell, as in core/records/request.cpp."""
     def given(component):
         return {name: value for name, value in component["options"].items() if value != ""}
     problem, optimizer = request["problem"], request["optimizer"]
@@ -70,7 +70,7 @@ def cell_digest(request):
 
 
 def component(spec):
-    """What was given, as it was given: "name[a=1,b=text]"."""
+    """The component of a specification such as "name[a=1,b=text]"."""
     form = re.fullmatch(r"([A-Za-z][\w-]*)(?:\[(.*)\])?", spec)
     if not form:
         raise Refused(f"'{spec}' is not a specification such as name[option=1]")
@@ -81,7 +81,7 @@ def component(spec):
 
 
 def described(path):
-    """The description, its laws held."""
+    """The description, validated."""
     def require(is_good, why):
         if not is_good:
             raise Refused(f"{path}: {why}")
@@ -98,11 +98,11 @@ def described(path):
     for name, value in told.items():
         kind = (str if name in texts else (int, float) if name in numbers else int if name in counts
                 else dict if name == "columns" else None)
-        require(kind, f"no member {name} is known")
-        require(isinstance(value, kind) and not isinstance(value, bool), f"{name} is of another type")
+        require(kind, f"unknown member {name}")
+        require(isinstance(value, kind) and not isinstance(value, bool), f"{name} has the wrong type")
     for name in ("problem", "optimizer", "source", "date", "columns"):
         require(told.get(name), f"{name} is missing")
-    require(told.get("seed", -1) >= 0, "seed must be a whole number from 0")
+    require(told.get("seed", -1) >= 0, "seed must be an integer of at least 0")
     require(told.setdefault("status", "budget") in STATUSES, f"status must be one of {STATUSES}")
     date = told["date"] if "T" in told["date"] else told["date"] + "T00:00:00Z"
     try:
@@ -112,26 +112,26 @@ def described(path):
                        f"got '{told['date']}'")
     told["date"] = date
     require("scale" not in told or told.get("minimum") is not None,
-            "a scale is one of the loss over a minimum: name both")
+            "scale needs minimum: it is a scale of the loss above the minimum")
     require(told.get("scale", 1) > 0, f"scale must be above 0, got {told.get('scale')}")
     columns = told["columns"]
     for name, column in columns.items():
-        require(name in COLUMNS, f"columns: no quantity {name} is known")
+        require(name in COLUMNS, f"columns: unknown quantity {name}")
         require(isinstance(column, str) and column or
                 isinstance(column, int) and not isinstance(column, bool) and column > 0,
-                f"columns: {name} must be a name or a place from 1, got {column!r}")
-    require("loss" in columns, "columns must name the loss")
+                f"columns: {name} must be a column name or a position from 1, got {column!r}")
+    require("loss" in columns, "columns must contain loss")
     calls = [name for name in columns if name in ORACLES]
     dear = [name for name in calls if name not in PLAIN_PRICES]
-    require("work" in columns or not dear, f"what a call of {''.join(dear[:1])} costs depends on the "
-            "problem: name the column of work, too")
+    require("work" in columns or not dear, f"columns must contain work, too: the cost of {''.join(dear[:1])} "
+            "depends on the problem")
     require("work" in columns or calls,
-            "columns must name what the curve cost: work, or calls as forward")
+            "columns must contain the cost: work, or counts of calls such as forward")
     return told
 
 
 def curve_of(path, told):
-    """Columns by quantity; iterations are counted from 0 where no column has them."""
+    """The columns by quantity; without a column of iterations, rows are counted from 0."""
     def refuse(line, why):
         raise Refused(f"{path}: line {line}: {why}")
 
@@ -149,29 +149,29 @@ def curve_of(path, told):
                     for quantity, column in told["columns"].items():
                         if isinstance(column, int):
                             if column > width:
-                                refuse(line, f"{quantity} should stand in column {column}, and there "
-                                             f"are {width}")
+                                refuse(line, f"{quantity} must be in column {column}, but the file has "
+                                             f"{width}")
                             places[quantity] = column - 1
                         elif not has_header:
-                            refuse(line, f"there is no line of names to find '{column}' in: name the "
-                                         f"column of {quantity} by its place")
+                            refuse(line, f"the file has no header with '{column}'; give the position of "
+                                         f"the column of {quantity}")
                         elif row.count(column) != 1:
                             refuse(line, f"two columns are named '{column}'" if column in row else
-                                   f"no column is named '{column}': there are {', '.join(row)[:120]}")
+                                   f"no column is named '{column}'; the columns are {', '.join(row)[:120]}")
                         else:
                             places[quantity] = row.index(column)
                     curve = {quantity: [] for quantity in places}
                     if has_header:
                         continue
                 if len(row) != width:
-                    refuse(line, f"it has {len(row)} fields, and the first line has {width}")
+                    refuse(line, f"expected {width} fields, as in the first line, got {len(row)}")
                 for quantity, place in places.items():
                     field = row[place]
                     value = number(field)
                     is_count = quantity in ("iteration", "work") or quantity in ORACLES
                     if is_count:
                         if value is None or not 0 <= value <= MOST_COUNT or value != int(value):
-                            refuse(line, f"{quantity} must be a whole number from 0, got "
+                            refuse(line, f"{quantity} must be an integer of at least 0, got "
                                          f"'{field[:40]}'")
                         value = int(value)
                     elif value is None:
@@ -182,24 +182,24 @@ def curve_of(path, told):
                     if is_count or quantity in TIMES:
                         last = previous.get(quantity, value)
                         if value < last:
-                            refuse(line, f"{quantity} falls from {last} to {value}")
+                            refuse(line, f"{quantity} must not decrease, but falls from {last} to {value}")
                         if quantity == "iteration" and curve[quantity] and value == last:
-                            refuse(line, f"iteration {value} stands there twice")
+                            refuse(line, f"iteration {value} occurs twice")
                         previous[quantity] = value
                     curve[quantity].append(value)
         except (csv.Error, UnicodeDecodeError) as error:
             refuse(rows.line_num, str(error))
     if width is None:
-        raise Refused(f"{path}: it is empty")
+        raise Refused(f"{path}: the file is empty")
     points = len(curve["loss"])
     if points == 0:
-        raise Refused(f"{path}: it holds no row of numbers")
+        raise Refused(f"{path}: the file has no row of numbers")
     curve.setdefault("iteration", list(range(points)))
     calls = [name for name in curve if name in PLAIN_PRICES]
     curve.setdefault("work", [sum(PLAIN_PRICES[name] * curve[name][i] for name in calls)
                               for i in range(points)])
     if not any(name in ORACLES for name in curve):
-        curve["forward"] = curve["work"]  # else the curve would cost nothing
+        curve["forward"] = curve["work"]  # otherwise the curve would cost nothing
     for name in TIMES:
         curve.setdefault(name, [math.inf] * points)
     for name in ("x_error", "gradient_norm", "step_norm"):
@@ -208,7 +208,7 @@ def curve_of(path, told):
 
 
 def kept_points(iterations):
-    """Those that the meter keeps, 0 to 100 and then 32 a decade, and the last."""
+    """The iterations that the meter keeps: 0 to 100, then 32 per decade, and the last."""
     kept, following = [], 0
     for i, iteration in enumerate(iterations):
         if iteration < following and i + 1 < len(iterations):
@@ -225,7 +225,7 @@ def kept_points(iterations):
 
 
 def hits_of(curve, minimum, scale):
-    """The first of all rows at or below each target."""
+    """The first row at or below each target."""
     calls = [name for name in curve if name in ORACLES]
     rows, i = [], 0
     for rung in RUNGS:
@@ -241,7 +241,7 @@ def hits_of(curve, minimum, scale):
 
 
 def template_for(told, folder):
-    """A record of the folder of the same problem and seed, or None where the problem is not there."""
+    """A record of the same problem and seed in the folder, or None if the folder lacks the problem."""
     name = component(told["problem"])["name"]
     is_there = False
     for file in sorted((folder / "runs").glob("*.json")):
@@ -249,12 +249,12 @@ def template_for(told, folder):
             record = json.loads(file.read_text(encoding="utf-8"))
             request = record["request"]
         except (OSError, ValueError, KeyError, TypeError):
-            continue  # `isoline validate` names what is not a record
+            continue  # `isoline validate` names files that are not records
         if "imported" in record or record["status"] == "inapplicable":
             continue
         if request["optimizer"]["name"] == component(told["optimizer"])["name"]:
-            raise Refused(f"{request['optimizer']['name']} is an optimizer of ours: name theirs "
-                          "otherwise, so that no row mixes both")
+            raise Refused(f"{request['optimizer']['name']} is an optimizer of Isoline: choose another "
+                          "name, so that no row mixes both")
         problem = request["problem"]
         is_there = is_there or problem["name"] == name
         if told["problem"] in (problem["spec"], problem.get("asked")) and told["seed"] == request["seed"]:
@@ -262,16 +262,16 @@ def template_for(told, folder):
                 raise Refused(f"{file}: its cell is not the digest of its request")
             return record
     if is_there:
-        raise Refused(f"{folder} holds no run of {told['problem']} with seed {told['seed']}, whose "
-                      "targets the curve is measured by: run one first")
+        raise Refused(f"{folder} holds no run of {told['problem']} with seed {told['seed']}: run one "
+                      "first, since the curve is measured by its targets")
     return None
 
 
 def record_of(told, curve, files, template):
     unknown = "unknown"
     if template and any(name in told for name in ("minimum", "scale", "x_scale")):
-        raise Refused(f"{told['problem']} is a problem of ours, whose minimum and scales are known: "
-                      "leave out theirs")
+        raise Refused(f"{told['problem']} is a problem of Isoline, which knows its minimum and scales: "
+                      "remove minimum, scale and x_scale")
     request = {"problem": template["request"]["problem"] if template else component(told["problem"]),
                "optimizer": component(told["optimizer"]), "seed": told["seed"], "threads": 1,
                "rates": "", "budget": {"iterations": curve["iteration"][-1], "work": None,
@@ -334,7 +334,7 @@ def sheet(kind, given, title, told, **members):
 
 
 def write(path, value):
-    """Whole or not at all."""
+    """Writes the complete file or nothing."""
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_suffix(f".{os.getpid()}.tmp")
     fresh.write_text(json_text(value) + "\n", encoding="utf-8")
@@ -346,7 +346,7 @@ def import_curve(curve_file, description_file, folder):
     read = curve_file.read_bytes()
     if b"\0" in read:
         line = read[:read.index(b"\0")].count(b"\n") + 1
-        raise Refused(f"{curve_file}: line {line}: it holds a zero byte")
+        raise Refused(f"{curve_file}: line {line}: a zero byte is not allowed")
     curve = curve_of(curve_file, told)
     template = template_for(told, folder)
     files = {"description": description_file.read_text(encoding="utf-8"), "bytes": read,
@@ -355,24 +355,24 @@ def import_curve(curve_file, description_file, folder):
     optimizer, problem = record["request"]["optimizer"], record["request"]["problem"]
     out = folder / "runs" / f"{record['cell']}-{record['build']}.json"
     write(out, record)
-    sheets = [sheet("optimizer", optimizer, "imported: a method of others, by its own figures", told,
-                    family="imported", note=f"Imported from {curve_file.name}: nothing of it was run "
-                                            "or verified here.")]
+    sheets = [sheet("optimizer", optimizer, "imported method; its values are not verified", told,
+                    family="imported", note=f"Imported from {curve_file.name}; Isoline neither ran nor "
+                                            "verified it.")]
     if not template:
-        sheets.append(sheet("problem", problem, "a problem of others", told, inverse="none",
+        sheets.append(sheet("problem", problem, "imported problem", told, inverse="none",
                             unknowns=told.get("unknowns", 0), residuals=told.get("residuals", 0)))
-        print(f"{problem['name']} has no run in {folder}: it stands in a table of its own")
+        print(f"{problem['name']} has no run in {folder}; it gets a table of its own")
     for each in sheets:
         file = folder / "components" / f"{each['kind']}-{each['name']}-{fnv1a(each['spec'])}.json"
         if not file.exists():
             write(file, each)
     print(f"{out}: {problem['spec']} × {optimizer['spec']}, seed {told['seed']}, "
-          f"{len(curve['loss'])} points, {len(record['curve']['loss'])} kept: imported, never verified")
+          f"{len(curve['loss'])} points, {len(record['curve']['loss'])} kept; imported, not verified")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("curve", type=pathlib.Path, help="CSV, a point a row")
+    parser.add_argument("curve", type=pathlib.Path, help="CSV file, one point per row")
     parser.add_argument("--description", type=pathlib.Path, help="default: CURVE with .json")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="the result folder")
     given = parser.parse_args()

@@ -1,12 +1,12 @@
 """Isoline from Python: a simulator as a problem, a method as an optimizer.
 
-One file, the standard library, and NumPy where it is installed. A script that imports it is
-started by Isoline, as in
+One file. It needs the standard library only, and uses NumPy if that is installed. Isoline starts the
+script that imports this module:
 
     isoline run --problem 'process[command="python3 mine.py"]'
 
-and speaks with it over a socket of its own: what it prints does not matter. docs/wire-format.md
-has the frames, docs/bring-a-simulator.md and docs/bring-an-optimizer.md the way there.
+Both exchange frames over a private socket, so the script may print anything. docs/wire-format.md
+describes the frames; docs/bring-a-simulator.md and docs/bring-an-optimizer.md have examples.
 """
 
 import array
@@ -19,7 +19,7 @@ import sys
 
 try:
     import numpy
-except ImportError:  # then numbers are lists
+except ImportError:  # numbers are lists then
     numpy = None
 
 PROTOCOL = 1
@@ -32,21 +32,21 @@ HEAD = struct.Struct("<IIQ")
 
 
 class Stop(SystemExit):
-    """The run is over: its budget is spent, or its target met. Leaves the script, quietly."""
+    """The run is over: the budget is spent or the target is reached. Exits the script silently."""
 
     def __init__(self):
         super().__init__(0)
 
 
 class Refused(RuntimeError):
-    """What was asked is not given, and why."""
+    """Isoline or the problem refused a request; the message gives the reason."""
 
 
 # --- numbers: arrays of NumPy, or lists
 
 
 def _column(values):
-    """Something one-dimensional of floats, as bytes can be made of."""
+    """A flat array of doubles, which supports the buffer protocol."""
     if hasattr(values, "detach"):  # a tensor of torch
         values = values.detach().cpu().numpy()
     if numpy is not None:
@@ -63,14 +63,14 @@ def _flat(values):
 
 
 def _vector(buffer):
-    """A copy of the numbers in some bytes."""
+    """A copy of the doubles in a buffer."""
     if numpy is not None:
         return numpy.frombuffer(buffer, dtype=numpy.float64).copy()
     return array.array("d", bytes(buffer)).tolist()
 
 
 def _by_columns(matrix, rows, columns):
-    """A matrix column by column, whoever made it."""
+    """A matrix of any package, flattened column by column."""
     if hasattr(matrix, "detach"):
         matrix = matrix.detach().cpu().numpy()
     if numpy is not None:
@@ -101,7 +101,7 @@ class _Line:
             self.socket.sendall(b"".join([head, *views])[sent:])
 
     def receive(self):
-        """The verb, the status and the payload of a frame, until the next one."""
+        """The verb, the status and the payload of a frame. The payload is valid until the next call."""
         got = self.socket.recv_into(self.buffer)
         while got < HEAD.size:
             got += self._more(got)
@@ -118,7 +118,7 @@ class _Line:
     def _more(self, got):
         more = self.socket.recv_into(self.view[got:]) if got else 0
         if more == 0:
-            raise Stop  # whoever started this has hung up
+            raise Stop  # Isoline has closed the socket
         return more
 
 
@@ -126,7 +126,7 @@ _line, _greeting = None, None
 
 
 def _greeted():
-    """The line, and what was said first; connects at the first call."""
+    """The line and the first message from Isoline; connects at the first call."""
     global _line, _greeting
     if _line is not None:
         return _line, _greeting
@@ -134,7 +134,7 @@ def _greeted():
     if descriptor is None:
         script = sys.argv[0] or "mine.py"
         sys.exit(
-            "This script is started by Isoline, as in\n"
+            "Isoline starts this script; run, for example:\n"
             f"  isoline check 'process[command=\"python3 {script}\"]'"
         )
     _line = _Line(int(descriptor))
@@ -144,14 +144,14 @@ def _greeted():
 
 
 def seed():
-    """The seed of this run; of 0 is the instance as published."""
+    """The seed of this run; seed 0 is the published instance."""
     return int(_greeted()[1].get("seed", 0))
 
 
 def _introduce(line, greeting, role, said):
     if greeting["role"] != role:
         article = "an" if role == "optimizer" else "a"
-        wrong = f"this script is {article} {role}, and was asked as {greeting['role']}"
+        wrong = f"this script is {article} {role}; use it as such, not as {greeting['role']}"
         line.send(HELLO, FAILED, wrong.encode())
         sys.exit(0)
     packages = {}
@@ -172,7 +172,7 @@ def _introduce(line, greeting, role, said):
 
 
 class _Point:
-    """A forward pass and what its products need."""
+    """A forward pass, with the data that its products need."""
 
     def __init__(self, problem, x):
         self.problem, self.x, self.matrix = problem, x, None
@@ -191,7 +191,7 @@ class _Point:
 
 
 class _Given:
-    """Products that the caller wrote."""
+    """Products from functions of the user."""
 
     differences, pushforward_price, pullback_price = False, 1, 1
 
@@ -214,7 +214,7 @@ class _Given:
 
 
 class _Torch(_Given):
-    """Products by torch.autograd from the graph of the one forward."""
+    """Products by torch.autograd, from the graph of the single forward pass."""
 
     def __init__(self, forward):
         super().__init__(forward, True, True, None)
@@ -229,7 +229,7 @@ class _Torch(_Given):
         weight = self.torch.as_tensor(u, dtype=self.torch.float64)
         return _column(self._gradient(point.graph, point.leaf, weight, point.x))
 
-    def push(self, point, v):  # Jᵀ u is linear in u: its own pullback is J
+    def push(self, point, v):  # Jᵀ u is linear in u; its pullback is J
         u = self.torch.zeros_like(point.graph, requires_grad=True)
         pulled = self._gradient(point.graph, point.leaf, u, point.x, True)
         weight = self.torch.as_tensor(v, dtype=self.torch.float64)
@@ -265,7 +265,7 @@ class _Jax(_Given):
 
 
 class _Differences(_Given):
-    """Products by central differences, and their price in forwards."""
+    """Products by central differences, with their nominal cost in forwards."""
 
     differences = True
 
@@ -305,7 +305,7 @@ def _products_of(forward, start, vjp, jvp, jacobian, differences):
         try:
             kind(forward).forward_at(_Empty(), start)
         except (TypeError, AttributeError, RuntimeError):
-            continue  # its numbers are not that package's
+            continue  # forward does not work with numbers of this package
         return kind(forward)
     return _Given(forward, None, None, None)
 
@@ -333,15 +333,19 @@ def problem(
     note=None,
     source=None,
 ):
-    """Is a problem from here on: find x with forward(x) = target, from `start`. Never returns.
+    """Serves a problem to Isoline: find x with forward(x) = target, from `start`. Never returns.
 
-    forward(x) -> y. Products with its Jacobian come from torch or jax, where the numbers are
-    theirs; from vjp(x, u) -> Jᵀu, jvp(x, v) -> Jv, jacobian(x) -> (m, n), where they are given; or
-    with differences=True from differences of forward, marked and priced as such. Without any of
-    them the problem offers losses alone. inverse(y, x0) -> x, or None where there is none.
-    truth: the x that the target was made of. drawn: a start of this seed() instead of one that
-    Isoline draws around `start`. bounds=(lower, upper), each a number or one for each of x: without
-    them it has no value, and is not asked. aim="x" where x is sought, and not a small loss alone.
+    forward(x) -> y. Products with the Jacobian come from one of these:
+    - vjp(x, u) -> Jᵀu, jvp(x, v) -> Jv, jacobian(x) -> (m, n), if passed;
+    - torch or jax, if forward uses their numbers;
+    - central differences, with differences=True; the record says so, and their cost is counted.
+    Otherwise the problem offers losses only.
+
+    inverse(y, x0) -> x, or None without a solution.
+    truth: the x that produced the target.
+    drawn: the start of this seed(), instead of one that Isoline samples near `start`.
+    bounds=(lower, upper): numbers or lists; Isoline does not call forward outside them.
+    aim="x": the user wants the true x, not only a small loss.
     """
     line, greeting = _greeted()
     start = _vector(_column(start))
@@ -388,7 +392,7 @@ def _serve(line, products, inverse, n, m):
         verb, number, payload = line.receive()
         try:
             answer = _answer(verb, number, payload, points, products, inverse, n, m)
-        except Exception as error:  # the cell fails with this text, and its output has the rest
+        except Exception as error:  # the cell fails with this message; the traceback goes to its output
             import traceback
 
             traceback.print_exc()
@@ -414,17 +418,17 @@ def _answer(verb, number, payload, points, products, inverse, n, m):
         return [_by_columns(point.jacobian(), m, n) for point in points[number]]
     if verb == INVERSE:
         return _inverted(payload, inverse, n, m)
-    raise Refused(f"verb {verb} is not known")
+    raise Refused(f"unknown verb {verb}")
 
 
 def _sized(values, count, name):
     if len(values) != count:
-        raise Refused(f"{name} gave {len(values)} numbers, and {count} are due")
+        raise Refused(f"{name} must return {count} numbers, got {len(values)}")
     return values
 
 
 def _samples(payload, size):
-    """Each sample of a batch, a column each."""
+    """The samples of a batch."""
     if len(payload) == 8 * size:
         return (_vector(payload),)
     return [_vector(payload[i : i + 8 * size]) for i in range(0, len(payload), 8 * size)]
@@ -443,12 +447,13 @@ def _inverted(payload, inverse, n, m):
 
 
 class optimizer:
-    """Is an optimizer from here on: its x0, and what it may ask of L and of r = (y − y*)/√B.
+    """An optimizer that Isoline runs: x0, and the oracles of L and of r = (y − y*)/√B.
 
-    needs: which of "pullback", "jacobian", "pushforward", "hessian_product" it will ask; forward
-    always. least_squares=True where it descends ½‖r‖² whatever the loss. reports=True where it
-    calls report(x) once an iteration; else each new best point counts as one. Every question
-    raises Stop when the run is over, which leaves the script.
+    needs: the required derivatives, of "pullback", "jacobian", "pushforward", "hessian_product".
+    least_squares=True: the method minimizes ½‖r‖², whatever the loss of the problem is.
+    reports=True: the script calls report(x) once per iteration. Otherwise each new best point counts
+    as one iteration.
+    When the run is over, every method raises Stop, which exits the script.
     """
 
     def __init__(
@@ -458,7 +463,7 @@ class optimizer:
         said = {"name": name, "note": note, "source": source, "needs": list(needs)}
         said.update(least_squares=least_squares, reports=reports)
         _introduce(self._line, greeting, "optimizer", said)
-        verb, _, payload = self._line.receive()  # whoever only wanted to know has hung up by now
+        verb, _, payload = self._line.receive()  # for a mere description, Isoline closes the socket here
         begun = _vector(payload)
         self.n, self.residuals, self.x0 = int(begun[0]), int(begun[1]), begun[2:]
 
@@ -471,12 +476,12 @@ class optimizer:
         return self._ask(GRADIENT, x)
 
     def value_and_grad(self, x):
-        """L and ∇L, by one forward and one pullback"""
+        """L and ∇L, at the cost of one forward and one pullback"""
         both = self._ask(VALUE_AND_GRADIENT, x)
         return float(both[0]), both[1:]
 
     def residual(self, x):
-        """r = (y − y*)/√B, of which L is half the square where it is least squares"""
+        """r = (y − y*)/√B; for a least-squares problem, L = ½‖r‖²"""
         return self._ask(RESIDUAL, x)
 
     def jacobian(self, x):
@@ -500,11 +505,11 @@ class optimizer:
         return self._ask(HESSIAN_PRODUCT, x, v)
 
     def report(self, x, *_, **__):
-        """An iteration has come to x. Fits where SciPy wants a callback."""
+        """An iteration has ended at x. Can serve as a callback of SciPy."""
         self._ask(REPORT, x)
 
     def finish(self, x, message=""):
-        """The x to be judged, and what the method says of its own success."""
+        """Returns the result x, with the method's own statement about it."""
         if message:
             self._line.send(CLAIM, DONE, str(message).encode()[:1000])
             self._answer()

@@ -1,15 +1,15 @@
-"""UM-Bridge, the protocol for models over HTTP (Seelinger et al. 2023, version 1.0), both ways.
+"""UM-Bridge, a protocol for models over HTTP (Seelinger et al. 2023, version 1.0), in both directions.
 
-A model that a server offers is a problem of Isoline; the server is started for it, or runs already:
+The model of a server becomes a problem of Isoline. Isoline starts the server, or uses a running one:
 
     process[command="python3 -m umbridge model --start [1,1] --target [2,3] -- python3 model.py"]
     process[command="python3 -m umbridge model --start [1,1] --target [2,3] --url http://host:4242"]
 
-A problem of Isoline is served to a method that lives elsewhere, which becomes an optimizer:
+It also serves a problem of Isoline to a method in another program, which becomes an optimizer:
 
     process[command="python3 -m umbridge serve --port 4242 --client my-descent"]
 
-docs/serving-problems.md has the rest.
+docs/serving-problems.md has examples and all options.
 """
 
 import argparse
@@ -33,22 +33,22 @@ import urllib.parse
 import isoline
 
 PR_SET_PDEATHSIG = 1  # of prctl(2)
-PATIENCE = 86_400  # seconds: how long a call may take is the affair of the cell
+PATIENCE = 86_400  # seconds; the limits of the cell apply first
 
 
 def vector(text):
-    """"[1, 2]", or a file of .npy that holds doubles."""
+    """Numbers from "[1, 2]", or from a .npy file of doubles."""
     if not text.endswith(".npy"):
         values = json.loads(text)
         return [float(value) for value in (values if isinstance(values, list) else [values])]
     with open(text, "rb") as file:
         magic = file.read(8)
         if magic[:6] != b"\x93NUMPY":
-            raise ValueError(f"{text} is not a file of .npy")
+            raise ValueError(f"{text} is not a .npy file")
         length = int.from_bytes(file.read(2 if magic[6] == 1 else 4), "little")
         head = ast.literal_eval(file.read(length).decode("latin-1"))
         if head["descr"] != "<f8":
-            raise ValueError(f"{text} holds {head['descr']}, and <f8 is read")
+            raise ValueError(f"{text}: dtype must be <f8, got {head['descr']}")
         return array.array("d", file.read()).tolist()
 
 
@@ -61,11 +61,11 @@ def parts_of(values, sizes):
 
 
 def number(value):
-    """NaN, Infinity, null and "inf" are data."""
+    """A number of an answer; NaN, Infinity, null and "inf" are valid."""
     return math.nan if value is None else float(value)
 
 
-# --- a model of another server as a problem
+# --- the model of a server as a problem
 
 
 class Model:
@@ -79,7 +79,7 @@ class Model:
         models = self.ask("/Info")["models"]
         self.name = self.name or (models[0] if len(models) == 1 else "")
         if self.name not in models:
-            raise ValueError(f"--model must be one that the server has, which are {', '.join(models)}; "
+            raise ValueError(f"--model must be one of the server's models, {', '.join(models)}; "
                              f"got '{self.name}'")
         self.inputs = self.ask("/InputSizes", name=self.name)["inputSizes"]
         self.outputs = self.ask("/OutputSizes", name=self.name)["outputSizes"]
@@ -88,14 +88,14 @@ class Model:
             raise ValueError(f"the model '{self.name}' does not support Evaluate")
 
     def start(self, command, startup):
-        """With a free port in PORT; waits until it answers."""
+        """Starts the server with a free port in PORT, and waits until it listens."""
         with socket.create_server(("127.0.0.1", 0)) as probe:
             port = probe.getsockname()[1]
         self.url = f"http://127.0.0.1:{port}"
         libc = ctypes.CDLL(None)
         self.process = subprocess.Popen(
             command, stdout=sys.stderr, env=dict(os.environ, PORT=str(port)),
-            preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL))  # it dies with this script
+            preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL))  # the server ends with this script
         atexit.register(self.end)
         deadline = time.monotonic() + startup
         while True:
@@ -107,7 +107,7 @@ class Model:
             except OSError:
                 if time.monotonic() > deadline:
                     raise RuntimeError(f"'{' '.join(command)}' did not listen at the port in PORT "
-                                       f"within {startup:g} s") from None
+                                       f"within {startup:g} s (--startup)") from None
                 time.sleep(0.02)
 
     def end(self):
@@ -117,10 +117,10 @@ class Model:
     def ending(self):
         time.sleep(0.1)
         code = self.process.poll() if self.process else None
-        return "still runs" if code is None else f"ended with code {code}"
+        return "is still running" if code is None else f"ended with code {code}"
 
     def ask(self, path, **members):
-        """The answer's object; everything else that comes of it is an error that names the server."""
+        """The object in the answer. Any other answer raises an error that names the server."""
         try:
             status, text = self.exchange(path, members)
         except (OSError, http.client.HTTPException) as error:
@@ -133,11 +133,11 @@ class Model:
         if status != 200 or not isinstance(answer, dict) or "error" in answer:
             error = answer.get("error") if isinstance(answer, dict) else None
             said = error.get("message") if isinstance(error, dict) else f"status {status}: {text[:200]}"
-            raise RuntimeError(f"{self.url}{path} was refused by the model '{self.name}': {said}")
+            raise RuntimeError(f"the model '{self.name}' refused {self.url}{path}: {said}")
         return answer
 
     def exchange(self, path, members):
-        """Over one connection, which is made again where the server has closed it."""
+        """One request over the open connection; connects again if the server has closed it."""
         place = urllib.parse.urlsplit(self.url)
         body = json.dumps({**members, "config": self.config}) if members else None
         for is_last in (False, True):
@@ -157,22 +157,22 @@ class Model:
     def numbers(self, verb, size, **members):
         output = self.ask(f"/{verb}", name=self.name, **members)["output"]
         if not isinstance(output, list) or len(output) != size:
-            raise RuntimeError(f"/{verb} of the model '{self.name}' must give {size} numbers, and gave "
+            raise RuntimeError(f"/{verb} of the model '{self.name}' must return {size} numbers, got "
                                f"{len(output) if isinstance(output, list) else output}")
         return [number(value) for value in output]
 
     def forward(self, x):
         x = [float(value) for value in x]
-        if not all(map(math.isfinite, x)):  # many servers cannot read them: there is no value there
+        if not all(map(math.isfinite, x)):  # many servers cannot parse such numbers
             return [math.nan] * sum(self.outputs)
         output = self.ask("/Evaluate", name=self.name, input=parts_of(x, self.inputs))["output"]
         if [len(part) for part in output] != self.outputs:
-            raise RuntimeError(f"/Evaluate of the model '{self.name}' must give {sum(self.outputs)} "
+            raise RuntimeError(f"/Evaluate of the model '{self.name}' must return {sum(self.outputs)} "
                                f"numbers in {len(self.outputs)} lists")
         return [number(value) for part in output for value in part]
 
     def product(self, verb, name, x, along, to_sizes, from_sizes):
-        """Each part of the result is the sum of what comes from every part of `along`."""
+        """Each part of the result sums the contributions of all parts of `along`."""
         result, begin = [0.0] * sum(to_sizes), 0
         given = parts_of(along, from_sizes)
         is_pullback = verb == "Gradient"
@@ -207,7 +207,7 @@ def model(given):
         source="Seelinger et al. (2023), protocol 1.0; the model's own")
 
 
-# --- a problem of Isoline for a method elsewhere
+# --- a problem of Isoline for a method in another program
 
 
 class Refusal(Exception):
@@ -217,7 +217,7 @@ class Refusal(Exception):
 
 
 class Served:
-    """The models loss (x ↦ L), residual (x ↦ r = y − y*) and start (nothing ↦ x0) of one run."""
+    """The models loss (x ↦ L), residual (x ↦ r = y − y*) and start (no input, x0) of one run."""
 
     VERBS = {"Evaluate": None, "Gradient": "pullback", "ApplyJacobian": "pushforward",
              "ApplyHessian": "hessian_product"}
@@ -264,7 +264,7 @@ class Served:
             all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in part)
             for part, size in zip(values, sizes))
         if not is_good:
-            raise Refusal("InvalidInput", f"{what} must be vectors of {sizes} numbers")
+            raise Refusal("InvalidInput", f"{what} must be a list of vectors of sizes {sizes}")
         return [[float(value) for value in part] for part in values]
 
     def computed(self, path, name, asked, x):
@@ -272,7 +272,7 @@ class Served:
             return [list(map(float, self.run.x0))]
         for key in ("outWrt", "inWrt", "inWrt1", "inWrt2"):
             if asked.get(key, 0) != 0 or isinstance(asked.get(key, 0), bool):
-                raise Refusal("InvalidInput", f"{key} must be 0: there is one input and one output")
+                raise Refusal("InvalidInput", f"{key} must be 0: the model has one input and one output")
         sens = vec = None
         if path in ("Gradient", "ApplyHessian"):
             (sens,) = self.vectors([asked.get("sens")], self.sizes[name][1], "sens")
@@ -312,17 +312,17 @@ class Handler(http.server.BaseHTTPRequestHandler):
         status = 200
         try:
             if path is None:
-                raise Refusal("InvalidInput", "UM-Bridge has no such path, or not by this method", 404)
+                raise Refusal("InvalidInput", "UM-Bridge has no such path with this HTTP method", 404)
             length = self.headers.get("Content-Length", "0")
             if not length.isdigit() or int(length) > self.most_bytes or "chunked" in str(
                     self.headers.get("Transfer-Encoding")):
-                raise Refusal("InvalidInput", "the body is longer than any call of these models", 413)
+                raise Refusal("InvalidInput", f"the body must have a Content-Length of at most {self.most_bytes} bytes", 413)
             answer = self.served.answer(path, self.rfile.read(int(length)))
         except Refusal as refusal:
             status, answer = refusal.status, {"error": {"type": refusal.kind, "message": str(refusal)}}
         except isoline.Stop:
             status, answer = 400, {"error": {"type": "InvalidInput", "message": "the run is over: its "
-                                             "target is met or its budget is spent"}}
+                                             "target is reached or its budget is spent"}}
             self.served.is_over.set()
         except (isoline.Refused, OverflowError) as error:
             status, answer = 400, {"error": {"type": "InvalidInput", "message": str(error)[:500]}}
@@ -340,7 +340,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
 def serve(given):
     offers = [] if given.offers == "none" else given.offers.split(",")
     run = isoline.optimizer(needs=offers, name=given.client,
-                            note="A method elsewhere, which asks over UM-Bridge.",
+                            note="A method in another program, over UM-Bridge.",
                             source="Seelinger et al. (2023), protocol 1.0")
     served = Served(run, offers)
     Handler.served = served
@@ -358,36 +358,36 @@ def serve(given):
     server.shutdown()
     if served.is_over.is_set():
         raise isoline.Stop
-    run.finish(served.best, f"nothing was asked for {given.idle:g} s")
+    run.finish(served.best, f"no call arrived for {given.idle:g} s")
 
 
 def main():
     parser = argparse.ArgumentParser(prog="umbridge", description=__doc__.split("\n", 1)[0])
     roles = parser.add_subparsers(dest="role", required=True)
-    one = roles.add_parser("model", help="a model of a server is a problem")
-    one.add_argument("--url", default="", help="of a server that runs already")
-    one.add_argument("--model", default="", help="its name; not needed where the server has one")
-    one.add_argument("--config", default="{}", help="a JSON object that goes with every call")
-    one.add_argument("--start", type=vector, required=True, help="x0: \"[1,2]\" or a file of .npy")
+    one = roles.add_parser("model", help="use the model of a server as a problem")
+    one.add_argument("--url", default="", help="address of a running server")
+    one.add_argument("--model", default="", help="name of the model; not needed if the server has only one")
+    one.add_argument("--config", default="{}", help="JSON object passed with each call")
+    one.add_argument("--start", type=vector, required=True, help="x0: \"[1,2]\" or a .npy file")
     one.add_argument("--target", type=vector, required=True, help="y*")
-    one.add_argument("--truth", type=vector, help="x*, where it is known")
-    one.add_argument("--minimum", type=float, help="the least loss, where it is known")
-    one.add_argument("--label", default="", help="what tables call it")
-    one.add_argument("--startup", type=float, default=30, help="seconds for a command to listen")
-    one.add_argument("command", nargs="*", help="starts a server, with its port in PORT")
-    two = roles.add_parser("serve", help="a method elsewhere is an optimizer")
+    one.add_argument("--truth", type=vector, help="x*, if known")
+    one.add_argument("--minimum", type=float, help="least attainable loss, if known")
+    one.add_argument("--label", default="", help="name in tables")
+    one.add_argument("--startup", type=float, default=30, help="seconds until the server must listen")
+    one.add_argument("command", nargs="*", help="command that starts a server on the port in PORT")
+    two = roles.add_parser("serve", help="use a method in another program as an optimizer")
     two.add_argument("--port", type=int, required=True)
     two.add_argument("--host", default="127.0.0.1")
-    two.add_argument("--client", default="client", help="what tables call the method")
+    two.add_argument("--client", default="client", help="name of the method in tables")
     two.add_argument("--offers", default="pullback",
-                     help="of pullback, pushforward, hessian_product, with commas; or none")
-    two.add_argument("--idle", type=float, default=10, help="seconds without a call that end the run")
+                     help="required derivatives: pullback, pushforward, hessian_product, comma-separated; or none")
+    two.add_argument("--idle", type=float, default=10, help="seconds without a call after which the run ends")
     two.add_argument("--startup", type=float, default=50, help="seconds to wait for the first call")
     given = parser.parse_args()
     if given.role == "serve":
         serve(given)
     elif bool(given.url) == bool(given.command):
-        parser.error("model needs either --url of a server, or -- and a command that starts one")
+        parser.error("model needs either --url ADDRESS, or -- COMMAND that starts a server")
     else:
         try:
             model(given)

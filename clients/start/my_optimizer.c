@@ -1,5 +1,5 @@
-// My optimizer: v ← β v − η ∇L, θ ← θ + v. Say here which formula this is, where it comes from and
-// how it deviates from there.
+// My optimizer: v ← β v − η ∇L, θ ← θ + v. State the formula, its source, and any
+// deviation from the source.
 #include <stdlib.h>
 
 #include "isoline.h"

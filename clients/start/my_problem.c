@@ -1,11 +1,11 @@
-// My problem: P(x) = (x1 + c x2², x2 + c x1²), y* = P(1/2, −1/2). Say here which formula this is,
-// where it comes from and how it deviates from there.
+// My problem: P(x) = (x1 + c x2², x2 + c x1²), y* = P(1/2, −1/2). State the formula, its
+// source, and any deviation from the source.
 #include <stddef.h>
 #include <stdlib.h>
 
 #include "isoline.h"
 
-// An instance. Where a seed other than 0 means another one, open() draws it.
+// An instance. If seeds other than 0 have other instances, open() samples them.
 typedef struct problem {
   double coupling;  // c
 } problem;
@@ -24,7 +24,7 @@ static int dimension(void* self, isoline_sizes* sizes) {
   return 0;
 }
 
-// y. What the products below can use again goes to `kept`, as many numbers as dimension() says.
+// Computes y. May store up to `kept` doubles, as dimension() declares, for the products below.
 static int forward(void* self, const double* x, double* y, double* kept) {
   const double c = ((const problem*)self)->coupling;
   (void)kept;

@@ -1,5 +1,5 @@
-// My problem: P(x) = (x1 + c x2², x2 + c x1²), y* = P(1/2, −1/2). Say here which formula this is,
-// where it comes from and how it deviates from there.
+// My problem: P(x) = (x1 + c x2², x2 + c x1²), y* = P(1/2, −1/2). State the formula, its
+// source, and any deviation from the source.
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
 
@@ -26,7 +26,7 @@ class MyProblemPhysics final : public DensePhysics {
   Real c_;
 };
 
-// Seeds other than 0 draw another start; what else they draw comes from draw.stream("…").
+// Seeds other than 0 sample another start. Other random numbers come from draw.stream("…").
 ProblemParts make_my_problem(const MyProblemOptions& o, const Draw& draw) {
   auto physics = std::make_unique<MyProblemPhysics>(o.coupling);
   const Vector truth = Eigen::Vector2d(0.5, -0.5);

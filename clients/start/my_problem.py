@@ -1,5 +1,5 @@
-"""My problem: P(x) = (x1 + c x2², x2 + c x1²), x* = (1/2, −1/2). Say here which formula this is,
-where it comes from and how it deviates from there."""
+"""My problem: P(x) = (x1 + c x2², x2 + c x1²), x* = (1/2, −1/2). State the formula, its
+source, and any deviation from the source."""
 import isoline
 
 C = 0.25

@@ -28,8 +28,9 @@ namespace {
 constexpr std::size_t kTail = 4000;                        // bytes of the end that are remembered
 constexpr std::size_t kMostPassed = std::size_t{1} << 20;  // bytes: more than a record keeps
 constexpr std::size_t kLastLines = 8, kLastBytes = 600;
-constexpr int kWidePipe = 1 << 20;      // bytes: who prints much is not held up at each look
-constexpr int kMostReads = 64;          // at one look: who never stops printing ends no look
+constexpr int kWidePipe =
+    1 << 20;                    // bytes: a program that prints much does not wait for every read
+constexpr int kMostReads = 64;  // per read, so that a program that prints forever does not block us
 constexpr double kEndingSeconds = 0.5;  // between a closed socket and the exit behind it
 
 bool& belongs_to_a_cell() {
@@ -127,7 +128,7 @@ struct Pipe {
 void write_all(int descriptor, const char* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t written = write(descriptor, bytes, count);
-    if (written <= 0) return;  // what nobody takes is lost, and the work is not
+    if (written <= 0) return;  // output without a reader is lost; the work continues
     bytes += written;
     count -= static_cast<std::size_t>(written);
   }
@@ -181,7 +182,7 @@ void ChildProgram::drain() {
   for (int i = 0; i < kMostReads && output_ >= 0; ++i) {
     const ssize_t got = read(output_, chunk.data(), chunk.size());
     if (got < 0) return;
-    if (got == 0) {  // everybody who could print has closed it
+    if (got == 0) {  // all writers have closed it
       close(std::exchange(output_, -1));
       return;
     }
@@ -200,7 +201,7 @@ void ChildProgram::take(const char* bytes, std::size_t count) {
 bool ChildProgram::has_ended() {
   drain();
   siginfo_t ended{};
-  // It is not reaped before the destructor: until then its number, and its group's, is nobody's.
+  // It is reaped in the destructor only: until then, no other process can get its number or group.
   constexpr int kLook = WEXITED | WNOHANG | WNOWAIT;
   if (!end_ && waitid(P_PID, static_cast<id_t>(process_), &ended, kLook) == 0 && ended.si_pid != 0)
     end_ = End{ended.si_code == CLD_EXITED, ended.si_status};
@@ -223,7 +224,7 @@ std::string ChildProgram::end_in_words() {
 
 std::string ChildProgram::last_words() const {
   std::string text = tail_;
-  std::erase(text, '\0');  // who reads it may take that for its end
+  std::erase(text, '\0');  // a reader could take it for the end of the text
   std::string_view words = text;
   const std::size_t end = words.find_last_not_of("\n\r\t ");
   if (end == std::string_view::npos) return "";

@@ -14,9 +14,8 @@
 namespace isoline {
 
 // In a process that is one cell: programs started from now on belong to its process group, so that
-// whoever ends the cell ends them, and what they print, up to a MiB, goes on to this process's own
-// output, which is captured. Elsewhere each leads a group of its own, and what it prints is shown
-// to nobody.
+// ending the cell ends them. Their output, up to one MiB, goes to the output of this process, which
+// is captured. In other processes each program leads its own group, and its output is not shown.
 void join_child_programs();
 
 class ChildProgram {
@@ -35,8 +34,8 @@ class ChildProgram {
   ChildProgram& operator=(const ChildProgram&) = delete;
 
   const std::string& command() const { return command_; }
-  // Readable when it has printed. Whoever waits for it waits for this too, and drains: else it
-  // would wait with a full pipe.
+  // Readable if the program has printed. A caller that waits for it must also drain this pipe:
+  // otherwise the program could block on a full pipe.
   int output() const { return output_; }
   void drain();
   bool has_ended();  // without waiting

@@ -1,5 +1,5 @@
-// Who computes a component, where that is not this program: a child process, a model behind
-// UM-Bridge, a shared library.
+// The external program that computes a component: a child process, a model behind UM-Bridge, or a
+// shared library.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace isoline {
 
 struct Foreign {
   std::string door;         // "process" or "plugin"; of older records "umbridge"
-  std::string command;      // as it was given: a command, an address, a library's path
+  std::string command;      // as typed: a command, an address, or the path of a library
   std::string digest;       // of the files that are known to compute it
   std::string label;        // what tables call it, in the place of its spec; empty: the spec
   std::string interpreter;  // "CPython 3.11.2"; empty where it has none

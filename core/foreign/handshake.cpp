@@ -24,7 +24,7 @@ ChildProgram::Start door_to(const std::string& command) {
   const std::string ours = client_folder("python").string();
   return {.command = command,
           .environment = {{"PYTHONPATH", theirs == nullptr ? ours : ours + ":" + theirs},
-                          // our folder may be read-only, and theirs is not ours to write into
+                          // our folder may be read-only, and an installed one must not be modified
                           {"PYTHONDONTWRITEBYTECODE", "1"}}};
 }
 
@@ -32,8 +32,8 @@ Foreign foreign_of_command(const std::string& command) {
   return {.door = "process", .command = command, .digest = digest_of_files(shell_words(command))};
 }
 
-// Handshakes read member by member: what is missing, of another type or out of its law is refused
-// with what was said.
+// Handshakes, read member by member. A member that is missing, of another type or out of range is
+// refused with its value.
 
 namespace {
 
@@ -60,7 +60,7 @@ class Said {
   void expect_role(std::string_view role) const {
     const std::string said = text("role");
     require(said == role, [&] {
-      return fmt::format("{} is {} {}, and is asked as {} {}", who_, article(said), quoted(said),
+      return fmt::format("{} is {} {}, but is used as {} {}", who_, article(said), quoted(said),
                          article(role), role);
     });
   }
@@ -219,7 +219,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   problem.are_differences = said.flag("differences");
   problem.inverse = said.choice("inverse", kInverses);
   require(problem.oracles.contains(Oracle::inverse) == !problem.inverse.empty(),
-          [&] { return who + " has an inverse where, and only where, it says of which kind"; });
+          [&] { return who + " must declare the oracle inverse and its kind together"; });
   problem.start = said.numbers("start", problem.inputs, true);
   problem.drawn = said.numbers("drawn", problem.inputs, false);
   problem.target = said.numbers("target", problem.outputs, true);
@@ -227,7 +227,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   std::tie(problem.lower, problem.upper) = said.bounds(problem.inputs);
   const auto require_within = [&](const char* name, const std::vector<Real>& x) {
     require(is_within(x, problem),
-            [&] { return fmt::format("{} says a {} outside its bounds", who, name); });
+            [&] { return fmt::format("{} declares a {} outside its bounds", who, name); });
   };
   require_within("start", problem.start);
   require_within("drawn", problem.drawn);
@@ -237,7 +237,7 @@ ProblemHandshake problem_handshake(const std::string& text, const std::string& w
   problem.minimum = said.number("minimum");
   problem.aim = said.choice("aim", kAimNames) == name_of(Aim::x) ? Aim::x : Aim::loss;
   require(problem.aim == Aim::loss || !problem.truth.empty(),
-          [&] { return who + " seeks x, and does not say which: truth is missing"; });
+          [&] { return who + " has the success criterion x, but truth is missing"; });
   return problem;
 }
 

@@ -30,10 +30,10 @@ void fields(ProcessOptions& o, auto& field) {
 // What programs said of themselves: each is started once for it, and not again while its command
 // and its files stay as they are.
 
-// How a command is started by the door of child processes: where it finds our clients.
+// How the process adapter starts a command: with the path of our clients.
 ChildProgram::Start door_to(const std::string& command);
 
-// The part of a component's Foreign that its command tells.
+// The part of a component's Foreign that follows from its command.
 Foreign foreign_of_command(const std::string& command);
 
 template <class Handshake>
@@ -57,7 +57,7 @@ class Introductions {
   std::map<std::string, Handshake> known_;
 };
 
-// What another program says of itself before anything is computed, as JSON, held to its law.
+// The description that another program sends before any computation, as JSON, validated.
 
 // What every program says: of Foreign its label, interpreter, packages, note and source.
 struct ProblemHandshake {
@@ -68,26 +68,26 @@ struct ProblemHandshake {
   bool are_differences = false;     // its products are quotients of forwards
   std::string inverse;              // "exact", "damped", "estimate", "approximate"; empty: none
   std::vector<Real> start, target;  // θ₀ of seed 0 (k), y* (m)
-  std::vector<Real> drawn;          // θ₀ of the seed that it was told, where it draws its own
+  std::vector<Real> drawn;          // θ₀ of this seed, if the program samples its own
   std::vector<Real> truth;          // x*, where it knows it
   std::vector<Real> lower, upper;   // bounds on x (k), where it has any
-  std::optional<Real> minimum;      // f_L, likewise
+  std::optional<Real> minimum;      // f_L, if known
   Aim aim = Aim::loss;
 };
 
 struct MethodHandshake {
   Foreign foreign;
-  OracleSet needs;                // that it will ask
+  OracleSet needs;                // the oracles that it calls
   bool is_least_squares = false;  // it descends ½‖r‖², whatever the loss
   bool reports = false;           // its iterations; else each new best point counts as one
 };
 
-// From the text that `who` answered with. UsageError, which quotes it, where it breaks the law.
+// From the text that `who` sent. UsageError, which quotes it, if it is invalid.
 ProblemHandshake problem_handshake(const std::string& text, const std::string& who);
 MethodHandshake method_handshake(const std::string& text, const std::string& who);
 
-// Greets whoever was just started, who has so many seconds to answer. UsageError where it does not,
-// or says what it must not.
+// Greets a program that was just started, which has so many seconds to answer. UsageError if it
+// does not answer, or if the answer is invalid.
 ProblemHandshake greet_problem(Line& line, std::uint64_t seed, double seconds);
 MethodHandshake greet_method(Line& line, double seconds);
 

@@ -15,7 +15,7 @@ extern "C" {
 
 enum { ISOLINE_VERSION = 1 };
 
-// What a problem can do, and what an optimizer asks of a problem.
+// The functions of a problem, and the oracles that an optimizer calls.
 enum {
   ISOLINE_FORWARD = 1 << 0,      // y = P(x)
   ISOLINE_PUSHFORWARD = 1 << 1,  // J v
@@ -77,14 +77,15 @@ typedef struct isoline_component {
   const isoline_option* options;
   uint64_t option_count;
 
-  // An instance, which every function below is given as `self`. `options` are in the order above;
-  // seed 0 is the published instance of a problem, and what an optimizer gets. Null: it failed.
+  // Creates an instance, which every function below receives as `self`. `options` are in the order
+  // above; seed 0 is the published instance of a problem, and the seed of an optimizer. NULL means
+  // failure.
   void* (*open)(const double* options, uint64_t seed);
   void (*close)(void* self);
 
-  // A problem: ISOLINE_FORWARD and what it has of derivatives. Products that it lacks follow from
-  // its Jacobian; without any it is for methods that ask for none. `truth` is null where
-  // ISOLINE_TRUTH is not set. Seeds other than 0 start near `start`, as Isoline draws it.
+  // A problem: ISOLINE_FORWARD and its derivatives. Missing products follow from the Jacobian.
+  // Without derivatives, only methods that need none apply. `truth` is NULL unless ISOLINE_TRUTH is
+  // set. Seeds other than 0 start near `start`, as Isoline samples it.
   int (*dimension)(void* self, isoline_sizes* sizes);
   int (*instance)(void* self, double* start, double* target, double* truth);  // (k), (m), (k)
   int (*forward)(void* self, const double* x, double* y, double* kept);
@@ -93,7 +94,8 @@ typedef struct isoline_component {
   int (*jacobian)(void* self, const double* x, const double* kept, double* J);
   int (*inverse)(void* self, const double* y, const double* x0, double* x);
 
-  // An optimizer: ISOLINE_STEP or ISOLINE_SOLVE, with what it asks for. step() moves θ, (n).
+  // An optimizer: ISOLINE_STEP or ISOLINE_SOLVE, and the oracles that it calls. step() moves θ,
+  // (n).
   int (*start)(void* self, isoline_oracles* f, const double* theta);
   int (*step)(void* self, isoline_oracles* f, double* theta);
 } isoline_component;

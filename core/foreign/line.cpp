@@ -1,4 +1,4 @@
-// Names of what frames ask.
+// Names of the requests in frames.
 #include "core/foreign/line.h"
 
 #include <fmt/format.h>
@@ -110,7 +110,7 @@ void Line::fail(const std::string& what) {
   throw LineError(text);
 }
 
-// While it waits it takes what the other prints, who may be held up by that.
+// Reads the program's output while waiting, so that a full pipe does not block the program.
 void Line::wait(short events, const Deadline& deadline) {
   std::array<pollfd, 2> watched{
       {{socket_, events, 0}, {child_ ? child_->output() : -1, POLLIN, 0}}};
@@ -121,9 +121,8 @@ void Line::wait(short events, const Deadline& deadline) {
 }
 
 void Line::send_pieces(const FrameHead& head, std::span<const Piece> pieces) {
-  char early = 0;  // or an answer that nobody asked for would be taken for the next one
-  if (recv(socket_, &early, 1, MSG_PEEK | MSG_DONTWAIT) > 0)
-    fail("sends what it was not asked for");
+  char early = 0;  // an unsolicited answer would be taken for the next one
+  if (recv(socket_, &early, 1, MSG_PEEK | MSG_DONTWAIT) > 0) fail("sent an unsolicited frame");
   std::array<Piece, kMostPieces> left{};
   std::size_t count = 0;
   left[count++] = {&head, sizeof head};
@@ -183,7 +182,7 @@ std::size_t Line::receive_some(std::span<const std::span<char>> parts, const Dea
   }
 }
 
-// The head, and what comes with it into `room`: `got` bytes of the payload.
+// The header, and the bytes that arrive with it in `room`: `got` bytes of the payload.
 FrameHead Line::receive_head(void* room, std::size_t most, std::size_t& got,
                              const Deadline& deadline) {
   FrameHead head;

@@ -27,13 +27,13 @@ inline constexpr std::uint64_t kMostWireText = std::uint64_t{64} << 10;
 
 enum class Verb : std::uint32_t {
   hello = 1,  // the handshake, both ways, as JSON
-  // What a problem is asked. The status of the question is the number of a point.
+  // Requests to a problem. The status of the request is the number of a point.
   linearize = 2,    // x (k, B) -> y (m, B), and what products there need
   pushforward = 3,  // v (k, B) -> J v (m, B)
   pullback = 4,     // u (m, B) -> Jᵀ u (k, B)
   jacobian = 5,     // -> J of each sample side by side, (m, k·B)
-  inverse = 6,      // y (m, B), x₀ (k, B) -> x (k, B), then a 1 or 0 of success a sample
-  // What an optimizer is told, once; then it asks, the point first.
+  inverse = 6,      // y (m, B), x₀ (k, B) -> x (k, B), then a flag of success per sample
+  // The first message to an optimizer; then the optimizer sends requests, the point first.
   begin = 16,               // n and the count of residuals, as doubles; θ₀ (n)
   value = 17,               // θ -> L
   gradient = 18,            // θ -> ∇L (n)
@@ -52,7 +52,7 @@ enum class Verb : std::uint32_t {
 enum class Answer : std::uint32_t {
   done = 0,
   failed = 1,  // the payload is why, as text
-  stop = 2,    // to an optimizer: the run is over, there is no more to ask
+  stop = 2,    // to an optimizer: the run is over
 };
 
 struct FrameHead {
@@ -91,14 +91,14 @@ class Line {
   }
   void send_text(Verb verb, std::uint32_t status, std::string_view text);
 
-  // The next frame, its payload at the beginning of `room`. LineError where it is longer than that,
-  // or does not come within so many seconds.
+  // The next frame, its payload at the beginning of `room`. LineError if it is longer than that, or
+  // does not arrive within so many seconds.
   FrameHead receive(std::span<Real> room, double seconds = kNoDeadline);
   // The answer to `verb`: exactly so many numbers. LineError where it is another, or failed.
   void receive_answer(Verb verb, std::span<Real> numbers, double seconds = kNoDeadline);
   std::string receive_text(Verb verb, std::uint64_t most_bytes, double seconds = kNoDeadline);
 
-  [[noreturn]] void fail(const std::string& what);  // with who it is and how it fares
+  [[noreturn]] void fail(const std::string& what);  // with its name and its state
 
  private:
   struct Deadline;

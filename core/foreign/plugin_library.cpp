@@ -30,7 +30,7 @@ bool has(std::uint64_t capabilities, std::uint64_t all_of) {
   return (capabilities & all_of) == all_of;
 }
 
-// The laws of one component of one library.
+// The constraints on one component of one library.
 class Reader {
  public:
   Reader(std::string path, std::string digest, std::uint64_t which)
@@ -162,7 +162,8 @@ class Reader {
 
 // Never closed: its functions may be called until the end.
 void* opened(const std::string& path) {
-  const std::string whole = std::filesystem::absolute(path).string();  // else it would be sought
+  const std::string whole =
+      std::filesystem::absolute(path).string();  // otherwise the loader would search for it
   void* library = dlopen(whole.c_str(), RTLD_NOW | RTLD_LOCAL);
   require(library != nullptr, [&] {
     const char* reason = dlerror();

@@ -1,5 +1,5 @@
-// The door to shared libraries: the components that one brings by the struct of
-// core/foreign/isoline.h, each held to the law of that struct before any function of it is called.
+// The adapter to shared libraries: the components of a library, by the struct of
+// core/foreign/isoline.h. Each is validated before any of its functions is called.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct PluginComponent {
   std::shared_ptr<const isoline_component> table;
   std::string name, title, formula, source, note;
   OptionTable options;
-  std::string tuned;  // the option that tuning chooses; empty: there is none
+  std::string tuned;  // the tunable option, or empty
   Foreign foreign;
   bool is_optimizer = false;
 

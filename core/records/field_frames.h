@@ -1,5 +1,5 @@
-// What a learning run makes of its validation: some small samples, one a column. Older records have
-// instead one sample as N×N grids, in an array (3, N, N) of y*, x and x* in `.npy` beside them.
+// The results of a learning run on some validation samples, one per column. Older records have one
+// sample as N×N grids instead, in an array (3, N, N) of y*, x and x* in `.npy` beside them.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace isoline {
 
 struct Exhibit {
   Index grid = 0;         // N of older records, or 0
-  Grid target, x, truth;  // one sample a column
+  Grid target, x, truth;  // one sample per column
 
   bool is_picture() const { return grid > 0; }
 };

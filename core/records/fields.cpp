@@ -1,4 +1,4 @@
-// Types of members whose form is more than a line.
+// Member types whose JSON form takes more than a line.
 #include "core/records/fields.h"
 
 #include <charconv>
@@ -12,7 +12,7 @@ void complete_schema(JsonPlace schema, const char* title) {
   schema["$schema"].set("http://json-schema.org/draft-07/schema#");
   schema["title"].set(title);
   schema["definitions"]["number"].parse(
-      R"({"description": "a number, or one of the three that JSON cannot write",
+      R"({"description": "a number, or the text inf, -inf or nan",
           "anyOf": [{"type": "number"}, {"enum": ["inf", "-inf", "nan"]}]})");
 }
 

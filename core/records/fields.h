@@ -1,5 +1,5 @@
-// What stands in a file, declared once: a struct names its members, and is written as JSON, read
-// back and described by a JSON Schema from that alone.
+// The contents of a file, declared once: a struct names its members, and is written as JSON, read
+// and described by a JSON Schema from that alone.
 //
 //   void fields(Like<Summary> auto& summary, auto& field) {
 //     field("loss", summary.loss);                       // must be there
@@ -7,7 +7,7 @@
 //     field.optional("counts", summary.counts);          // left out where empty
 //   }
 //
-// Each type of member says below how it stands in JSON.
+// Each member type defines its JSON form below.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,7 @@ namespace isoline {
 template <class Given, class Type>
 concept Like = std::is_same_v<std::remove_const_t<Given>, Type>;
 
-// How values of a type stand in JSON: write(value, place), read(view, value), law(place), its
-// schema.
+// The JSON form of a type's values: write(value, place), read(view, value), law(place), its schema.
 template <class Type>
 struct Form;
 
@@ -125,7 +124,7 @@ class FieldReader {
     if (holds) (*this)(name, value);
   }
   void other(const char* name) { known_.push_back(name); }  // stands here, and is read elsewhere
-  // All that no other field has asked for, as the text of an object.
+  // All members that no other field has read, as the text of an object.
   void rest(std::string& others, bool = true) {
     others.clear();
     for (const auto& [name, value] : in_.items())
@@ -156,7 +155,7 @@ class FieldSchema {
   void optional(const char* name, const Value&, const char* law = "") {
     describe<FormOfHeld<const Value>>(place_of(name, false), law);
   }
-  // Written by every program of ours, and done without where a record lacks it.
+  // Our programs always write it, but a record may lack it.
   template <class Value>
   void expected(const char* name, const Value&, const char* law = "") {
     describe<FormOfHeld<const Value>>(place_of(name, true), law);
@@ -249,8 +248,8 @@ struct Form<Real> {
   static void law(JsonPlace out) { out["$ref"].set("#/definitions/number"); }
 };
 
-// What a whole schema has besides: its dialect, its title, and the definition that the law of
-// numbers refers to.
+// The rest of a schema: its dialect, its title, and the definition that constraints of numbers
+// refer to.
 void complete_schema(JsonPlace schema, const char* title);
 
 template <class Value>
@@ -300,7 +299,7 @@ struct Form<std::array<Value, count>> {
 inline std::string key_text(const std::string& key) { return key; }
 inline std::string key_text(std::int64_t key) { return std::to_string(key); }
 inline void read_key(const std::string& text, std::string& key) { key = text; }
-void read_key(const std::string& text, std::int64_t& key);  // UsageError where it is no number
+void read_key(const std::string& text, std::int64_t& key);  // UsageError if it is not a number
 
 template <class Key, class Value>
 struct Form<std::map<Key, Value>> {
@@ -322,7 +321,7 @@ struct Form<std::map<Key, Value>> {
   }
 };
 
-// null where there is none.
+// null if it does not exist.
 template <class Value>
 struct Form<std::optional<Value>> {
   static void write(const std::optional<Value>& value, JsonPlace out) {

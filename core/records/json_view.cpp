@@ -224,7 +224,7 @@ void JsonView::get_to(bool& out) const {
 void JsonView::get_to(std::int64_t& out) const { out = integer(element_at(place_)); }
 void JsonView::get_to(std::uint64_t& out) const {
   const element here = element_at(place_);
-  out = checked(here.get_uint64(), "an integer of no sign", here);
+  out = checked(here.get_uint64(), "an unsigned integer", here);
 }
 void JsonView::get_to(int& out) const {
   const element here = element_at(place_);
@@ -258,7 +258,7 @@ struct JsonReader::Parser {
 JsonReader::JsonReader() : parser_(std::make_unique<Parser>()) {}
 JsonReader::~JsonReader() = default;
 
-// What is wrong and where is told by the parser that knows.
+// The slow parser reports the error and its place.
 JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
   element root;
   const simdjson::error_code error = parser_->parser.parse(text).get(root);

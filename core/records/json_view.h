@@ -39,16 +39,17 @@ class JsonPlace {
   void parse(std::string_view text) const;  // JSON as text
   void include(
       std::string_view text) const;  // the members of an object as text, put beside its own
-  // A further law of a schema. One that refers to a definition stands alone, so both are asked for.
+  // A further constraint of a schema. A constraint that refers to a definition is complete in
+  // itself.
   void restrict(std::string_view law) const;
 
  private:
   Json* here_;
 };
 
-// JSON to read and be done with: values as they stand in parsed text, some eight times as fast as a
-// tree of them, for records by the hundred thousand. With json_view.cpp the only door to simdjson.
-// What is missing or of another type than asked for is a UsageError.
+// JSON for a single pass: values in parsed text, some eight times as fast as a tree, for records by
+// the hundred thousand. With json_view.cpp the only adapter to simdjson. A value that is missing or
+// of another type is a UsageError.
 
 // What a view's get_to() reads. A name of its own: within the class its members are not known yet.
 template <class Value, class View>
@@ -107,8 +108,8 @@ std::string json_of_text(const std::string& text);  // a text as JSON, quoted
 Real real_of(const JsonView& value);  // also "inf", "-inf" and "nan"
 std::vector<Real> reals_of(const JsonView& list);
 
-// Keeps its buffers from text to text: one a thread. The parser stays in json_view.cpp: simdjson
-// lays it out otherwise where a file is compiled with threads than where it is not.
+// Reuses its buffers for all texts: one object per thread. The parser stays in json_view.cpp, since
+// its layout depends on whether a file is compiled with threads.
 class JsonReader {
  public:
   JsonReader();

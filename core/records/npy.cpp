@@ -47,7 +47,7 @@ class HeaderReader {
     }
     skip_spaces();
     require(text_.empty(), "its header goes on behind its end");
-    require(has_type_, "its header names no plain type of numbers");
+    require(has_type_, "its header names no supported type of numbers");
     require(has_order_, "its header names no order of indices");
     require(has_shape_, "its header names no shape");
   }
@@ -57,7 +57,7 @@ class HeaderReader {
     require(takes(':'), "its header has a key without a value");
     if (key == "descr") {
       once(has_type_);
-      out_.type = quoted("its header names no plain type of numbers");
+      out_.type = quoted("its header names no supported type of numbers");
     } else if (key == "fortran_order") {
       once(has_order_);
       out_.is_column_major = takes("True");
@@ -151,12 +151,12 @@ Header header_of(const std::string& bytes) {
   return header;
 }
 
-// How many numbers a shape asks for. Sizes of 0 make it empty, and excuse no other size.
+// The number of values in a shape. A size of 0 makes it empty, but excuses no other size.
 std::size_t count_of(const std::vector<Index>& shape) {
   Index count = 1, others = 1;
   for (const Index size : shape) {
     require(!__builtin_mul_overflow(others, std::max<Index>(size, 1), &others),
-            "its shape asks for more numbers than any file can hold");
+            "its shape needs more numbers than a file can hold");
     count *= size;
   }
   return static_cast<std::size_t>(count);
@@ -166,7 +166,7 @@ template <class Number>
 std::vector<Real> numbers_at(const std::string& bytes, const Header& header) {
   const std::size_t count = count_of(header.shape), present = bytes.size() - header.data_begin;
   require(present % sizeof(Number) == 0 && present / sizeof(Number) == count, [&] {
-    return fmt::format("it holds {} bytes of numbers and its shape asks for {} numbers of {} bytes",
+    return fmt::format("it holds {} bytes of numbers, but its shape needs {} numbers of {} bytes",
                        present, count, sizeof(Number));
   });
   std::vector<Real> numbers(count);

@@ -15,25 +15,25 @@ struct NumberArray {
   std::vector<Real> values;
 };
 
-// Of the bytes of such a file; UsageError, which does not name it, where they are none. A header
-// longer than NumPy itself reads is refused, and a shape is held to the bytes that are there before
-// room is made for it.
+// From the bytes of such a file; UsageError, without its name, if they are invalid. A header longer
+// than NumPy's limit is refused, and the shape is checked against the available bytes before any
+// allocation.
 NumberArray npy_from_bytes(const std::string& bytes);
 
-// Float and integer arrays of 4 or 8 bytes a number, in either order of indices; UsageError, naming
-// the file, where it is none, is cut short, or holds a number that is not finite.
+// Float and integer arrays of 4 or 8 bytes per number, in either order of indices; UsageError, with
+// the name of the file, if it is invalid or truncated, or holds a number that is not finite.
 NumberArray read_npy(const std::filesystem::path& path);
 
-// The bytes of a file of float32. There are as many values as the shape asks for.
+// The bytes of a float32 file. The number of values must fit the shape.
 std::string npy_bytes(const std::vector<Index>& shape, const std::vector<float>& values);
 
 // As float64; whole or not at all.
 void write_npy(const std::filesystem::path& path, const NumberArray& array);
 
-// Arrays of numbers in a file the user brings or takes away: `.npy`, or `.csv` with a row a line.
+// Arrays of numbers in a user's file: `.npy`, or `.csv` with one row per line.
 
-// UsageError, naming file and line, where it cannot be read or holds what is no finite number. A
-// first line of a CSV file that holds no number at all is taken for its header.
+// UsageError, with file and line, if it cannot be read or holds a number that is not finite. If the
+// first line of a CSV file holds no number, it is the header.
 NumberArray read_numbers(const std::filesystem::path& path);
 
 // Whole or not at all. A CSV file has one line for each of the first index.

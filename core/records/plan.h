@@ -17,7 +17,7 @@ std::string file_text(const Record& record);
 std::string file_text(const Plan& plan);
 std::string file_text(const Sheet& sheet);
 
-// Most of a record's file, or that of its pictures: ours have some tens of thousands.
+// The largest size of a record or of its snapshots; ours have some ten thousand bytes.
 inline constexpr std::size_t kMostRecordBytes = std::size_t{64} << 20;
 
 // Schema isoline.plan/1: every cell ever planned in a result folder, in order.

@@ -26,7 +26,7 @@ void require_length(std::size_t length, const char* whose, const std::map<Key, C
   for (const auto& [key, column] : columns) require_length(length, whose, column);
 }
 
-// Who reads a row of one column reads it of all.
+// A reader of one row of a column reads the whole column.
 void require_equal_columns(const Record& record) {
   const Curve& curve = record.curve;
   const auto of_curve = [points = curve.iteration.size()](const auto&... columns) {

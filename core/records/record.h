@@ -18,19 +18,20 @@
 namespace isoline {
 
 struct Imported {
-  std::string source;   // who says so: a paper and its figure, a repository, a person
+  std::string source;   // the origin: a paper and its figure, a repository, a person
   std::string program;  // what computed it, with its version
   std::string curve;    // the file's name
   std::string sha256;   // of that file
 };
 
-// The record of one run, schema isoline.run/1: what was asked, what answered, what happened. One
-// JSON file each. Reports read nothing else of a run.
+// The record of one run, schema isoline.run/1: the request, the build, and the results. One JSON
+// file each. Reports read nothing else about a run.
 
 // The curve as columns of equal length.
 struct Curve {
   std::vector<std::int64_t> iteration, work;
-  std::map<std::string, std::vector<std::int64_t>> counts;  // by oracle; never-asked ones left out
+  std::map<std::string, std::vector<std::int64_t>>
+      counts;  // by oracle; without oracles that were not called
   std::vector<Real> wall_seconds, processor_seconds, loss, x_error, gradient_norm, step_norm;
   // Of learning problems, by window: the means over the training batches of the last steps.
   std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
@@ -49,8 +50,8 @@ struct Trajectory {
   std::vector<std::vector<Real>> x, y;
 };
 
-// Singular values of J = ∂y/∂θ over the batch of a step, descending, where --spectrum asked for
-// them. Without iterations: J is not formed, or too large.
+// Singular values of J = ∂y/∂θ over the batch of a step, descending, if --spectrum was set. Without
+// iterations: J is not formed, or too large.
 struct Spectrum {
   std::vector<std::int64_t> iterations = {};
   std::vector<std::vector<Real>> sigma = {};  // one spectrum an iteration
@@ -121,12 +122,12 @@ Record read_record(const std::string& path);
 
 Json run_schema();  // what benchmarks/schemas/run.json holds
 
-// All of a record that two runs of one build must agree on. What fields and spectra it keeps is
-// not: one may have been asked for them and another not.
+// The part of a record that must be equal in two runs of one build. Fields and spectra are not,
+// since only one of the runs may keep them.
 Json result_of(const Json& record);
 
-// The record without what may differ between two runs of one build: times, memory, concurrency,
-// fields and spectra that were asked for.
+// The record without everything that may differ between two runs of one build: times, memory,
+// concurrency, fields and spectra.
 Json without_timings(Json record);
 
 inline constexpr const char* kRunSchema = "isoline.run/1";

@@ -109,7 +109,7 @@ void fields(Like<Hits> auto& hits, auto& field) {
   field("work", hits.work);
   field("forwards", hits.forwards);
   field.optional("counts", hits.counts,
-                 R"({"description": "By oracle, -1 where never reached; older records lack it"})");
+                 R"({"description": "By oracle, -1 if not reached; older records lack it"})");
   field("wall_seconds", hits.wall_seconds);
 }
 
@@ -155,7 +155,7 @@ void fields(Like<Foreign> auto& foreign, auto& field) {
   field("door", foreign.door, R"({"enum": ["process", "umbridge", "plugin"]})");
   field("command", foreign.command);
   field("digest", foreign.digest, kDigestLaw);
-  field.optional("label", foreign.label, R"({"description": "What tables call it"})");
+  field.optional("label", foreign.label, R"({"description": "Name in tables"})");
   field.optional("interpreter", foreign.interpreter);
   field.optional("packages", foreign.packages, R"({"description": "Versions by name"})");
   field.optional("note", foreign.note);
@@ -184,7 +184,7 @@ void fields(Like<Record> auto& record, auto& field) {
   field("status", record.status);
   field("message", record.message);
   field.optional("output", record.output,
-                 R"({"description": "What it wrote to standard output and standard error"})");
+                 R"({"description": "Its standard output and standard error"})");
   field("claimed", record.claimed);
   field.forgiven("aim", record.aim);
   field("minimum", record.minimum);
@@ -202,18 +202,18 @@ void fields(Like<Record> auto& record, auto& field) {
   field.optional("series", record.series);
   field.optional("exhibit", record.exhibit);
   field.optional("fields", record.fields,
-                 R"({"description": "x at some iterations, in the .npy file beside"})");
+                 R"({"description": "x at some iterations, in the .npy file beside the record"})");
   field.optional("spectrum", record.spectrum,
-                 R"({"description": "Singular values of J, where --spectrum asked for them"})");
+                 R"({"description": "Singular values of J, if --spectrum was set"})");
   field("privileges", record.privileges);
   field.optional("foreign", record.foreign,
-                 R"({"description": "What other programs computed, and which"})");
+                 R"({"description": "Components that other programs computed"})");
   field("nondeterministic", record.is_nondeterministic);
   field("repeat_wall_seconds", record.repeat_wall_seconds);
   field("provenance", record.provenance);
   field.optional(
       "imported", record.imported,
-      R"({"description": "Where it is from, if others ran it: its figures are theirs"})");
+      R"({"description": "The origin of an imported run, whose values are not verified"})");
   if constexpr (std::remove_cvref_t<decltype(field)>::kReads) record.request.cell = record.cell;
 }
 

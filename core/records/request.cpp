@@ -1,4 +1,4 @@
-// Requests to JSON and back, and the digest that names a cell.
+// Conversion of requests to and from JSON, and the digest that names a cell.
 #include "core/records/request.h"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// What is asked of one run: a problem, an optimizer, a seed and a budget.
+// The request of a run: a problem, an optimizer, a seed and a budget.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace isoline {
 
 using Json = nlohmann::json;
 
-// A component as asked for, made once, where a command line, a suite or a record is read: its name
-// and all its options, defaults filled in.
+// A component as requested, created once, where a command line, a suite or a record is read: its
+// name and all its options, with defaults filled in.
 struct Component {
   std::string name;
   OptionValues options;
@@ -27,10 +27,10 @@ struct Component {
   // Digests of what computes it, not in the record's request; the second where it learns: of a
   // problem its network's, of an optimizer its own and those of what steps inside it.
   std::string sources = {}, learning_sources = {};
-  std::optional<Foreign> foreign = {};  // who computes it, where that is another program; likewise
+  std::optional<Foreign> foreign = {};  // the external program, if there is one; see above
 };
 
-// Whether complete options ask for the learning problem. The one place that says how.
+// Whether complete options select the learning problem. Only this function decides it.
 bool asks_to_learn(const OptionValues& options);
 // Whether the direct problem with these options is an instance of what the learning one of the same
 // name learns: all options agree but those of learning itself.
@@ -43,7 +43,7 @@ struct Request {
   int threads = 1;
   std::string rates;  // the file under benchmarks/rates that set options, or empty; not in the cell
   double hard_seconds = 0;  // when it is killed; 0: the runner's own limit; not in the record
-  std::string cell;         // the digest of what is asked; `named` fills it in
+  std::string cell;         // the digest of the request; `named` sets it
 };
 
 // How the values of a table of rates were found, by the name of its file: a grid of this project's

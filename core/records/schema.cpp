@@ -1,4 +1,4 @@
-// JSON Schema by valijson, the only door to it.
+// JSON Schema by valijson; the only adapter to it.
 #include "core/records/schema.h"
 
 #include <fmt/format.h>

@@ -26,13 +26,12 @@ class Schema {
 
 std::vector<std::string> schema_violations(const Json& document, const Json& schema);
 
-// A JSON text as what its single values are held to laws by: a tree in which long columns are
-// short.
+// A JSON text in the form in which single values are checked: a tree with shortened columns.
 
-// Of a long list of numbers and texts its least and greatest integer, its least and greatest other
-// number, and each of its texts once: laws on the kind, the bounds or the choices of an element
-// hold for these where they hold for all. Laws on a list's length or order need the whole tree.
-// UsageError names the origin where it is no JSON.
+// A long list of numbers and texts is reduced to its least and greatest integer, its least and
+// greatest other number, and each of its texts once. Constraints on the type, the range or the
+// choices of an element hold for these if and only if they hold for all. Constraints on a list's
+// length or order need the complete tree. UsageError names the origin if it is not JSON.
 nlohmann::json outline_of(const std::string& text, const std::string& origin);
 
 }  // namespace isoline

@@ -1,4 +1,4 @@
-// Sheets to JSON and back.
+// Conversion of component metadata to and from JSON.
 #include "core/records/sheet.h"
 
 #include <fmt/format.h>
@@ -124,7 +124,7 @@ Sheet sheet_from_text(const std::string& text, const std::string& origin) {
     Form<Sheet>::read(json, sheet);
     return sheet;
   } catch (const UsageError& error) {
-    throw UsageError(fmt::format("no {} sheet: {}", kSheetSchema, error.what()));
+    throw UsageError(fmt::format("not a valid {} file: {}", kSheetSchema, error.what()));
   }
 }
 
@@ -133,8 +133,7 @@ Sheet sheet_from_json(const Json& json) { return sheet_from_text(json_text(json)
 Json sheet_schema() {
   Json schema;
   Form<Sheet>::law(JsonPlace(schema));
-  complete_schema(JsonPlace(schema),
-                  "isoline.component/1: what a reader needs to know of a problem or an optimizer");
+  complete_schema(JsonPlace(schema), "isoline.component/1: metadata of a problem or an optimizer");
   return schema;
 }
 

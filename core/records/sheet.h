@@ -1,9 +1,9 @@
-// What stands beside the records in a result folder: a sheet for each component used.
+// The files beside the records in a result folder: metadata for each component used.
 //
 //   OUT/plan.json              the planned matrix, stored before the first run
 //   OUT/runs/CELL-BUILD.json   the records
-//   OUT/components/*.json      the sheets
-//   OUT/report/                what `isoline report` writes
+//   OUT/components/*.json      the component metadata
+//   OUT/report/                the output of `isoline report`
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ struct MeasuredPrice {
 // The row of a learned problem that is no oracle: what its network alone takes, an example.
 inline constexpr const char* kInference = "inference";
 
-// Measured at the published instance of a problem, with nothing else running.
+// Measured at the published instance of a problem, while nothing else runs.
 struct MeasuredPrices {
   std::string build, processor;  // of the program and the machine that measured
   Real forward_seconds = 0;      // the median
@@ -52,15 +52,15 @@ struct Sheet {
   std::string kind;  // "problem" or "optimizer"
   std::string name, spec, title, formula, source, note;
   std::string options_text;             // describe_options() as JSON text
-  std::vector<std::string> oracles;     // offered by a problem, needed by an optimizer
+  std::vector<std::string> oracles;     // offered by a problem, required by an optimizer
   std::vector<std::string> privileges;  // of an optimizer
-  std::string family;                   // of an optimizer: whose it is, by what it asks
-  std::string mathematics;              // of an optimizer: what its step is, whoever wrote it
+  std::string family;                   // of an optimizer: its group by required oracles
+  std::string mathematics;              // of an optimizer: the kind of its step
   std::string group;                    // of a problem: toy, physics, classical
   std::string tunable;                  // of an optimizer: the option that tuning chooses, if any
   std::string inverse;                  // of a problem: none, exact, damped, estimate, approximate
   Index unknowns = 0, residuals = 0;    // of a problem
-  std::optional<Aim> aim;               // of a problem: what its user wants
+  std::optional<Aim> aim;               // of a problem: the success criterion
   // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the standard
   // start and, where it is known, at the solution; infinite where J lacks rank.
   std::optional<Real> start_condition, condition;
@@ -77,7 +77,7 @@ struct Sheet {
 inline constexpr const char* kSheetSchema = "isoline.component/1";
 
 Json to_json(const Sheet& sheet);
-Sheet sheet_from_json(const Json& json);  // UsageError where it is none
+Sheet sheet_from_json(const Json& json);  // UsageError if it is not valid
 Sheet sheet_from_text(const std::string& text, const std::string& origin);
 
 Json sheet_schema();  // what benchmarks/schemas/component.json holds

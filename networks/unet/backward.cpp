@@ -127,7 +127,7 @@ struct Images {
   Index places() const { return count * grid.N * grid.N; }
 };
 
-// ā of every place, one a column: taps, then channels, then 1.
+// ā of every place, one per column: taps, then channels, then 1.
 void read_patches(const Images& images, float* to) {
   const Grid& grid = images.grid;
   for (Index image = 0; image < images.count; ++image)
@@ -199,7 +199,7 @@ void watch_unit(const UnitPass& pass, LayerMoments& out) {
       out.cotangents);
 }
 
-// Of the 1×1 convolution, whose output is the network's.
+// For the 1×1 convolution that gives the network's output.
 void watch_output(const UnitPass& last, BatchRef u, LayerMoments& out) {
   const UnetPlan& plan = last.plan;
   MomentRoom& room = last.state.moments;
@@ -280,7 +280,7 @@ void pull_back_task(const UnitPass& pass, Index task, ThreadState& thread) {
   scatter<T>(pass, task, thread);
 }
 
-// The sum of all parts, in the order of tasks, whoever computed them.
+// The sum of all parts, in the order of tasks, independent of the threads that computed them.
 void add_kernel_parts(const UnitPass& pass, Index parts, VectorOut out) {
   UnetState& state = pass.state;
   const Index pixels = pass.plan.kernel_size(pass.unit) / kChannels;

@@ -1,5 +1,5 @@
 // The passes of a U-net over a batch, and what they share: the input of a unit, made from the
-// outputs z of earlier ones while these are in cache. Samples are taken a task at a time.
+// outputs z of earlier ones while these are in cache. Each task processes a few samples.
 #pragma once
 
 #include <functional>

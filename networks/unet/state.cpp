@@ -1,4 +1,4 @@
-// The units of a U-net, their parameters, and the start that PyTorch would draw.
+// The units of a U-net, their parameters, and the initial distribution of PyTorch.
 #include "networks/unet/state.h"
 
 #include <fmt/format.h>

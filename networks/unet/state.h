@@ -48,7 +48,7 @@ inline constexpr bool kIsDual<Dual<T>> = true;
 inline const Lane& value_of(const Lane& x) { return x; }
 inline const Lane& value_of(const DualLane& x) { return x.value; }
 
-// What a pullback is asked for: the value, or with duals the derivative of it.
+// A pullback computes the value, or with duals its derivative.
 inline const Lane& asked_of(const Lane& x) { return x; }
 inline const Lane& asked_of(const DualLane& x) { return x.tangent; }
 
@@ -57,7 +57,8 @@ inline DualLane choose(const Mask& mask, const DualLane& a, const DualLane& b) {
   return {mask ? a.value : b.value, mask ? a.tangent : b.tangent};
 }
 template <class T>
-T keep(const Mask& mask, const T& x) {  // 0 elsewhere; a kink has derivative 0
+T keep(const Mask& mask,
+       const T& x) {  // 0 elsewhere; at a nondifferentiable point the derivative is 0
   return choose(mask, x, T{});
 }
 template <class T>
@@ -300,9 +301,9 @@ struct UnetPlan {
   }
 };
 
-// What a U-net keeps in its workspace: the convolutions' outputs z, everything else being computed
-// anew from them while it is in cache; kernels in their layout; the batch norms; and for each
-// thread the arrays and convolutions it works with. Tangents are kept once asked for.
+// A U-net's workspace: the convolutions' outputs z, from which everything else is recomputed while
+// z is in cache; kernels in their layout; the batch norms; and for each thread its arrays and
+// convolutions. Tangents are kept after their first use.
 
 // Pixels, and their tangents once there are any.
 struct Pixels {
@@ -365,13 +366,13 @@ struct UnitCalls {
 };
 
 struct ThreadState {
-  std::vector<UnitCalls> calls;  // one a unit
+  std::vector<UnitCalls> calls;  // one per unit
   Pixels in, cotangent_in, cotangent_z, spare;
 };
 
-// Room for the second moments of one unit.
+// Scratch arrays for the second moments of one unit.
 struct MomentRoom {
-  std::vector<std::vector<Pixel>> patches;  // of a task, one a thread
+  std::vector<std::vector<Pixel>> patches;  // patches of a task, one array per thread
   std::vector<Pixel> inputs, cotangents;    // sums of each task's outer products
 };
 

@@ -39,8 +39,8 @@ void Advection::trace(VectorRef dx, VectorRef dy) {
   });
 }
 
-// Where a displacement is no number, or has lost its whole part to rounding, the node lies in the
-// lattice, and of the first the distance is no number either.
+// If a displacement is NaN, or so large that rounding removes its fraction, the node is inside the
+// lattice, and the distance from a NaN is NaN as well.
 void Advection::keep_far(Index i, Index j, Real x, Real y, Points& out) const {
   const Real N = static_cast<Real>(N_);
   const auto within = [N](Real place) {

@@ -16,8 +16,8 @@
 
 namespace isoline::problems {
 
-// Owns its work space: one a thread. It is told by trace() where points move, (N²) each; all else
-// is said of the last trace.
+// Owns its work space: use one object per thread. trace() sets the displacements of the points,
+// (N²) each; all other functions refer to the last trace.
 class Advection {
  public:
   explicit Advection(Index N);
@@ -65,7 +65,7 @@ class Advection {
   Vector pairs_;                    // (2 stride²) of LatticeMargin::settle
 };
 
-// Points as loops see them, by pointers that no store of theirs can move.
+// Points for inner loops: pointers that stores in the loop cannot change.
 class Advection::Places {
  public:
   explicit Places(Points& points)

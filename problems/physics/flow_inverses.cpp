@@ -9,7 +9,8 @@
 
 namespace isoline::problems {
 
-// The curl of ψ = cos n·φ is (−n_y sin n·φ, n_x sin n·φ) but for a sign, and of sin likewise.
+// The curl of ψ = cos n·φ is (−n_y sin n·φ, n_x sin n·φ) up to a sign; the curl of sin is
+// analogous.
 CoarseInverse::CoarseInverse(Index N) : cells_(N * N), modes_(Matrix::Zero(2 * N * N, kModes)) {
   modes_.col(0).head(cells_).setOnes();
   modes_.col(1).tail(cells_).setOnes();

@@ -9,7 +9,7 @@
 
 namespace isoline::problems {
 
-// Owns its work space: one a thread.
+// Owns its work space: use one object per thread.
 class LowPass {
  public:
   explicit LowPass(Index N) : fourier_(N, N), weights_(N / 2 + 1, N) {
@@ -36,10 +36,10 @@ class LowPass {
   Matrix weights_;  // (N/2 + 1, N) over the norm
 };
 
-// An inverse of the flow that knows nothing of how its data were made: steps of Gauss-Newton on
+// An inverse of the flow without knowledge of how the data were made: steps of Gauss-Newton on
 // ½‖y − y*‖² from x₀, over the ten coarsest divergence-free velocities, the two constants and the
-// curls of cos and sin of the modes |n| = (1, 0), (0, 1), (1, 1), (1, −1). Ten pushforwards a step,
-// then halvings of it until the misfit falls.
+// curls of cos and sin of the modes |n| = (1, 0), (0, 1), (1, 1), (1, −1). Each step takes ten
+// pushforwards, and is then halved until the misfit falls.
 
 class CoarseInverse {
  public:

@@ -1,4 +1,4 @@
-// Flows and markers, drawn.
+// Random flows and markers.
 #include "problems/physics/flow_physics.h"
 
 #include <algorithm>
@@ -216,7 +216,7 @@ void FlowPhysics::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
   });
 }
 
-// A run forward and one back; or of each step of the search a run, the modes, and a trial.
+// A run forward and one back; or, per step of the search, a run, the modes, and a trial.
 Index FlowPhysics::inverse_price() const {
   return back_ == Back::coarse ? CoarseInverse::kSteps * (2 + CoarseInverse::kModes) : 2;
 }

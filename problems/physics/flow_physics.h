@@ -1,4 +1,4 @@
-// The flows that are sought, and the marker that shows them: Holl, Koltun, Thuerey (2022),
+// The flows to be reconstructed, and the marker that shows them: Holl, Koltun, Thuerey (2022),
 // published scripts of the fluid experiment, on a square of 128 by 128.
 #pragma once
 
@@ -18,8 +18,8 @@ struct FlowSample {
 
 // A marker of an unusual shape within a box of 56 around a centre from U[32, 96]², a translation
 // that brings it to the middle of the domain within `time`, a vortex there of strength U[−2, 2],
-// and fluctuations of 0.1. The marker fills a share from U[0.05, 0.15] of all cells, drawn for each
-// sample; the scripts draw it for each batch.
+// and fluctuations of 0.1. The marker fills a share from U[0.05, 0.15] of all cells, sampled for
+// each sample; the published scripts sample it for each batch.
 FlowSample draw_flow(Index N, Real time, RandomStream& stream);
 
 // ω ẑ × r e^(−r²/800) around the middle, added to a velocity at the centres.

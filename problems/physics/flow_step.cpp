@@ -175,7 +175,7 @@ FlowStep::FlowStep(const FlowOptions& options)
 template <class Visit>
 void FlowStep::displaced(Index which, VectorRef velocity, const Visit& visit) const {
   const Index N = options_.N;
-  const Real unit = options_.dt / options_.dx(), half = unit / 2;  // cells a step
+  const Real unit = options_.dt / options_.dx(), half = unit / 2;  // cells per step
   const Real *u = velocity.data(), *v = u + cells_;
   const auto above = [N](Index j) { return N * (j + 1 < N ? j + 1 : 0); };
   const auto below = [N](Index j) { return N * (j > 0 ? j - 1 : N - 1); };

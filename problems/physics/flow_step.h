@@ -30,7 +30,7 @@ inline void diffuse(Index N, Real r, VectorOut v, Vector& scratch) {
 
 enum class Arrangement { staggered, collocated };
 
-// Owns its work space: one a thread.
+// Owns its work space: use one object per thread.
 class Projection {
  public:
   Projection(Index N, Arrangement arrangement);
@@ -86,7 +86,7 @@ struct FlowOptions {
 // large for its explicit step.
 void check(const FlowOptions& options);
 
-// A state is u, v and m one after the other, (3N²). Owns its work space: one a thread.
+// A state is u, v and m one after the other, (3N²). Owns its work space: use one object per thread.
 class FlowStep {
  public:
   explicit FlowStep(const FlowOptions& options);
@@ -98,14 +98,14 @@ class FlowStep {
   // From the cotangent of `next` to that of `state`, in place.
   void pullback(VectorRef state, VectorRef next, VectorRef projected, VectorOut cotangent);
 
-  // Of the advections on the way from `state` to `next`, which alone have kinks.
+  // The differentiable pieces of the advections from `state` to `next`; all other parts are smooth.
   void add_choices(VectorRef state, VectorRef next, PieceDigest& digest);
 
   Projection& projection() { return projection_; }
 
  private:
-  // The displacements of one of the three quantities, from the velocity (2N²): as they are needed,
-  // told to the advection, or stored; and the transpose.
+  // The displacements of one of the three quantities, from the velocity (2N²): set in the advection
+  // when needed, or stored; and the transpose.
   template <class Visit>
   void displaced(Index which, VectorRef velocity, const Visit& visit) const;
   void trace(Index which, VectorRef velocity);

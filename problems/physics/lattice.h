@@ -98,8 +98,8 @@ inline Nodes<Four> nodes_at(const Real* q, const int* way, Index stride) {
   add_pair(way[3] + 3, __builtin_shufflevector(odd, odd, 2, 3));
 }
 
-// Adds the transpose of Nodes::mean for four points. Were the nodes themselves added to two at a
-// time, a load would often hang on two stores, one node off: pairs have a place each.
+// Adds the transpose of Nodes::mean for four points. It adds pairs rather than nodes: adding nodes
+// two at a time would make a load wait for two stores that are one node apart.
 [[gnu::always_inline]] inline void spread(const Four& u, const Four& a, const Four& b,
                                           const int* way, Index stride, Real* pairs) {
   const Four lower = (1 - b) * u, upper = b * u;

@@ -1,4 +1,4 @@
-// Steps one after the other, their tangents likewise, their cotangents from the last to the first.
+// Steps in order, their tangents in the same order, their cotangents from the last to the first.
 #include "problems/physics/simulation.h"
 
 #include "core/errors.h"

@@ -20,7 +20,7 @@ struct FlowRun {
   }
 };
 
-// Owns its work space: one a thread.
+// Owns its work space: use one object per thread.
 class Simulation {
  public:
   Simulation(const FlowOptions& options, Index steps);

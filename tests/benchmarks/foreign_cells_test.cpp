@@ -58,7 +58,7 @@ TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("a-huge-frame", "answers linearize with 9223372036854775808 bytes, where 16 are");
   expect_failed("a-huge-complaint", "sends a text of 9223372036854775808 bytes, and at most 65536");
   expect_failed("another-verb", "answers linearize with a frame of verb 99");
-  expect_failed("two-answers", "sends what it was not asked for");
+  expect_failed("two-answers", "sent an unsolicited frame");
   expect_failed("raises", "failed at linearize: ValueError: the mesh is tangled");
 }
 
@@ -195,7 +195,7 @@ TEST_F(ForeignCells, OfAnOptimizerFailWithWhatItDid) {
   const Record refused = record_of_method("asks-what-it-did-not-declare");
   EXPECT_EQ(refused.status, Status::failed);
   EXPECT_EQ(refused.message,
-            "the method asked for the oracle 'jacobian', which it does not declare that it needs");
+            "the method called the oracle 'jacobian', which it does not declare as needed");
   EXPECT_NE(record_of_method("raises").message.find("ValueError: the step is no number"),
             std::string::npos);
   EXPECT_NE(record_of_method("leaves").message.find("it left with exit code 4"), std::string::npos);

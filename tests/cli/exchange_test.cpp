@@ -57,7 +57,7 @@ TEST(Exchange, AnImportedCurveStandsInTheTablesAndIsNeverVerified) {
   const Finished imported =
       shell("python3 " ISOLINE_SOURCE_DIR "/clients/python/import_curve.py c.csv --out results");
   ASSERT_EQ(imported.exit_code, 0) << imported.err;
-  EXPECT_TRUE(contains(imported.out, "imported, never verified")) << imported.out;
+  EXPECT_TRUE(contains(imported.out, "imported, not verified")) << imported.out;
   const Finished table = shell("./isoline report results");
   EXPECT_EQ(table.exit_code, 0) << table.err;
   EXPECT_TRUE(contains(table.out, "theirs §")) << table.out;

@@ -67,7 +67,11 @@ std::map<std::string, std::string> scripts(const std::string& page) {
 // These two need the whole machine; continuous integration runs them from a clean clone.
 const std::vector<std::string> kMainCommands = {"./isoline run", "./isoline test"};
 
-TEST(Readme, ShowsTheTwoCommands) { EXPECT_EQ(commands("README.md"), kMainCommands); }
+TEST(Readme, BeginsWithTheTwoCommands) {
+  std::vector<std::string> first = commands("README.md");
+  first.resize(kMainCommands.size());
+  EXPECT_EQ(first, kMainCommands);
+}
 
 class Page : public testing::TestWithParam<std::string> {};
 

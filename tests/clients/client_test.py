@@ -151,7 +151,7 @@ class Problems(unittest.TestCase):
         with self.program(PROBLEM % "vjp=lambda x, u: [1]") as program:
             program.greet("problem", seed=0)
             program.ask(2, 0, [1, 2])
-            with self.assertRaisesRegex(RuntimeError, "vjp gave 1 numbers, and 2 are due"):
+            with self.assertRaisesRegex(RuntimeError, "vjp must return 2 numbers, got 1"):
                 program.ask(4, 0, [1, 1, 1])
             self.assertEqual(program.ask(2, 0, [1, 2]), [1, 2, 6])
 
@@ -249,7 +249,7 @@ del Optimizers
 
 
 class Alone(unittest.TestCase):
-    def test_a_script_that_nobody_started_says_how_it_is(self):
+    def test_a_script_without_isoline_says_how_to_start_it(self):
         environment = {k: v for k, v in os.environ.items() if k != "ISOLINE_FD"}
         for text in (PROBLEM % ALL, OPTIMIZER):
             found = subprocess.run(
@@ -257,7 +257,7 @@ class Alone(unittest.TestCase):
                 capture_output=True, text=True,
             )
             self.assertNotEqual(found.returncode, 0)
-            self.assertIn("This script is started by Isoline", found.stderr)
+            self.assertIn("Isoline starts this script", found.stderr)
 
 
 if __name__ == "__main__":

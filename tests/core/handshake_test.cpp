@@ -78,7 +78,7 @@ TEST(Handshakes, ThatBreakTheLawAreQuoted) {
 
 TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
   EXPECT_EQ(complaint("protocol", 2), "`mine` speaks protocol 2, and this program 1");
-  EXPECT_EQ(complaint("role", "optimizer"), "`mine` is an optimizer, and is asked as a problem");
+  EXPECT_EQ(complaint("role", "optimizer"), "`mine` is an optimizer, but is used as a problem");
   for (const char* text : {"", "[]", "{", "nonsense", "3"})
     EXPECT_THROW(problem_handshake(text, "`mine`"), UsageError) << text;
   EXPECT_THROW(problem_handshake(std::string(100'000, '['), "`mine`"), UsageError);
@@ -102,7 +102,7 @@ TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
     problem_handshake(json_text(json), "`mine`");
     FAIL() << "a truth without";
   } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(), "`mine` says a truth outside its bounds");
+    EXPECT_STREQ(error.what(), "`mine` declares a truth outside its bounds");
   }
 }
 
@@ -116,7 +116,7 @@ TEST(Handshakes, AnInverseAndItsKindBelongTogether) {
 }
 
 TEST(Handshakes, WhoSeeksXSaysWhich) {
-  EXPECT_EQ(complaint("aim", "x"), "`mine` seeks x, and does not say which: truth is missing");
+  EXPECT_EQ(complaint("aim", "x"), "`mine` has the success criterion x, but truth is missing");
 }
 
 TEST(Handshakes, OfAnOptimizerSayWhatItAsks) {

@@ -227,7 +227,7 @@ class Arguments(WithTree):
     def test_kernels_are_named_by_the_table(self):
         result = Tree(self.folder).run('test', '--kernels', 'nobody')
         self.assertEqual(result.returncode, 1)
-        self.assertIn("no row 'nobody'; there are: ", result.stderr)
+        self.assertIn("no row 'nobody'; the rows are: ", result.stderr)
         self.assertIn(' haswell ', result.stderr)
 
     def test_fuzzers_are_built_apart_and_handed_to_ctest(self):
@@ -322,7 +322,7 @@ class Kernels(WithTree):
     def test_a_name_of_no_row_is_refused_before_anything_is_built(self):
         result = self.run_rows('pentium')
         self.assertEqual(result.returncode, 1)
-        self.assertIn("no row 'pentium'; there are: prescott haswell", result.stderr)
+        self.assertIn("no row 'pentium'; the rows are: prescott haswell", result.stderr)
         self.assertEqual(self.tree.calls('ninja'), [])
 
 

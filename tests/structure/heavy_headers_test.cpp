@@ -33,8 +33,8 @@ const std::vector<HeavyHeader> kHeavyHeaders = {
     {"Eigen/Dense", ".*", 0, "the same"},
     {"fmt/ranges.h", ".*", 15, "texts that join lists; fmt/format.h does for all else"},
     {"fmt/chrono.h", ".*", 0, "instants are those of core/clock.h"},
-    {"ceres/", kProduct, 1, "one door"},
-    {"oneapi/dnnl/", kProduct, 1, "one door"},
+    {"ceres/", kProduct, 1, "one adapter"},
+    {"oneapi/dnnl/", kProduct, 1, "one adapter"},
     {"regex", kProduct, 0, "its matches recurse, a level a character: texts are read by hand"}};
 
 std::string chain(const std::vector<std::string>& way) {

@@ -1,5 +1,5 @@
-// θ ← θ − ((L − f_L) / ‖∇L‖²) ∇L, the step that needs the least loss and no rate: Polyak (1969).
-// f_L is an option, 0 where the data can be met.
+// θ ← θ − ((L − f_L) / ‖∇L‖²) ∇L, a step that needs f_L instead of a rate: Polyak (1969).
+// f_L is an option, 0 if the data can be fitted exactly.
 #include "optimizers/optimizer.h"
 
 namespace isoline::optimizers {
@@ -12,7 +12,7 @@ struct Polyak {
     Linearization at;
     Vector g;  // (n)
   };
-  static void persist(State&, Archive&) {}  // nothing is carried from step to step
+  static void persist(State&, Archive&) {}  // no state survives a step
 
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {

@@ -1,4 +1,4 @@
-"""Rosenbrock's valley without any package: all that a problem needs is a function of numbers."""
+"""Rosenbrock's valley, without any package: a problem needs only a function of numbers."""
 import isoline
 
 

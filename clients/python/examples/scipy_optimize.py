@@ -1,4 +1,4 @@
-"""The methods of scipy.optimize, one a word: python3 scipy_optimize.py lm, trf, bfgs, l-bfgs-b …"""
+"""A method of scipy.optimize: python3 scipy_optimize.py lm, or trf, bfgs, l-bfgs-b …"""
 import sys
 
 from scipy.optimize import least_squares, minimize

@@ -1,4 +1,4 @@
-"""A chain of nonlinear springs in NumPy: which forces at its nodes bend it as was seen?"""
+"""A chain of nonlinear springs in NumPy: which displacements produce the observed forces?"""
 import numpy as np
 
 import isoline

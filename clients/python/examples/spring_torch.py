@@ -1,4 +1,4 @@
-"""A chain of 40 nonlinear springs in PyTorch: which displacement balances forces that were seen?"""
+"""A chain of 40 nonlinear springs in PyTorch: which displacements balance the observed forces?"""
 import torch
 
 import isoline

@@ -1,4 +1,4 @@
-"""torch.optim.LBFGS with its line search of strong Wolfe conditions."""
+"""torch.optim.LBFGS with its strong-Wolfe line search."""
 import torch
 
 import isoline
@@ -15,6 +15,6 @@ def closure():
     return torch.tensor(loss, dtype=torch.float64)
 
 
-while True:  # until the run is over, which leaves the script
+while True:  # the first call after the end of the run exits the script
     method.step(closure)
     p.report(x)
