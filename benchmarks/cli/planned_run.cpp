@@ -140,16 +140,19 @@ std::set<Status> statuses_of(const std::vector<std::string>& names) {
 }
 
 std::string preview_text(const PreviewCounts& counts, int jobs) {
-  return fmt::format("{}: {} cached, {} inapplicable, {} to run, about {} with {} at a time",
-                     counted(counts.cells, "cell"), counts.cached, counts.inapplicable,
-                     counts.missing, duration_text(counts.seconds / jobs), jobs);
+  const std::optional<double> seconds = counts.seconds();
+  return fmt::format(
+      "{}: {} cached, {} inapplicable, {} to run{}", counted(counts.cells, "cell"), counts.cached,
+      counts.inapplicable, counts.missing,
+      seconds ? fmt::format(", about {} with {} at a time", duration_text(*seconds / jobs), jobs)
+              : ", and no earlier run tells how long that takes");
 }
 
 void print_counts(const Preview& shown, int jobs) {
   say(stdout, preview_text(counts_of(shown.cells), jobs) + "\n");
   if (shown.likened > 0)
     say(stdout,
-        fmt::format("{} of problems not probed: predicted like others of the same problem\n",
+        fmt::format("{} of problems not probed: taken to be like others of the same problem\n",
                     counted(shown.likened, "setting")));
 }
 

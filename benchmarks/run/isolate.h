@@ -52,9 +52,7 @@ class Shared {
   T* object_;
 };
 
-// The θ that a cell returns, in memory shared with whoever judges it. Pages that are never written
-// take no memory.
-
+// The θ that a cell returns, in memory shared with whoever judges it.
 struct Returned {
   static constexpr std::int64_t kMost = std::int64_t{1} << 23;
 
@@ -70,7 +68,6 @@ struct Returned {
 
 // What a child process writes to its standard output and standard error: caught, so that no
 // terminal gets it, and kept as far as it is not too much.
-
 class CapturedOutput {
  public:
   static constexpr std::size_t kMost = std::size_t{64} << 10;  // bytes kept, from the first on
@@ -139,9 +136,8 @@ class Worker {
   std::int64_t asked_to_stop_ = 0;            // monotonic nanoseconds; 0: it was not
 };
 
-// A text made in a process of its own: sheets, audits, checks of what may crash.
-
-// What work in a child process came to: its text, or why there is none.
+// What work in a process of its own came to, as of sheets, audits and checks of what may crash: its
+// text, or why there is none.
 struct IsolatedText {
   std::optional<std::string> text;
   std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …

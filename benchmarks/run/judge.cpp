@@ -103,7 +103,7 @@ void Judges::send(Judge& judge, const Question& question) {
 std::string Judges::end(Judge& judge) {
   const ProcessGroup::End ended = judge.group.end();
   close(judge.socket);
-  return end_of_answerer(ended.wait_status);
+  return end_of_process(ended.wait_status);
 }
 
 // All that it was asked goes to a new judge; but a point that two have died of, or that was waited

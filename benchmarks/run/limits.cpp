@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/errors.h"
+#include "core/files.h"
+
 namespace isoline::benchmarks {
 namespace {
 
 constexpr double kLookSeconds = 0.02;  // how often limits are looked at
 constexpr double kLongestLook = 1;     // what is longer between two looks was no running
 constexpr double kIdleShare = 0.01;    // of a core
-constexpr double kBudgetFactor = 2, kPredictionFactor = 10;
+constexpr double kBudgetFactor = 2, kDeclaredFactor = 10;
 
 double seconds_between(std::int64_t begin, std::int64_t end) {
   return 1e-9 * static_cast<double>(end - begin);
@@ -22,7 +25,7 @@ LimitWatch::Breach timeout(std::string message) { return {Status::timeout, std::
 
 }  // namespace
 
-Limits limits_of(const Request& request, const Limits& standard, double predicted_seconds) {
+Limits limits_of(const Request& request, const Limits& standard, double declared_seconds) {
   constexpr double kForeignStartup = 600;  // its door waits for that, and gives it up before
   Limits limits = standard;
   if (request.problem.foreign || request.optimizer.foreign)
@@ -33,10 +36,34 @@ Limits limits_of(const Request& request, const Limits& standard, double predicte
     limits.startup_seconds = std::max(limits.startup_seconds, limits.hard_seconds);
   } else if (request.hard_seconds > 0) {
     limits.hard_seconds = request.hard_seconds;
-  } else if (std::isfinite(predicted_seconds)) {
-    limits.hard_seconds = std::max(standard.hard_seconds, kPredictionFactor * predicted_seconds);
+  } else if (std::isfinite(declared_seconds)) {
+    limits.hard_seconds = std::max(standard.hard_seconds, kDeclaredFactor * declared_seconds);
   }
   return limits;
+}
+
+double DeclaredTimes::of(const Request& request) {
+  constexpr double kWorkPerIteration = 3, kSecondsPerFlop = 1e-9, kCallSeconds = 1e-7;
+  const Component& problem = request.problem;
+  const auto [at, is_new] = sheets_.try_emplace(problem.spec);
+  Sheet& sheet = at->second;
+  if (is_new) try {
+      sheet = {.kind = "problem", .name = problem.name, .spec = problem.spec};
+      const auto path = folder_ / "components" / sheet.file_name();
+      sheet = sheet_from_text(read_text(path), path.string());
+    } catch (const UsageError&) {  // missing or damaged: it says nothing
+    }
+  const double forward_seconds = sheet.prices ? sheet.prices->forward_seconds : 0;
+  if (!(forward_seconds > 0)) return 0;
+  const auto iterations = static_cast<double>(request.budget.iterations),
+             n = static_cast<double>(sheet.unknowns);
+  const double work =
+      std::min(static_cast<double>(request.budget.work), kWorkPerIteration * iterations);
+  double seconds = work * (forward_seconds + kCallSeconds);
+  const OracleSet needs = catalog_.optimizers.at(request.optimizer.name).needs;
+  if (needs.contains(Oracle::jacobian) || needs.contains(Oracle::hessian))
+    seconds += std::min(iterations, work / std::max(1.0, n)) * kSecondsPerFlop * std::pow(n, 3);
+  return std::min(seconds, request.budget.seconds);
 }
 
 bool LimitWatch::is_due(std::int64_t now_nanoseconds) const {

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/process_group.h"
 #include "core/records/request.h"
+#include "core/records/sheet.h"
 #include "core/status.h"
 
 namespace isoline::benchmarks {
@@ -25,8 +29,24 @@ struct Limits {
 };
 
 // Of one request: twice its soft time limit, where it has one; else what its suite says; else ten
-// times the prediction, where that is more than the standard.
-Limits limits_of(const Request& request, const Limits& standard, double predicted_seconds = 0);
+// times what its work takes, where that is more than the standard.
+Limits limits_of(const Request& request, const Limits& standard, double declared_seconds = 0);
+
+// What the declared work of cells takes, within their own time: every unit of it costs a forward
+// solve, as the sheets of a result folder measured it, and a factorizing step about n³ besides. 0
+// where a sheet measured none. Each sheet is read once.
+class DeclaredTimes {
+ public:
+  DeclaredTimes(const Catalog& catalog, std::filesystem::path folder)
+      : catalog_(catalog), folder_(std::move(folder)) {}
+
+  double of(const Request& request);
+
+ private:
+  const Catalog& catalog_;
+  const std::filesystem::path folder_;
+  std::map<std::string, Sheet> sheets_;  // by the problem's spec
+};
 
 // What a child process has used up, held against its limits. Time in which nobody looked, because
 // this process was itself stopped, does not count.

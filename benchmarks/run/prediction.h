@@ -1,5 +1,4 @@
-// How long a cell may take: by what earlier runs of it took, else by what its problem says of
-// itself.
+// How long a cell may take: what earlier runs of it, or of its like, took.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/plan/catalog.h"
 #include "core/records/request.h"
 #include "core/status.h"
 #include "core/threads.h"
@@ -44,33 +42,6 @@ class EarlierTimes {
 
  private:
   std::map<std::string, double> by_cell_, by_question_;
-};
-
-inline constexpr double kProcessSeconds = 1e-2;  // a fork, a record, its fsync: on a busy machine
-
-struct ProblemCost {
-  double forward_seconds = 0, unknowns = 0;
-};
-
-// Of its iterations, within its own time: every unit of work costs a forward, a factorizing step
-// about n³ besides.
-double predicted_seconds(const Catalog& catalog, const Request& request, const ProblemCost& cost);
-
-// Of the cells of a result folder, whose sheets know what a forward solve takes: 0 where one does
-// not. Each sheet is read once.
-class Predictions {
- public:
-  Predictions(const Catalog& catalog, std::filesystem::path folder)
-      : catalog_(catalog), folder_(std::move(folder)) {}
-
-  double of(const Request& request);
-
- private:
-  ProblemCost cost_of(const Component& problem) const;
-
-  const Catalog& catalog_;
-  const std::filesystem::path folder_;
-  std::map<std::string, ProblemCost> costs_;  // by spec
 };
 
 }  // namespace isoline::benchmarks

@@ -1,4 +1,4 @@
-// What a plan would do: looked up in the store, probed and estimated.
+// What a plan would do: looked up in the store, and probed.
 #include "benchmarks/run/preview.h"
 
 #include <algorithm>
@@ -18,24 +18,8 @@ namespace {
 
 constexpr double kProbeSeconds = 30;
 
-// What one problem says of itself and of each optimizer, found in a process of its own.
-struct Probe {
-  double forward_seconds = 0;
-  double unknowns = 0;
-  std::map<std::string, std::string> reasons;  // by optimizer spec
-};
-
-double time_forward(const Problem& problem) {
-  constexpr int kTimes = 5;
-  Point point;
-  double least = 1e9;
-  for (int i = 0; i < kTimes; ++i) {
-    const std::int64_t begin = monotonic_nanoseconds();
-    problem.forward(problem.start(), point);
-    least = std::min(least, 1e-9 * static_cast<double>(monotonic_nanoseconds() - begin));
-  }
-  return least;
-}
+// Why an optimizer cannot be run on a problem, by its spec; empty: it can.
+using Reasons = std::map<std::string, std::string>;
 
 // The requests of one problem's setting, one for each optimizer's.
 struct Setting {
@@ -64,23 +48,17 @@ std::vector<Setting> settings_of(const std::vector<Request>& requests) {
   return settings;
 }
 
-Json probe(const Catalog& catalog, const Setting& setting) {
+Reasons probe(const Catalog& catalog, const Setting& setting) {
   const Problem problem = make_problem(catalog, *setting.problem, 0);
-  Json reasons = Json::object();
+  Reasons reasons;
   for (const auto& [spec, optimizer] : setting.optimizers)
     reasons[spec] =
         why_inapplicable(catalog.optimizers.at(optimizer->name), optimizer->options, problem);
-  return {{"forward_seconds", time_forward(problem)},
-          {"unknowns", problem.unknowns()},
-          {"reasons", std::move(reasons)}};
-}
-
-Probe probe_from(const Json& found) {
-  return {found.at("forward_seconds"), found.at("unknowns"), found.at("reasons")};
+  return reasons;
 }
 
 // Of the first settings, as many as there is time for, made in one process.
-std::vector<Probe> probes_together(const Catalog& catalog, const std::vector<Setting>& settings) {
+std::vector<Reasons> probes_together(const Catalog& catalog, const std::vector<Setting>& settings) {
   const auto probe_some = [&] {
     constexpr std::size_t kAtLeast = 100;
     constexpr std::int64_t kNanoseconds = 1'000'000'000;
@@ -93,21 +71,21 @@ std::vector<Probe> probes_together(const Catalog& catalog, const std::vector<Set
     return json_text(all);
   };
   const auto text = isolated_text(probe_some, kProbeSeconds).text;
-  std::vector<Probe> probes;
+  std::vector<Reasons> probes;
   if (text)
-    for (const Json& found : parse_json(*text, "probes")) probes.push_back(probe_from(found));
+    for (const Json& found : parse_json(*text, "probes")) probes.push_back(found);
   return probes;
 }
 
 // One process each, where one of them cannot be made here: its cells will say so when they run.
-std::vector<Probe> probes_apart(const Catalog& catalog, const std::vector<Setting>& settings) {
+std::vector<Reasons> probes_apart(const Catalog& catalog, const std::vector<Setting>& settings) {
   constexpr std::size_t kMost = 200;
-  std::vector<Probe> probes;
+  std::vector<Reasons> probes;
   for (const Setting& setting : settings) {
     if (probes.size() == kMost) break;
     const auto text =
-        isolated_text([&] { return json_text(probe(catalog, setting)); }, kProbeSeconds).text;
-    probes.push_back(text ? probe_from(parse_json(*text, "probe")) : Probe());
+        isolated_text([&] { return json_text(Json(probe(catalog, setting))); }, kProbeSeconds).text;
+    probes.push_back(text ? parse_json(*text, "probe").get<Reasons>() : Reasons());
   }
   return probes;
 }
@@ -117,32 +95,29 @@ class Probes {
  public:
   Probes(const Catalog& catalog, const std::vector<Request>& requests) {
     const std::vector<Setting> settings = settings_of(requests);
-    std::vector<Probe> probes = probes_together(catalog, settings);
+    std::vector<Reasons> probes = probes_together(catalog, settings);
     if (probes.empty()) probes = probes_apart(catalog, settings);
     unknown_ = settings.size() - probes.size();
     for (std::size_t i = 0; i < probes.size(); ++i) {
-      const Probe& kept = by_spec_[settings[i].problem->spec] = std::move(probes[i]);
+      const Reasons& kept = by_spec_[settings[i].problem->spec] = std::move(probes[i]);
       by_name_.try_emplace(settings[i].problem->name, &kept);
     }
   }
-  const Probe& of(const Component& problem) const {
-    static const Probe none;
-    if (const auto at = by_spec_.find(problem.spec); at != by_spec_.end()) return at->second;
-    const auto like = by_name_.find(problem.name);
-    return like == by_name_.end() ? none : *like->second;
+  std::string why_inapplicable(const Request& request) const {
+    const auto own = by_spec_.find(request.problem.spec);
+    const auto like = by_name_.find(request.problem.name);
+    if (own == by_spec_.end() && like == by_name_.end()) return "";
+    const Reasons& reasons = own != by_spec_.end() ? own->second : *like->second;
+    const auto reason = reasons.find(request.optimizer.spec);
+    return reason == reasons.end() ? "" : reason->second;
   }
   std::size_t unknown() const { return unknown_; }
 
  private:
-  std::map<std::string, Probe> by_spec_;
-  std::map<std::string, const Probe*> by_name_;
+  std::map<std::string, Reasons> by_spec_;
+  std::map<std::string, const Reasons*> by_name_;
   std::size_t unknown_ = 0;
 };
-
-double estimate(const Catalog& catalog, const Request& request, const Probe& probed) {
-  const ProblemCost cost{probed.forward_seconds, probed.unknowns};
-  return predicted_seconds(catalog, request, cost) + kProcessSeconds;
-}
 
 // The cells that a folder has records of, found by one look at it.
 class Kept {
@@ -182,7 +157,15 @@ void PreviewCounts::add(const PreviewedCell& cell) {
   cached += cell.is_cached;
   inapplicable += !cell.is_cached && !cell.why_inapplicable.empty();
   missing += cell.is_missing();
-  if (cell.is_missing()) seconds += cell.seconds;
+  if (!cell.is_missing() || !cell.seconds) return;
+  ++timed_;
+  timed_seconds_ += *cell.seconds;
+}
+
+std::optional<double> PreviewCounts::seconds() const {
+  if (missing > 0 && timed_ == 0) return std::nullopt;
+  return missing == 0 ? 0
+                      : timed_seconds_ * static_cast<double>(missing) / static_cast<double>(timed_);
 }
 
 PreviewCounts counts_of(const std::vector<PreviewedCell>& cells) {
@@ -200,14 +183,11 @@ Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
   all.cells.reserve(requests.size());
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const Request& request = requests[i];
-    const Probe& probed = probes.of(request.problem);
-    const auto reason = probed.reasons.find(request.optimizer.spec);
-    PreviewedCell cell{.request = &request, .is_cached = is_cached[i] != 0};
-    if (reason != probed.reasons.end()) cell.why_inapplicable = reason->second;
-    const std::optional<double> took = earlier.of(request);
-    all.timed += took.has_value();
-    if (cell.why_inapplicable.empty())
-      cell.seconds = took ? *took + kProcessSeconds : estimate(catalog, request, probed);
+    PreviewedCell cell{.request = &request,
+                       .is_cached = is_cached[i] != 0,
+                       .why_inapplicable = probes.why_inapplicable(request)};
+    if (cell.why_inapplicable.empty()) cell.seconds = earlier.of(request);
+    all.timed += cell.seconds.has_value();
     all.cells.push_back(std::move(cell));
   }
   return all;

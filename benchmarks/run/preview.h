@@ -15,8 +15,8 @@ namespace isoline::benchmarks {
 struct PreviewedCell {
   const Request* request;
   bool is_cached = false;
-  std::string why_inapplicable;  // empty: it can run
-  double seconds = 0;            // what running it is predicted to take, where it can
+  std::string why_inapplicable;        // empty: it can run
+  std::optional<double> seconds = {};  // what earlier runs of it, or of its like, took
 
   bool is_missing() const { return !is_cached && why_inapplicable.empty(); }
 };
@@ -30,9 +30,15 @@ struct Preview {
 // The counts of a plan, or of a part of it.
 struct PreviewCounts {
   std::size_t cells = 0, cached = 0, inapplicable = 0, missing = 0;
-  double seconds = 0;  // of those that are missing, one at a time
 
   void add(const PreviewedCell& cell);
+  // Of those that are missing, one at a time: those that no earlier run tells of count as the mean
+  // of the others. None where no earlier run tells of any.
+  std::optional<double> seconds() const;
+
+ private:
+  std::size_t timed_ = 0;
+  double timed_seconds_ = 0;
 };
 PreviewCounts counts_of(const std::vector<PreviewedCell>& cells);
 
@@ -43,10 +49,9 @@ struct PreviewOptions {
   std::set<Status> retry = {};  // but those that ended so
 };
 
-// Looks into result folders without touching them: a cell is cached where one of them has it. Its
-// time is what it, or its like with other seeds, took in earlier runs; else its problem's declared
-// prices times a measured forward solve. Problems are made in processes of their own; of a sweep
-// over more settings than can be made in a second, the rest are taken to be like the first.
+// Looks into result folders without touching them: a cell is cached where one of them has it.
+// Problems are made in processes of their own; of a sweep over more settings than can be made in a
+// second, the rest are taken to be like the first.
 Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
                 const std::vector<std::filesystem::path>& folders, const EarlierTimes& earlier = {},
                 const PreviewOptions& options = {});

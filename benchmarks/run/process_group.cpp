@@ -19,10 +19,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <new>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -162,74 +160,6 @@ std::uint64_t mark_of(pid_t process) {
   return std::strtoull(text.c_str() + line + kMarkedLine.size(), nullptr, 10);  // "unlimited": 0
 }
 
-// Control groups by the files of cgroup v2 (Linux, Documentation/admin-guide/cgroup-v2.rst).
-
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr const char* kPrefix = "isoline-";
-
-// "… MOUNT-POINT … - cgroup2 …" of /proc/self/mountinfo.
-std::optional<fs::path> mount_point() {
-  std::ifstream in("/proc/self/mountinfo");
-  for (std::string line; std::getline(in, line);) {
-    if (line.find(" - cgroup2 ") == std::string::npos) continue;
-    std::istringstream words(line);
-    std::string skipped, point;
-    words >> skipped >> skipped >> skipped >> skipped >> point;
-    return point;
-  }
-  return std::nullopt;
-}
-
-// "0::/user.slice/…" of /proc/self/cgroup.
-std::optional<fs::path> own_folder() {
-  const auto point = mount_point();
-  if (!point) return std::nullopt;
-  std::ifstream in("/proc/self/cgroup");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("0::/")) return *point / line.substr(4);
-  return std::nullopt;
-}
-
-bool write_line(const fs::path& path, const std::string& line) {
-  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool is_written = write(file, line.data(), line.size()) >= 0;
-  close(file);
-  return is_written;
-}
-
-// What a program that was killed left behind; the kernel keeps any in which somebody lives.
-void remove_empty_ones(const fs::path& folder) {
-  std::error_code error;
-  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (at->path().filename().string().starts_with(kPrefix)) rmdir(at->path().c_str());
-}
-
-}  // namespace
-
-std::unique_ptr<ControlGroup> ControlGroup::make(std::uint64_t mark) {
-  static const std::optional<fs::path> own = own_folder();
-  if (!own) return nullptr;
-  remove_empty_ones(*own);
-  const fs::path folder = *own / fmt::format("{}{:x}", kPrefix, mark);
-  std::error_code error;
-  if (!fs::create_directory(folder, error)) return nullptr;
-  std::unique_ptr<ControlGroup> made(new ControlGroup(folder));
-  if (access((folder / "cgroup.kill").c_str(), W_OK) != 0) return nullptr;  // before Linux 5.14
-  return made;
-}
-
-ControlGroup::~ControlGroup() { rmdir(folder_.c_str()); }
-
-void ControlGroup::take(pid_t process) const {
-  write_line(folder_ / "cgroup.procs", std::to_string(process));
-}
-
-void ControlGroup::kill() const { write_line(folder_ / "cgroup.kill", "1"); }
-
 // Limits and leave of child processes.
 
 void limit_memory([[maybe_unused]] std::int64_t bytes) {
@@ -269,7 +199,7 @@ std::string signal_name(int signal) {
   return fmt::format("signal {} ({})", signal, strsignal(signal));
 }
 
-std::string end_of_answerer(int wait_status) {
+std::string end_of_process(int wait_status) {
   if (WIFSIGNALED(wait_status)) return "it was ended by " + signal_name(WTERMSIG(wait_status));
   const int code = WEXITSTATUS(wait_status);
   return code == 0 ? "it left without an answer" : fmt::format("it left with exit code {}", code);
@@ -401,7 +331,6 @@ ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
     usage.processor_seconds += figures->processor_seconds;
     usage.resident_bytes += figures->resident_bytes;
   }
-  if (all.size() > 1 && !control_) gather(all);
   if (all.size() > 1 && usage.resident_bytes > exact_above_bytes) {  // what they share counts once
     std::int64_t exact = 0;
     for (const pid_t process : all) exact += proportional_bytes(process);
@@ -409,13 +338,6 @@ ProcessGroup::Usage ProcessGroup::usage(std::int64_t exact_above_bytes) {
   }
   peak_bytes_ = std::max(peak_bytes_, usage.resident_bytes);
   return usage;
-}
-
-// A cell of one process, as nearly all are, is not worth the time that this takes.
-void ProcessGroup::gather(const std::vector<pid_t>& members) {
-  control_ = ControlGroup::make(mark_);
-  if (!control_) return;
-  for (const pid_t process : members) control_->take(process);
 }
 
 void ProcessGroup::ask_to_end() const {
@@ -428,7 +350,6 @@ void ProcessGroup::kill() {
   if (!is_running()) return;  // 0 would mean the group that this process is in
   ::kill(-leader_, SIGKILL);
   ::kill(leader_, SIGKILL);  // it may have moved to another group
-  if (control_) control_->kill();
   for (const pid_t stray : strays()) ::kill(stray, SIGKILL);
 }
 
@@ -442,9 +363,7 @@ std::optional<ProcessGroup::End> ProcessGroup::collect() {
   rusage used{};
   wait4(leader_, &end.wait_status, 0, &used);
   leave_table();
-  if (control_) control_->kill();
   reap_strays();
-  control_.reset();
   end.peak_memory_bytes = std::max(std::int64_t{used.ru_maxrss} * 1024, peak_bytes_);
   return end;
 }

@@ -10,9 +10,7 @@
 
 #include <csignal>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,26 +34,6 @@ std::vector<pid_t> processes_of_this_namespace();
 // group they move to and whatever program they become; 0 where there is none.
 void mark_this_process(std::uint64_t mark);
 std::uint64_t mark_of(pid_t process);
-
-// A group of the kernel's own (cgroup v2), where this process may make one: what is in it is killed
-// at once, however fast it multiplies.
-
-class ControlGroup {
- public:
-  // Below the control group of this process; nothing where there is none that may be divided.
-  static std::unique_ptr<ControlGroup> make(std::uint64_t mark);
-  ~ControlGroup();  // it is empty by then
-  ControlGroup(const ControlGroup&) = delete;
-  ControlGroup& operator=(const ControlGroup&) = delete;
-
-  void take(pid_t process) const;  // and all that it starts from then on
-  void kill() const;
-
- private:
-  explicit ControlGroup(std::filesystem::path folder) : folder_(std::move(folder)) {}
-
-  const std::filesystem::path folder_;
-};
 
 // Signals that wait while a child is made: one that it sends at once must find it in the table of
 // this process' children.
@@ -89,15 +67,8 @@ bool is_from_outside(int signal);
 
 std::string signal_name(int signal);  // "signal 11 (Segmentation fault)"
 
-// Of a child that was to answer and did not: "it was ended by signal …", "it left …".
-std::string end_of_answerer(int wait_status);
-
-// A child process and all that descends from it, as one: started, measured, asked to end, killed
-// and reaped together. What descends cannot get away by a session of its own or by outliving its
-// parent: this process is a subreaper, and every descendant carries the mark of its group.
-//
-// What has its user's rights can still end this process by SIGKILL; docs/running-a-matrix.md says
-// what holds and what does not.
+// Of a child that left no answer: "it was ended by signal …", "it left …".
+std::string end_of_process(int wait_status);
 
 class ProcessGroup {
  public:
@@ -133,7 +104,6 @@ class ProcessGroup {
  private:
   std::vector<pid_t> strays();
   std::vector<pid_t> members();
-  void gather(const std::vector<pid_t>& members);
   void reap_strays();
   void leave_table();
 
@@ -141,8 +111,7 @@ class ProcessGroup {
   int descriptor_ = -1;
   std::size_t slot_ = 0;
   std::uint64_t mark_ = 0;
-  std::unique_ptr<ControlGroup> control_;  // once they are many
-  std::int64_t reaped_ = 0;                // strays so far, and what they used
+  std::int64_t reaped_ = 0;  // strays so far, and what they used
   double reaped_seconds_ = 0;
   std::int64_t peak_bytes_ = 0;
 };

@@ -16,19 +16,23 @@
 
 namespace isoline::benchmarks {
 
-void TimeLeft::finish(double predicted_seconds, double now) {
-  done_ += predicted_seconds;
+void TimeLeft::Cells::add(std::optional<double> predicted_seconds) {
+  (predicted_seconds ? predicted : others) += 1;
+  seconds += predicted_seconds.value_or(0);
+}
+
+void TimeLeft::finish(std::optional<double> predicted_seconds, double now) {
+  done_.add(predicted_seconds);
   last_ = now;
 }
 
-// Between two ends it counts down. The first few cells say little of the pace: predictions count as
-// much as a fiftieth of the run would.
+// Between two ends it counts down.
 std::optional<double> TimeLeft::at(double now) const {
-  constexpr double kPrior = 0.02;
-  if (done_ <= 0 || expected_ <= 0) return std::nullopt;
-  const double prior = kPrior * expected_;
-  const double pace = (last_ + prior / jobs_) / (done_ + prior);
-  const double left = std::max(0.0, expected_ - done_) * pace;
+  const double mean = expected_.predicted > 0 ? expected_.seconds / expected_.predicted : 1;
+  const double expected = expected_.seconds + mean * expected_.others;
+  const double done = done_.seconds + mean * done_.others;
+  if (done <= 0 || expected <= 0) return std::nullopt;
+  const double left = std::max(0.0, expected - done) * last_ / done;
   return std::max(0.0, left - (now - last_));
 }
 
@@ -68,21 +72,19 @@ Progress::Style Progress::style_of(int descriptor) {
   return isatty(descriptor) && !is_dumb ? Style::live : Style::plain;
 }
 
-Progress::Progress(Style style, std::string what, std::int64_t total, std::int64_t already,
-                   int jobs)
+Progress::Progress(Style style, std::string what, std::int64_t total, std::int64_t already)
     : style_(style),
       what_(std::move(what)),
       total_(total),
       already_(already),
       begun_(monotonic_nanoseconds()),
-      shown_(begun_),
-      time_left_(jobs) {}
+      shown_(begun_) {}
 
 Progress::~Progress() {
   if (is_dirty_) clear_line();
 }
 
-void Progress::finished(double predicted_seconds) {
+void Progress::finished(std::optional<double> predicted_seconds) {
   ++done_;
   time_left_.finish(predicted_seconds, seconds_since(begun_));
 }

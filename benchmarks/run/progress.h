@@ -8,42 +8,41 @@
 
 namespace isoline::benchmarks {
 
-// Predictions are of whole budgets, which most cells do not use up: those that have ended say which
-// share of a prediction a second of the run is worth. Cells are weighed by what they were
-// predicted to take, so that cheap ones promise nothing for dear ones.
+// Cells are weighed by what they are predicted to take, so that cheap ones promise nothing for dear
+// ones, and the weight of all others is the mean of these. What those that have ended took corrects
+// the predictions of the rest.
 class TimeLeft {
  public:
-  explicit TimeLeft(int jobs = 1) : jobs_(jobs) {}
-
-  void expect(double predicted_seconds) { expected_ += predicted_seconds; }
+  void expect(std::optional<double> predicted_seconds) { expected_.add(predicted_seconds); }
   // `now`: seconds since the run began.
-  void finish(double predicted_seconds, double now);
-  // None before the first cell has ended, and without predictions; 0 where it takes longer than
+  void finish(std::optional<double> predicted_seconds, double now);
+  // None before the first cell has ended, and where none was expected; 0 where it takes longer than
   // predicted.
   std::optional<double> at(double now) const;
 
  private:
-  int jobs_;
-  double expected_ = 0, done_ = 0;  // predicted seconds
-  double last_ = 0;                 // when the last of them ended
-};
+  struct Cells {
+    double seconds = 0, predicted = 0, others = 0;  // seconds of those predicted; counts
 
-// What a person sees of long work: one live line on a terminal, a plain line every ten seconds in a
-// pipe.
+    void add(std::optional<double> predicted_seconds);
+  };
+  Cells expected_, done_;
+  double last_ = 0;  // when the last of them ended
+};
 
 class Progress {
  public:
   enum class Style { live, plain, silent };
   static Style style_of(int descriptor);  // live on a terminal
 
-  // `already`: how many of `total` were done before; `jobs`: how many are done at a time.
-  Progress(Style style, std::string what, std::int64_t total, std::int64_t already, int jobs = 1);
+  // `already`: how many of `total` were done before.
+  Progress(Style style, std::string what, std::int64_t total, std::int64_t already);
   ~Progress();
 
   void started(const std::string& name) { current_ = name; }
   // Of each that is to come, how long it may take; without it all count alike.
-  void expect(double predicted_seconds) { time_left_.expect(predicted_seconds); }
-  void finished(double predicted_seconds);
+  void expect(std::optional<double> predicted_seconds) { time_left_.expect(predicted_seconds); }
+  void finished(std::optional<double> predicted_seconds);
   void reached(std::int64_t done) { done_ = done; }
   void show(bool now = false);  // often called; prints seldom
 

@@ -130,7 +130,7 @@ class Runner {
         workers_(static_cast<std::size_t>(options_.exclusive ? 1 : jobs_ + 1)),
         tasks_(workers_.size()),
         judges_(catalog, workers_, kJudgeSeconds),
-        predictions_(catalog, store.folder()) {}
+        declared_(catalog, store.folder()) {}
 
   Outcome run(const std::vector<Request>& requests) {
     const InterruptGuard guard;
@@ -139,9 +139,10 @@ class Runner {
     Pending pending(requests, store_, options_, outcome_);
     pending_ = &pending;
     Progress progress(options_.progress, "cells",
-                      outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused,
-                      jobs_);
-    for (const Request* request : pending.queued()) progress.expect(predicted(*request));
+                      outcome_.reused + static_cast<std::int64_t>(pending.size()), outcome_.reused);
+    if (options_.progress != Progress::Style::silent && !pending.is_empty())
+      earlier_ = EarlierTimes(record_outlines({store_.folder()}));
+    for (const Request* request : pending.queued()) progress.expect(earlier_.of(*request));
     malloc_trim(0);  // what planning freed: a fork copies the tables of all pages that are held
     while (guard.asked() != Asked::stop) {
       if (guard.asked() == Asked::nothing) start_some(progress);
@@ -186,12 +187,9 @@ class Runner {
                     options_.perturbation);
             workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
           },
-          limits_of(*request, options_.limits, predictions_.of(*request)), request->threads);
+          limits_of(*request, options_.limits, declared_.of(*request)), request->threads);
     }
   }
-
-  // With what each cell takes besides its oracles.
-  double predicted(const Request& request) { return predictions_.of(request) + kProcessSeconds; }
 
   void tell_once(Asked asked) {
     if (asked != Asked::finish || std::exchange(has_told_, true) ||
@@ -278,7 +276,7 @@ class Runner {
     keep(tasks_[slot], workers_[slot]);
     pending_->release(request);
     tasks_[slot] = {};
-    progress.finished(predicted(request));
+    progress.finished(earlier_.of(request));
   }
 
   void keep(Task& task, const Worker& worker) {
@@ -312,7 +310,8 @@ class Runner {
   std::vector<Task> tasks_;
   Judges judges_;
   Pending* pending_ = nullptr;  // of the plan that is run
-  Predictions predictions_;
+  DeclaredTimes declared_;      // for their limits
+  EarlierTimes earlier_;
   std::set<std::string> seen_;
   bool has_told_ = false;  // that it is finishing
   Outcome outcome_;

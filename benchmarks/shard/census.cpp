@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include "benchmarks/run/pending.h"
@@ -75,12 +76,24 @@ void add_planned(const fs::path& folder, Cells& cells) {
   }
 }
 
-// True where there are predictions.
-bool add_predicted(const fs::path& whole, Cells& cells) {
+// What is predicted of each cell, those of which nothing is counted as the mean of the others.
+struct Predicted {
+  bool is_there = false, tells_times = false;
+};
+Predicted add_predicted(const fs::path& whole, Cells& cells) {
   const auto predicted = read_predicted(whole);
-  if (!predicted) return false;
-  for (const PredictedCell& one : *predicted) cells[one.cell].weight = one.seconds;
-  return true;
+  if (!predicted) return {};
+  double seconds = 0, known = 0;
+  for (const PredictedCell& one : *predicted) {
+    if (std::isnan(one.seconds)) continue;
+    seconds += one.seconds;
+    ++known;
+  }
+  for (const PredictedCell& one : *predicted)
+    cells[one.cell].weight = !std::isnan(one.seconds) ? one.seconds
+                             : known > 0              ? seconds / known
+                                                      : 1;
+  return {true, known > 0};
 }
 
 void add_records(const std::vector<fs::path>& folders, Cells& cells, const Listener& listener) {
@@ -112,10 +125,10 @@ std::optional<double> remaining(const Cells& cells, double left, std::int64_t no
 Census census_of(const fs::path& whole, std::int64_t now, const Listener& listener) {
   const std::vector<fs::path> folders = result_folders(whole);
   Cells cells;
-  const bool is_predicted = add_predicted(whole, cells);
-  require(is_predicted || !folders.empty(),
+  const Predicted predicted = add_predicted(whole, cells);
+  require(predicted.is_there || !folders.empty(),
           [&] { return fmt::format("{}: no result folder, and no plan of one", whole.string()); });
-  if (!is_predicted)  // else they name the same cells
+  if (!predicted.is_there)  // else they name the same cells
     for (const fs::path& folder : folders) add_planned(folder, cells);
   add_records(folders, cells, listener);
   Census census{.planned = cells.size()};
@@ -129,7 +142,7 @@ Census census_of(const fs::path& whole, std::int64_t now, const Listener& listen
   const std::size_t missing = census.planned - census.done;
   census.running = std::min(census.running, missing);
   census.left = missing - census.running;
-  if (is_predicted) census.left_seconds = left;
+  if (predicted.tells_times) census.left_seconds = left;
   if (missing > 0) census.remaining_seconds = remaining(cells, left, now);
   return census;
 }

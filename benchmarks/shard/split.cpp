@@ -5,13 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <queue>
 #include <unordered_map>
 
-#include "benchmarks/run/prediction.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/json_view.h"
@@ -21,6 +22,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLeastSeconds = 1e-2;  // a fork, a record, its fsync: on a busy machine
+
 // Of no run in seconds: what a step costs at least in forward solves is the same for all.
 double declared_work(const Request& request) {
   constexpr double kWorkPerIteration = 3;
@@ -28,25 +32,21 @@ double declared_work(const Request& request) {
                   kWorkPerIteration * static_cast<double>(request.budget.iterations));
 }
 
-std::vector<double> weights_of(const std::vector<const Request*>& requests,
-                               const fs::path& folder) {
-  const auto predicted = read_predicted(folder);
+// The predictions of a folder by cell; UsageError where they lack one of these.
+std::unordered_map<std::string, double> predictions_for(const std::vector<const Request*>& requests,
+                                                        const fs::path& folder) {
   std::unordered_map<std::string, double> seconds;
-  if (predicted)
-    for (const PredictedCell& one : *predicted) seconds.emplace(one.cell, one.seconds);
-  std::vector<double> weights;
-  std::size_t unknown = 0;
-  for (const Request* request : requests) {
-    const auto at = seconds.find(request->cell);
-    unknown += predicted && at == seconds.end();
-    weights.push_back(at == seconds.end() ? declared_work(*request) : at->second);
-  }
-  require(unknown == 0, [&] {
+  const auto predicted = read_predicted(folder);
+  if (!predicted) return seconds;
+  for (const PredictedCell& one : *predicted) seconds.emplace(one.cell, one.seconds);
+  const auto known = static_cast<std::size_t>(std::ranges::count_if(
+      requests, [&](const Request* request) { return seconds.contains(request->cell); }));
+  require(known == requests.size(), [&] {
     return fmt::format(
         "{} predicts another plan: it has {} of this one's {} cells; give this plan another --out",
-        predicted_file(folder).string(), requests.size() - unknown, requests.size());
+        predicted_file(folder).string(), known, requests.size());
   });
-  return weights;
+  return seconds;
 }
 
 }  // namespace
@@ -57,7 +57,8 @@ std::string file_text(const std::vector<PredictedCell>& cells) {
   std::string text = fmt::format("{{\"schema\": \"{}\", \"cells\": [", kPredictedSchema);
   const char* between = "\n";
   for (const PredictedCell& one : cells) {
-    text += fmt::format("{}{{\"cell\": \"{}\", \"seconds\": {}}}", between, one.cell, one.seconds);
+    text += fmt::format("{}{{\"cell\": \"{}\", \"seconds\": {}}}", between, one.cell,
+                        std::isnan(one.seconds) ? "null" : fmt::format("{}", one.seconds));
     between = ",\n";
   }
   return text + "\n]}\n";
@@ -70,8 +71,9 @@ std::vector<PredictedCell> predicted_from_text(const std::string& text, const st
     require(json.at("schema").get<std::string>() == kPredictedSchema, "its schema is another");
     std::vector<PredictedCell> cells;
     for (const JsonView& one : json.at("cells").values()) {
-      cells.push_back({one.at("cell"), real_of(one.at("seconds"))});
-      require(cells.back().seconds > 0, "a cell takes no time");
+      const JsonView seconds = one.at("seconds");
+      cells.push_back({one.at("cell"), seconds.is_null() ? kUnknown : real_of(seconds)});
+      require(!(cells.back().seconds <= 0), "a cell takes no time");
     }
     return cells;
   } catch (const UsageError& error) {
@@ -90,7 +92,8 @@ Weights keep_predictions(const fs::path& folder, Preview& shown) {
     if (!names_in(folder / "shards").empty()) return Weights::declared;
     std::vector<PredictedCell> cells;
     for (const PreviewedCell& one : shown.cells)
-      cells.push_back({one.request->cell, std::max(one.seconds, kProcessSeconds)});
+      cells.push_back(
+          {one.request->cell, one.seconds ? std::max(*one.seconds, kLeastSeconds) : kUnknown});
     std::error_code error;
     fs::create_directories(folder, error);  // where it cannot be made the next line says so
     write_text(predicted_file(folder), file_text(cells));
@@ -98,16 +101,31 @@ Weights keep_predictions(const fs::path& folder, Preview& shown) {
   }
   std::vector<const Request*> requests;
   for (const PreviewedCell& one : shown.cells) requests.push_back(one.request);
-  const std::vector<double> weights = weights_of(requests, folder);
-  for (std::size_t i = 0; i < weights.size(); ++i)
-    if (shown.cells[i].seconds > 0) shown.cells[i].seconds = weights[i];
+  const auto predictions = predictions_for(requests, folder);
+  for (PreviewedCell& cell : shown.cells) {
+    const double seconds = predictions.at(cell.request->cell);
+    cell.seconds = std::isnan(seconds) ? std::nullopt : std::optional(seconds);
+  }
   return Weights::kept;
 }
 
 std::vector<double> weights_of(const std::vector<Request>& requests, const fs::path& folder) {
   std::vector<const Request*> all;
   for (const Request& request : requests) all.push_back(&request);
-  return weights_of(all, folder);
+  const auto predictions = predictions_for(all, folder);
+  std::vector<double> weights;
+  double known_seconds = 0, known_work = 0;
+  for (const Request& request : requests) {
+    const auto at = predictions.find(request.cell);
+    weights.push_back(at == predictions.end() ? kUnknown : at->second);
+    if (std::isnan(weights.back())) continue;
+    known_seconds += weights.back();
+    known_work += declared_work(request);
+  }
+  const double pace = known_seconds > 0 ? known_seconds / known_work : 1;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (std::isnan(weights[i])) weights[i] = pace * declared_work(requests[i]);
+  return weights;
 }
 
 // Shards: asked for, weighed and dealt.

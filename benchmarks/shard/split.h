@@ -19,7 +19,7 @@ inline constexpr const char* kPredictedSchema = "isoline.predicted/1";
 
 struct PredictedCell {
   std::string cell;
-  double seconds = 0;
+  double seconds = 0;  // nan: no earlier run tells
 };
 
 std::filesystem::path predicted_file(const std::filesystem::path& folder);
@@ -38,9 +38,9 @@ enum class Weights { written, kept, declared };
 // and stay so. UsageError where the predictions that are there are of another plan.
 Weights keep_predictions(const std::filesystem::path& folder, Preview& shown);
 
-// A weight a request, which is all that a split depends on: its predicted seconds, or, in a folder
-// without predictions, the forward solves that its budget allows. UsageError where the predictions
-// are of another plan.
+// A weight a request, which is all that a split depends on: its predicted seconds; where there are
+// none, the forward solves that its budget allows, at the pace of those predicted. UsageError where
+// the predictions are of another plan.
 std::vector<double> weights_of(const std::vector<Request>& requests,
                                const std::filesystem::path& folder);
 

@@ -41,7 +41,8 @@ void declare(VerbArguments& verb, PlanArguments& given) {
 std::string counts_json(const PreviewCounts& counts) {
   return fmt::format(
       "\"cells\": {}, \"cached\": {}, \"inapplicable\": {}, \"missing\": {}, \"seconds\": {}",
-      counts.cells, counts.cached, counts.inapplicable, counts.missing, counts.seconds);
+      counts.cells, counts.cached, counts.inapplicable, counts.missing,
+      counts.seconds() ? fmt::format("{}", *counts.seconds()) : "null");
 }
 
 void print_json(const PlannedRun& all, const Preview& shown, const ShardPlan& plan, int jobs) {
@@ -58,8 +59,8 @@ std::string weights_text(Weights weights, const PlannedRun& all, std::size_t tim
   const std::string file = predicted_file(all.folder).string();
   switch (weights) {
     case Weights::written:
-      return fmt::format("predictions: {}, {} by earlier runs and {} by declared prices", file,
-                         timed, all.requests.size() - timed);
+      return fmt::format("predictions: {}, {} by earlier runs and {} by declared work", file, timed,
+                         all.requests.size() - timed);
     case Weights::kept:
       return fmt::format("predictions: {}, as it was written before", file);
     case Weights::declared:
@@ -77,9 +78,11 @@ void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& 
     say(stdout, fmt::format("shard {:>9}  {}\n", Shard{i + 1, count}.text(),
                             preview_text(plan.shards[i], jobs)));
   if (listed < count) say(stdout, fmt::format("… and {} more; --all lists them\n", count - listed));
-  const auto longest = std::ranges::max_element(plan.shards, {}, &PreviewCounts::seconds);
-  say(stdout,
-      fmt::format("the longest shard takes about {}\n", duration_text(longest->seconds / jobs)));
+  double longest = 0;
+  for (const PreviewCounts& shard : plan.shards)
+    longest = std::max(longest, shard.seconds().value_or(0));
+  if (longest > 0)
+    say(stdout, fmt::format("the longest shard takes about {}\n", duration_text(longest / jobs)));
   say(stdout, weights_text(plan.weights, all, shown.timed) + "\n");
 }
 
@@ -113,7 +116,7 @@ void register_plan(VerbRegistry& registry) {
            "  isoline plan quick --shards 16 --json        for the matrix of a workflow",
        .notes =
            "A cell is predicted by what it, or its like with other seeds, took in the records below the\n"
-           "result folder and those of --from; else by declared prices times a measured forward solve.\n"
+           "result folder and those of --from; of others nothing is predicted.\n"
            "With --shards the predictions are written to predicted.json, once: `isoline run --shard` divides\n"
            "the plan by it alone, so that every task finds the same parts whenever it begins."},
       declare, run));

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -178,6 +179,17 @@ RunArguments run_arguments(const std::vector<std::string>& words, Session& sessi
   return run;
 }
 
+// Of all cells, one at a time, those that no earlier run tells of as the mean of the others;
+// infinite where none is known.
+double seconds_of(const Preview& shown) {
+  double seconds = 0, known = 0;
+  for (const PreviewedCell& cell : shown.cells) {
+    seconds += cell.seconds.value_or(0);
+    known += cell.seconds.has_value();
+  }
+  return known > 0 ? seconds / known * static_cast<double>(shown.cells.size()) : INFINITY;
+}
+
 int run(const SubmitArguments& given, Session& session) {
   require(given.is_slurm, "name the scheduler: --slurm is the one there is");
   const RunArguments run = run_arguments(given.run, session);
@@ -187,18 +199,20 @@ int run(const SubmitArguments& given, Session& session) {
   Preview shown = preview_of(all, run, {}, result_folders(all.folder), session);
   keep_predictions(all.folder, shown);
   const int jobs = std::max(1, run.jobs);
-  double seconds = 0;
-  for (const PreviewedCell& cell : shown.cells) seconds += cell.seconds / jobs;
+  const double seconds = seconds_of(shown) / jobs;
   const std::size_t shards = shards_within({.wanted = static_cast<std::size_t>(given.tasks),
                                             .array_size = array_size_here(),
                                             .least_seconds = given.least_seconds},
                                            seconds);
   const Submission submission = submission_of(given, run, all, shards);
   warn_of_build();
+  const auto about = [](double each) {
+    return std::isfinite(each) ? " of about " + duration_text(each) : "";
+  };
   say(stderr,
-      fmt::format("{}, all of them about {}: {} of about {} each\n",
-                  counted(all.requests.size(), "cell"), duration_text(seconds),
-                  counted(shards, "task"), duration_text(seconds / static_cast<double>(shards))));
+      fmt::format("{}{}: {}{}{}\n", counted(all.requests.size(), "cell"), about(seconds),
+                  counted(shards, "task"), about(seconds / static_cast<double>(shards)),
+                  std::isfinite(seconds) ? "" : "; no earlier run tells how long they take"));
   if (given.is_agreed) return submit(submission);
   say(stdout,
       fmt::format("array=$({})\n{}\n", array_command(submission), merge_command(submission)));

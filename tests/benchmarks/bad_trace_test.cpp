@@ -5,15 +5,11 @@
 
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/isolate.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/deadline.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Request square_by_gd() {
   return named({.problem = complete_problem(catalog(), "square", {}),

@@ -8,16 +8,12 @@
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/execute.h"
 #include "core/errors.h"
+#include "tests/benchmarks/builtin.h"
 
 namespace isoline::benchmarks {
 
 using problems::Batch;
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Component problem(const std::string& text) { return complete_problem(catalog(), parse_spec(text)); }
 

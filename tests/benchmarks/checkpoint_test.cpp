@@ -10,17 +10,13 @@
 #include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Request request_of(const std::string& problem, const std::string& optimizer) {
   const Suite suite{.name = "mine",

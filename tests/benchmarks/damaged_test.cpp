@@ -11,6 +11,7 @@
 #include "benchmarks/run/run_plan.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/hostile.h"
 #include "tests/temporary_folder.h"
 
@@ -18,11 +19,6 @@ namespace isoline::benchmarks {
 namespace {
 
 namespace fs = std::filesystem;
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 const std::vector<Request>& requests() {
   static const std::vector<Request> all{request_for(catalog(), "square", {}, "gd", {}),

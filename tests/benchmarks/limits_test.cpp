@@ -3,7 +3,6 @@
 
 #include <sys/wait.h>
 
-#include "benchmarks/run/prediction.h"
 #include "tests/benchmarks/hostile_cells.h"
 #include "tests/deadline.h"
 
@@ -80,13 +79,13 @@ TEST(Limits, FollowTheBudgetTheSuiteAndThePrediction) {
   EXPECT_EQ(limits_of(request, standard, 2).startup_seconds, 100) << "so that there is a way out";
 }
 
-// A cell of a problem whose forward solve takes long may take ten times as long as that predicts.
-TEST(Limits, OfACellGrowWithItsPrediction) {
+// A cell of a problem whose forward solve takes long may take ten times as long as its work does.
+TEST(Limits, OfACellGrowWithItsDeclaredWork) {
   const Catalog catalog = builtin_catalog();
   const TemporaryFolder folder;
   Store store(folder.path());
   const Request request = request_for(catalog, "square", {}, "gd", {});
-  Predictions without(catalog, folder.path());
+  DeclaredTimes without(catalog, folder.path());
   EXPECT_EQ(without.of(request), 0);
   Sheet sheet{.kind = "problem",
               .name = "square",
@@ -95,7 +94,7 @@ TEST(Limits, OfACellGrowWithItsPrediction) {
               .unknowns = 2};
   sheet.prices = MeasuredPrices{.forward_seconds = 2};
   store.write(sheet);
-  Predictions with(catalog, folder.path());
+  DeclaredTimes with(catalog, folder.path());
   EXPECT_GE(with.of(request), 2 * 50) << "50 iterations, each a forward solve at least";
 }
 

@@ -7,6 +7,7 @@
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/runner.h"
 #include "core/errors.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {
@@ -48,11 +49,6 @@ TEST(Perturbation, IsTheSameForItsNumberAndAnotherForTheNext) {
   EXPECT_EQ(perturbed_start(start, square, 1), perturbed_start(start, square, 1));
   EXPECT_NE(perturbed_start(start, square, 1), perturbed_start(start, square, 2));
   EXPECT_NE(perturbed_start(start, square, 1), perturbed_start(start, beale, 1));
-}
-
-const Catalog& catalog() {
-  static const Catalog built = builtin_catalog();
-  return built;
 }
 
 std::vector<Record> perturbed(const std::vector<Record>& records) {

@@ -5,14 +5,10 @@
 #include "core/errors.h"
 #include "core/spec.h"
 #include "core/text.h"
+#include "tests/benchmarks/builtin.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Suite suite_of(const std::string& problems, const std::string& optimizers, const char* seeds) {
   const MatrixBlock block{

@@ -9,6 +9,7 @@
 #include "core/records/schema.h"
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
@@ -16,11 +17,6 @@ namespace isoline::benchmarks {
 using problems::DensePhysics;
 using problems::Problem;
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Request request_of(const std::string& problem, const OptionValues& options) {
   return named({.problem = complete_problem(catalog(), problem, options),

@@ -8,6 +8,7 @@
 #include "core/records/schema.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {
@@ -17,11 +18,6 @@ using problems::Problem;
 namespace {
 
 constexpr std::int64_t kIterations = 300, kSlowIterations = 10;
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 // Every problem, grids small, with every optimizer at the rates of the tree.
 const FinishedMatrix& matrix() {

@@ -8,14 +8,10 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/execute.h"
+#include "tests/benchmarks/builtin.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Record run_of(const char* problem, const char* optimizer, std::int64_t iterations = 20) {
   const Request request = named({.problem = complete_problem(catalog(), parse_spec(problem)),
@@ -59,7 +55,7 @@ TEST(SameResult, NotANumberIsItself) {
   EXPECT_EQ(compare_results(a, a).difference, "");
   Record b = a;
   b.curve.x_error[1] = 0;
-  EXPECT_EQ(compare_results(a, b).difference, "error in x at iteration 1: nan against 0");
+  EXPECT_EQ(compare_results(a, b).difference, "x error at iteration 1: \"nan\" against 0.0");
 }
 
 TEST(SameResult, ALongerRunDiffersUnlessAClockEndedOne) {

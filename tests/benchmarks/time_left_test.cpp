@@ -43,7 +43,7 @@ TEST(TimeLeft, IsRightWithinAFifthOnceTwoFifthsOfTheRunAreOver) {
 }
 
 TEST(TimeLeft, CountsDownBetweenTwoEndsAndSaysZeroWhereItTakesLonger) {
-  TimeLeft left(2);
+  TimeLeft left;
   left.expect(10);
   left.expect(10);
   EXPECT_FALSE(left.at(0).has_value()) << "nothing has ended yet";
@@ -53,10 +53,19 @@ TEST(TimeLeft, CountsDownBetweenTwoEndsAndSaysZeroWhereItTakesLonger) {
   EXPECT_EQ(left.at(1000).value_or(-1), 0);
 }
 
-TEST(TimeLeft, SaysNothingWithoutPredictions) {
+TEST(TimeLeft, CountsCellsWithoutAPredictionAsTheMeanOfTheOthers) {
   TimeLeft left;
-  left.finish(0, 1);
-  EXPECT_FALSE(left.at(1).has_value());
+  for (const std::optional<double> predicted : {std::optional(1.0), std::optional(3.0)})
+    left.expect(predicted);
+  for (int i = 0; i < 2; ++i) left.expect({});
+  left.finish(3, 6);  // twice as long as predicted, and so is the rest
+  EXPECT_EQ(left.at(6).value_or(0), 2 * (1 + 2 + 2));
+  TimeLeft unknown;
+  for (int i = 0; i < 4; ++i) unknown.expect({});
+  EXPECT_FALSE(unknown.at(1).has_value()) << "nothing has ended yet";
+  unknown.finish({}, 5);
+  EXPECT_EQ(unknown.at(5).value_or(0), 15);
+  EXPECT_FALSE(TimeLeft().at(1).has_value()) << "nothing is expected";
 }
 
 }  // namespace

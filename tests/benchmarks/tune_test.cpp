@@ -16,6 +16,7 @@
 #include "optimizers/optimizer.h"
 #include "problems/dense_physics.h"
 #include "problems/problem.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
@@ -24,11 +25,6 @@ using optimizers::Tunable;
 namespace {
 
 constexpr Real kNever = std::numeric_limits<Real>::infinity();
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 Component problem_of(const std::string& spec) {
   return complete_problem(catalog(), parse_spec(spec));

@@ -5,17 +5,13 @@
 #include <set>
 
 #include "core/ladder.h"
+#include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {
 
 using optimizers::Family;
 namespace {
-
-const Catalog& catalog() {
-  static const Catalog all = builtin_catalog();
-  return all;
-}
 
 // Problems that are solved, crawled at and never solved, with every optimizer.
 const FinishedMatrix& matrix() {

@@ -25,7 +25,7 @@ TEST(Plan, SaysWhatADryRunSays) {
   const Shell shell;
   const std::string dry = shell("./isoline run " + kMatrix + "--out out --dry-run").out;
   const std::string planned = shell("./isoline plan " + kMatrix + "--out out").out;
-  const std::string counts = "24 cells: 0 cached, 0 inapplicable, 24 to run, about ";
+  const std::string counts = "24 cells: 0 cached, 0 inapplicable, 24 to run, ";
   EXPECT_TRUE(planned.starts_with(counts)) << planned;
   EXPECT_TRUE(dry.starts_with(counts)) << dry;
   EXPECT_FALSE(fs::exists(shell.folder() / "out")) << "it only looks";
@@ -36,7 +36,7 @@ TEST(Plan, TellsTheShardsAsAMatrixForAWorkflow) {
   const Json plan = plan_of(shell, "--shards 3 --out out");
   EXPECT_EQ(plan.at("cells"), 24);
   EXPECT_EQ(plan.at("missing"), 24);
-  EXPECT_GT(plan.at("seconds").get<double>(), 0);
+  EXPECT_TRUE(plan.at("seconds").is_null()) << "no earlier run tells";
   ASSERT_EQ(plan.at("shards").size(), 3U);
   int cells = 0;
   for (const Json& shard : plan.at("shards")) cells += shard.at("cells").get<int>();
@@ -53,7 +53,7 @@ TEST(Plan, PredictsByWhatEarlierRunsTook) {
   ASSERT_EQ(shell("./isoline run " + kMatrix + "--out before --no-report --quiet").exit_code, 0);
   const std::string told =
       shell("./isoline plan " + kMatrix + "--shards 2 --out out --from before").out;
-  EXPECT_TRUE(contains(told, "24 by earlier runs and 0 by declared prices")) << told;
+  EXPECT_TRUE(contains(told, "24 by earlier runs and 0 by declared work")) << told;
   const Finished absent = shell("./isoline plan " + kMatrix + "--from nowhere");
   EXPECT_EQ(absent.exit_code, 1);
   EXPECT_TRUE(contains(absent.err, "nowhere: no such result folder")) << absent.err;
