@@ -4,16 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "reports/compare/subject.h"
+#include "reports/compare/cells.h"
 
 namespace isoline::reports {
 
 inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
-
-struct Baseline {
-  std::vector<Subject> subjects;
-  BestKnown minima;  // where a problem declares none
-};
 
 // Keeps what is compared bit for bit (status, build, digest of the trace, final figures, work to
 // the tolerances of the tables), with what was asked, given and built, and neither curves nor
@@ -21,6 +16,6 @@ struct Baseline {
 // perturbation: how far they moved is kept.
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed = {});
 
-Baseline baseline_from_json(const Json& json);  // UsageError where it is no such file
+std::vector<ComparedCell> baseline_from_json(const Json& json);  // UsageError where it is none
 
 }  // namespace isoline::reports

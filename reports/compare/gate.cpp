@@ -1,73 +1,77 @@
-// Pairs two sets of subjects, holds their figures to each other, judges their times, and concludes.
+// Pairs two sets of cells, compares their figures, judges their times, and concludes.
 #include "reports/compare/gate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <tuple>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/compare/baseline.h"
-#include "reports/compare/differences.h"
-#include "reports/compare/pairing.h"
-#include "reports/compare/subject.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
-// Why figures of the two cannot be held to each other; empty where they can.
-std::string why_incomparable(const Subject& a, const Subject& b, const GateOptions& options) {
-  for (const Subject* side : {&a, &b})
+// Why figures of the two cannot be compared; empty where they can.
+std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
+                             const GateOptions& options) {
+  for (const ComparedCell* side : {&a, &b})
     if (!side->doubt.empty())
       return fmt::format("{} cannot be trusted: {}", side == &a ? "BASE" : "NEW", side->doubt);
   if (a.is_cut || b.is_cut)
     return fmt::format("a clock or a kill ended it in {} ({})", b.is_cut ? "NEW" : "BASE",
-                       b.is_cut ? b.state : a.state);
-  if (a.asked != b.asked) return "its seeds, budget or options are others";
-  if (options.tolerance || (a.builds == b.builds && a.builds.size() == 1)) return "";
-  if (a.builds.empty() && b.builds.empty()) return "";  // nothing has run on either side
+                       name_of(b.is_cut ? b.status : a.status));
+  if (options.tolerance || a.build == b.build) return "";
   return "another build or instruction set; give --tolerance to compare their figures";
 }
 
 // "curve", "message, claimed": what of the records differs where all figures agree.
-Difference silent_difference(const Subject& a, const Subject& b) {
-  Difference difference{.change = Change::changed,
-                        .key = a.key,
-                        .title = a.title,
-                        .problem = a.problem.name,
-                        .optimizer = a.optimizer.name,
-                        .what = "trace",
-                        .before = a.trace,
-                        .after = b.trace,
-                        .note = "the path differs, all compared figures agree",
-                        .cause = ""};
+Difference silent_difference(const ComparedCell& a, const ComparedCell& b) {
+  Difference difference = difference_in(a, Change::changed, "trace", a.trace, b.trace);
+  difference.note = "the path differs, all compared figures agree";
   if (a.trace != b.trace) return difference;
   std::map<std::string_view, std::array<std::uint64_t, 2>> members;  // of none 0
-  for (const auto& [name, digest] : a.members) members[*name][0] = digest;
-  for (const auto& [name, digest] : b.members) members[*name][1] = digest;
+  for (const auto& [name, digest] : a.members) members[name][0] = digest;
+  for (const auto& [name, digest] : b.members) members[name][1] = digest;
   std::vector<std::string> names;
   for (const auto& [name, digests] : members)
     if (digests[0] != digests[1]) names.emplace_back(name);
-  difference.what = names.empty() || a.members.empty() ? "record" : joined(names);
-  difference.before = a.rest;
-  difference.after = b.rest;
+  difference = difference_in(a, Change::changed, "record", a.rest, b.rest);
+  if (!names.empty() && !a.members.empty()) difference.what = joined(names);
   difference.note = "its path and all compared figures agree";
   return difference;
 }
 
+CauseGroup& group_of(std::vector<CauseGroup>& groups, const std::string& cause) {
+  const auto at = std::ranges::find(groups, cause, &CauseGroup::cause);
+  if (at != groups.end()) return *at;
+  return groups.emplace_back(CauseGroup{.cause = cause});
+}
+
+void count(CauseGroup& group, const Difference& difference) {
+  if (difference.is_rounding) {
+    group.most_rounding = std::max(group.most_rounding, std::abs(difference.relative));
+    return;
+  }
+  auto& keys = difference.change == Change::worse    ? group.worse
+               : difference.change == Change::better ? group.better
+                                                     : group.changed;
+  keys.insert(difference.key);
+}
+
 // "all 4 of adam, 7 of 10 of gd".
-std::string lack_text(const std::vector<const Subject*>& lacking, const std::vector<Subject>& all) {
+std::string lack_text(const std::vector<const ComparedCell*>& lacking,
+                      const std::vector<ComparedCell>& all) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> counts;  // lacking, of all
-  for (const Subject* subject : lacking) ++counts[subject->optimizer.name].first;
-  for (const Subject& subject : all)
-    if (const auto at = counts.find(subject.optimizer.name); at != counts.end())
-      ++at->second.second;
+  for (const ComparedCell* cell : lacking) ++counts[cell->optimizer.name].first;
+  for (const ComparedCell& cell : all)
+    if (const auto at = counts.find(cell.optimizer.name); at != counts.end()) ++at->second.second;
   std::vector<std::string> names;
   for (const auto& [name, count] : counts)
     names.push_back(count.first == count.second
@@ -78,56 +82,59 @@ std::string lack_text(const std::vector<const Subject*>& lacking, const std::vec
 
 class Gate {
  public:
-  explicit Gate(const GateOptions& options) : options_(options) {}
+  explicit Gate(const GateOptions& options) : options_(options), is_used_(options.allowed.size()) {}
 
-  GateResult run(const std::vector<Subject>& before, const std::vector<Subject>& after) {
-    Pairs pairs = paired(before, after);
-    result_.builds = changed_builds(pairs);
-    result_.settings = changed_settings(pairs);
-    for (const auto& [a, b] : pairs.both) join(*a, *b);
-    miss(pairs, before);
+  GateResult run(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after) {
+    const Pairs pairs = paired(before, after);
+    for (const auto& [a, b] : pairs.both)
+      a->key == b->key || a->terms == b->terms ? compare(*a, *b) : part(*a, *b);
+    for (const ComparedCell* cell : pairs.only_before)
+      if (!is_allowed(*cell)) lack(*cell), lacking_.push_back(cell);
+    for (const ComparedCell* cell : pairs.only_after) result_.only_after.push_back(cell->title);
+    result_.lack = lack_text(lacking_, before);
+    name_what_changed();
     choose_timed();
     result_.times = judge_times(timed_, options_.least_noise);
-    sort_differences();
-    result_.causes = caused(result_.differences, result_.incomparable);
+    sort();
     add_remarks();
-    conclude(result_, options_);
-    return result_;
+    return std::move(result_);
   }
 
  private:
-  void join(const Subject& a, const Subject& b) {
+  void compare(const ComparedCell& a, const ComparedCell& b) {
     ++result_.joined;
+    for (const std::string& text : changed_parts(a, b)) group_of(parts_, text).add(b);
+    for (const std::string& text : changed_options(a, b)) group_of(settings_, text).add(b);
     offer_times(a, b);
     const std::string reason = why_incomparable(a, b, options_);
     if (reason.empty()) return judge(a, b);
-    const bool tells_status = a.is_cut || b.is_cut ? a.badness != b.badness : a.lost != b.lost;
+    const bool tells_status = a.is_cut || b.is_cut ? badness_of(a.status) != badness_of(b.status)
+                                                   : is_lost(a) != is_lost(b);
     if (tells_status && a.doubt.empty() && b.doubt.empty())
-      keep({state_difference(a, b)}, a, b);
-    else
-      result_.incomparable.push_back({a.title, reason, a.key, a.problem.name, a.optimizer.name});
+      return keep({status_difference(a, b)}, a, b);
+    result_.incomparable.push_back({a.title, reason});
+    CauseGroup& group = group_of(result_.causes, reason);
+    group.add(a);
+    ++group.incomparable;
   }
 
-  void keep(std::vector<Difference> found, const Subject& a, const Subject& b) {
+  void keep(std::vector<Difference> found, const ComparedCell& a, const ComparedCell& b) {
     if (found.empty()) return;
     const std::string cause = cause_of(a, b);
+    CauseGroup& group = group_of(result_.causes, cause);
+    group.add(a);
     for (Difference& difference : found) {
+      count(group, difference);
       difference.cause = cause;
       result_.differences.push_back(std::move(difference));
     }
   }
 
-  std::vector<Difference> differences_of(const Subject& a, const Subject& b) const {
-    std::vector<Difference> found = quantity_differences(a, b, options_.tolerance);
-    if (a.state != b.state) found.insert(found.begin(), state_difference(a, b));
-    const bool is_silent = found.empty() && !options_.tolerance;
-    if (is_silent && (a.trace != b.trace || a.rest != b.rest))
+  void judge(const ComparedCell& a, const ComparedCell& b) {
+    std::vector<Difference> found = figure_differences(a, b, options_.tolerance);
+    if (a.status != b.status) found.insert(found.begin(), status_difference(a, b));
+    if (found.empty() && !options_.tolerance && (a.trace != b.trace || a.rest != b.rest))
       found.push_back(silent_difference(a, b));
-    return found;
-  }
-
-  void judge(const Subject& a, const Subject& b) {
-    std::vector<Difference> found = differences_of(a, b);
     const bool is_coarse = !found.empty() && is_chaotic(a, options_.tolerance);
     if (is_coarse) found = coarse_differences(a, b);
     result_.equal += found.empty() && !is_coarse;
@@ -135,41 +142,49 @@ class Gate {
     keep(std::move(found), a, b);
   }
 
-  void miss(Pairs& pairs, const std::vector<Subject>& before) {
-    std::vector<bool> is_used(options_.allowed.size());
-    std::vector<const Subject*> unexpected;
-    for (const Subject* subject : pairs.only_before) {
-      const auto entry = entry_for(options_.allowed, *subject);
-      if (entry == options_.allowed.end()) {
-        unexpected.push_back(subject);
-        result_.only_before.push_back(subject->title);
-        continue;
-      }
-      result_.allowed.push_back({subject->title, entry->reason});
-      is_used[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
+  bool is_allowed(const ComparedCell& cell) {
+    const auto entry = entry_for(options_.allowed, cell);
+    if (entry == options_.allowed.end()) return false;
+    result_.allowed.push_back({cell.title, entry->reason});
+    is_used_[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
+    return true;
+  }
+
+  void lack(const ComparedCell& cell) { result_.only_before.push_back(cell.title); }
+
+  // Another budget is another question: NEW lacks the cell of BASE, and has one of its own.
+  void part(const ComparedCell& a, const ComparedCell& b) {
+    result_.only_after.push_back(b.title);
+    if (is_allowed(a)) return;
+    lack(a);
+    group_of(result_.other_terms, change_of_terms(a, b)).add(a);
+  }
+
+  void name_what_changed() {
+    for (const auto& [groups, texts] :
+         {std::pair(&parts_, &result_.builds), {&settings_, &result_.settings}}) {
+      std::ranges::sort(*groups, {}, &CauseGroup::cause);
+      for (const CauseGroup& group : *groups)
+        texts->push_back(fmt::format("{} ({})", group.cause, group.cells_text()));
     }
-    for (const Subject* subject : pairs.only_after) result_.only_after.push_back(subject->title);
-    result_.other_terms = take_other_terms(unexpected, pairs.only_after);
-    result_.lack = lack_text(unexpected, before);
-    for (std::size_t i = 0; i < is_used.size(); ++i)
-      if (!is_used[i])
+    for (std::size_t i = 0; i < is_used_.size(); ++i)
+      if (!is_used_[i])
         result_.remarks.push_back(fmt::format(
             "the list of allowed cells names {} × {}, which NEW does not lack: remove the entry",
             options_.allowed[i].problem, options_.allowed[i].optimizer));
   }
 
-  void offer_times(const Subject& a, const Subject& b) {
+  void offer_times(const ComparedCell& a, const ComparedCell& b) {
     senseless_ += a.senseless_times + b.senseless_times;
     const bool is_listed = std::ranges::any_of(
         options_.timed, [&](const std::string& start) { return a.key.starts_with(start); });
     if (!options_.timed.empty() && !is_listed) return;
-    if (std::min(a.seconds.size(), b.seconds.size()) < kLeastRepetitions) {
+    if (std::min(a.seconds.size(), b.seconds.size()) < kLeastRepetitions)
       too_few_ += !a.seconds.empty() && !b.seconds.empty();
-    } else if (a.processor != b.processor) {
+    else if (a.processor != b.processor)
       ++other_processors_;
-    } else {
+    else
       timed_.push_back({a.key, a.title, a.seconds, b.seconds});
-    }
   }
 
   // The slowest of BASE, which say most and whose choice knows nothing of what changed.
@@ -185,13 +200,13 @@ class Gate {
     timed_.resize(kMostTimed);
   }
 
-  void sort_differences() {
-    std::ranges::stable_sort(result_.differences, [](const Difference& a, const Difference& b) {
-      const auto rank = [](const Difference& d) {
-        return std::tuple(d.change == Change::changed, -d.relative, d.what != "status",
-                          std::string_view(d.title));
-      };
-      return rank(a) < rank(b);
+  void sort() {
+    std::ranges::stable_sort(result_.differences, {}, [](const Difference& d) {
+      return std::tuple(d.change == Change::changed, -d.relative, d.what != "status",
+                        std::string_view(d.title));
+    });
+    std::ranges::stable_sort(result_.causes, std::greater(), [](const CauseGroup& group) {
+      return std::tuple(!group.worse.empty(), group.incomparable > 0, group.cells.size());
     });
   }
 
@@ -200,14 +215,10 @@ class Gate {
   }
 
   void add_remarks() {
-    std::vector<std::string> targets;
-    for (const Tolerance& tolerance : kTolerances) targets.emplace_back(tolerance.name);
-    remark(
-        result_.chaotic, "chaotic cell",
-        fmt::format("judged by status and by which of the targets {} it reaches: the figures "
-                    "moved by more than a tenth of the tolerance when the start was perturbed in "
-                    "the last bit",
-                    joined(targets)));
+    remark(result_.chaotic, "chaotic cell",
+           "judged by status and by which of the targets 1e-1, 1e-3, 1e-6 it reaches: the figures "
+           "moved by more than a tenth of the tolerance when the start was perturbed in the last "
+           "bit");
     remark(too_few_, "cell",
            fmt::format("with too few repetitions for a verdict on time: {} a side are needed (run "
                        "--repeat {} --exclusive)",
@@ -221,59 +232,44 @@ class Gate {
   }
 
   const GateOptions& options_;
+  std::vector<bool> is_used_;                 // of the entries of the list of allowed cells
+  std::vector<const ComparedCell*> lacking_;  // in NEW, whatever its budget
+  std::vector<CauseGroup> parts_, settings_;  // all that differs, with and without an effect
   std::vector<TimedCell> timed_;
   std::size_t too_few_ = 0, other_processors_ = 0, skipped_ = 0, senseless_ = 0;
   GateResult result_;
 };
 
-}  // namespace
-
-GateResult compare_subjects(const std::vector<Subject>& before, const std::vector<Subject>& after,
-                            const GateOptions& options) {
-  return Gate(options).run(before, after);
-}
-
-// Concludes: worse before not comparable before better; each with its cause in the same sentence.
-
-namespace {
-
 // "26 cells of adam, most in sine × adam, seed 0: loss 1e-3 → 2": of what rounding does not
-// explain.
+// explain, or else of what it does.
 std::string worst_text(const GateResult& result, Change change) {
-  const Difference* worst = nullptr;
-  std::set<std::string> cells, optimizers;
-  for (const Difference& difference : result.differences) {
-    if (difference.change != change || difference.is_rounding) continue;
-    if (worst == nullptr) worst = &difference;  // they come worst first
-    cells.insert(difference.key);
-    optimizers.insert(difference.optimizer);
+  const Difference *worst = nullptr, *rounded = nullptr;
+  CauseGroup group;
+  for (const Difference& difference : result.differences) {  // worst first
+    if (difference.change != change) continue;
+    const Difference*& first = difference.is_rounding ? rounded : worst;
+    if (first == nullptr) first = &difference;
+    if (difference.is_rounding) continue;
+    group.cells.insert(difference.key);
+    group.optimizers.insert(difference.optimizer);
   }
-  if (worst == nullptr) return "";
-  return fmt::format("{} of {}, most in {}: {}", counted(cells.size(), "cell"),
-                     names_text({optimizers.begin(), optimizers.end()}), worst->title,
-                     step_text(*worst));
+  if (worst != nullptr)
+    return fmt::format("{} of {}, most in {}: {}", counted(group.cells.size(), "cell"),
+                       names_text({group.optimizers.begin(), group.optimizers.end()}), worst->title,
+                       step_text(*worst));
+  if (rounded == nullptr) return "";
+  return fmt::format("by rounding alone, most in {}: {}", rounded->title, step_text(*rounded));
 }
 
 std::string lack_cause(const GateResult& result) {
   if (result.only_before.empty()) return "";
   std::vector<std::string> names;
-  for (const OtherTerms& terms : result.other_terms)
-    names.push_back(fmt::format("{} with another budget in NEW, {}", terms.cells, terms.what));
+  for (const CauseGroup& terms : result.other_terms)
+    names.push_back(
+        fmt::format("{} with another budget in NEW, {}", terms.cells.size(), terms.cause));
   if (!result.lack.empty()) names.push_back(result.lack);
   return fmt::format("NEW lacks {} of BASE ({})", counted(result.only_before.size(), "cell"),
                      joined(names));
-}
-
-// Where nothing else is worse, or better.
-std::string rounding_cause(const GateResult& result, Change change) {
-  const Difference* largest = nullptr;
-  for (const Difference& difference : result.differences) {
-    if (difference.change != change) continue;
-    if (!difference.is_rounding) return "";
-    if (largest == nullptr) largest = &difference;
-  }
-  if (largest == nullptr) return "";
-  return fmt::format("by rounding alone, most in {}: {}", largest->title, step_text(*largest));
 }
 
 std::string time_cause(const std::vector<TimeVerdict>& times, int change, const char* word) {
@@ -284,7 +280,7 @@ std::string time_cause(const std::vector<TimeVerdict>& times, int change, const 
                      first->title, ratio_text(first->ratio));
 }
 
-std::string incomparable_cause(const std::vector<Incomparable>& all) {
+std::string incomparable_cause(const std::vector<ReasonedCell>& all) {
   const std::string first = all[0].title + ": " + all[0].reason;
   return all.size() == 1 ? first : fmt::format("{} cells, as {}", all.size(), first);
 }
@@ -295,70 +291,38 @@ std::string settings_cause(const std::vector<std::string>& settings) {
                      counted(settings.size() - 1, "other change"));
 }
 
-std::string with_causes(const std::string& verdict, std::vector<std::string> causes) {
-  std::erase(causes, "");
-  return causes.empty() ? verdict : verdict + ": " + joined(causes, "; ");
-}
-
-}  // namespace
-
+// The sentence and the exit code: worse before not comparable before better, each with its causes.
 void conclude(GateResult& result, const GateOptions& options) {
   const auto has = [&](Change change) {
-    return std::ranges::any_of(result.differences,
-                               [&](const Difference& d) { return d.change == change; });
+    return std::ranges::find(result.differences, change, &Difference::change) !=
+           result.differences.end();
   };
-  const auto settle = [&](ExitCode code, std::string verdict) {
+  const auto settle = [&](ExitCode code, const char* verdict, std::vector<std::string> causes) {
+    std::erase(causes, "");
     result.exit_code = code;
-    result.verdict = std::move(verdict);
+    result.verdict = verdict + (causes.empty() ? "" : ": " + joined(causes, "; "));
   };
+  const std::string settings = settings_cause(result.settings);
   const std::string lacks = options.is_common_only ? "" : lack_cause(result);
   const std::string slower = time_cause(result.times, 1, "slower");
   const std::string faster = time_cause(result.times, -1, "faster");
   if (has(Change::worse) || !slower.empty() || !lacks.empty())
-    settle(kWorse, with_causes("worse", {settings_cause(result.settings), lacks,
-                                         worst_text(result, Change::worse),
-                                         rounding_cause(result, Change::worse), slower}));
+    settle(kWorse, "worse", {settings, lacks, worst_text(result, Change::worse), slower});
   else if (result.joined == 0)
-    settle(kNotComparable, "not comparable: no cell is in both");
+    settle(kNotComparable, "not comparable", {"no cell is in both"});
   else if (!result.incomparable.empty())
-    settle(kNotComparable, with_causes("not comparable in part, nothing worse in the rest",
-                                       {incomparable_cause(result.incomparable)}));
+    settle(kNotComparable, "not comparable in part, nothing worse in the rest",
+           {incomparable_cause(result.incomparable)});
   else if (has(Change::better) || !faster.empty())
-    settle(kBetterOnly,
-           with_causes("better, nothing worse",
-                       {settings_cause(result.settings), worst_text(result, Change::better),
-                        rounding_cause(result, Change::better), faster}));
+    settle(kBetterOnly, "better, nothing worse",
+           {settings, worst_text(result, Change::better), faster});
   else if (has(Change::changed) || !result.settings.empty())
-    settle(kGood,
-           with_causes("changed, neither better nor worse", {settings_cause(result.settings)}));
+    settle(kGood, "changed, neither better nor worse", {settings});
   else
-    settle(kGood, "equal");
+    settle(kGood, "equal", {});
 }
 
-// Reads the two sides of a comparison: result folders, or a baseline and a folder.
-
-namespace {
-
-namespace fs = std::filesystem;
-
-struct Side {
-  fs::path path;
-  Json file;  // null of a result folder
-
-  bool is_folder() const { return file.is_null(); }
-  bool is_baseline() const {
-    return file.is_object() && file.value("schema", "") == kBaselineSchema;
-  }
-};
-
-Side side_of(const fs::path& path) {
-  require(is_there(path),
-          [&] { return fmt::format("{}: no such result folder or baseline", path.string()); });
-  std::error_code unknown;
-  return {path, fs::is_directory(path, unknown) ? Json() : read_json(path)};
-}
-
-void remark_on(const FolderSubjects& found, const fs::path& path,
+void remark_on(const FolderCells& found, const std::filesystem::path& path,
                std::vector<std::string>& remarks) {
   if (found.unreadable > 0)
     remarks.push_back(fmt::format("{} of {} could not be read", counted(found.unreadable, "file"),
@@ -368,36 +332,49 @@ void remark_on(const FolderSubjects& found, const fs::path& path,
                                   counted(found.superseded, "older record"), path.string()));
 }
 
-GateResult compare_with_baseline(const Side& before, const fs::path& after,
-                                 const GateOptions& options) {
-  const Baseline baseline = baseline_from_json(before.file);
-  const FolderSubjects found = read_subjects(after, baseline.minima, options.listener);
-  GateResult result = compare_subjects(baseline.subjects, found.subjects, options);
-  result.remarks.push_back("a baseline holds no times: none is judged");
-  remark_on(found, after, result.remarks);
-  return result;
-}
-
-GateResult compare_folders(const fs::path& before, const fs::path& after,
-                           const GateOptions& options) {
-  const FolderSubjects old = read_subjects(before, std::nullopt, options.listener);
-  const FolderSubjects now = read_subjects(after, old.best, options.listener);
-  GateResult result = compare_subjects(old.subjects, now.subjects, options);
-  remark_on(old, before, result.remarks);
-  remark_on(now, after, result.remarks);
-  return result;
+// The file where it is a baseline; nothing of a folder.
+std::optional<std::vector<ComparedCell>> read_baseline(const std::filesystem::path& path) {
+  require(is_there(path),
+          [&] { return fmt::format("{}: no such result folder or baseline", path.string()); });
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) return std::nullopt;
+  const Json json = read_json(path);
+  require(json.is_object() && json.value("schema", "") == kBaselineSchema,
+          "compare takes two result folders, or a baseline and a result folder: "
+          "isoline compare BASE RESULTS");
+  return baseline_from_json(json);
 }
 
 }  // namespace
 
-GateResult compare_results(const fs::path& before, const fs::path& after,
+void CauseGroup::add(const ComparedCell& cell) {
+  cells.insert(cell.key);
+  problems.insert(cell.problem.name);
+  optimizers.insert(cell.optimizer.name);
+}
+
+std::size_t CauseGroup::rounded() const {
+  std::set<std::string> others = worse;
+  for (const auto* some : {&better, &changed}) others.insert(some->begin(), some->end());
+  return cells.size() - others.size() - incomparable;
+}
+
+GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
                            const GateOptions& options) {
-  const Side old = side_of(before), now = side_of(after);
-  require(now.is_folder() && (old.is_folder() || old.is_baseline()),
-          "compare takes two result folders, or a baseline and a result folder: "
-          "isoline compare BASE RESULTS");
-  return old.is_baseline() ? compare_with_baseline(old, after, options)
-                           : compare_folders(before, after, options);
+  auto baseline = read_baseline(before);
+  require(!read_baseline(after), "a baseline stands on the left: isoline compare BASE RESULTS");
+  FolderCells old;
+  if (baseline)
+    old.cells = std::move(*baseline);
+  else
+    old = read_cells(before, options.listener);
+  const FolderCells now = read_cells(after, options.listener);
+  GateResult result = Gate(options).run(old.cells, now.cells);
+  conclude(result, options);
+  if (baseline) result.remarks.push_back("a baseline holds no times: none is judged");
+  remark_on(old, before, result.remarks);
+  remark_on(now, after, result.remarks);
+  return result;
 }
 
 }  // namespace isoline::reports

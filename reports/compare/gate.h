@@ -1,12 +1,9 @@
 // What changed from one set of results to another: the gate of continuous integration.
 //
-//   subject      the two sides in one form: cells of a result folder or of a baseline
+//   cells        the two sides in one form: cells of a result folder or of a baseline
 //   pairing      which cell of NEW answers which of BASE, and what was asked or built otherwise
-//   differences  status and figures, exactly or within a tolerance
-//   timing       times, by statistics
-//   allowed      what NEW may lack
-//   gate         the verdict
-//   causes       what differs, by what explains it
+//   differences  status and figures, exactly or within a tolerance; times, by statistics
+//   gate         the verdict, and what explains it
 //   baseline     what of results stands in a repository
 //   gate_text    the comparison in words
 #pragma once
@@ -14,14 +11,15 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/status.h"
 #include "core/threads.h"
-#include "reports/compare/causes.h"
 #include "reports/compare/differences.h"
 #include "reports/compare/pairing.h"
+#include "reports/statistics/times.h"
 
 namespace isoline::reports {
 
@@ -34,22 +32,42 @@ struct GateOptions {
   Listener listener;               // of the records read
 };
 
-struct AllowedCell {
+// A cell with the reason why NEW may lack it, or why its figures say nothing of those of BASE.
+struct ReasonedCell {
   std::string title, reason;
 };
 
+// The cells that differ for one reason: what they were given, or the parts of the build that
+// computed them; of those that cannot be compared why not. Cells count, not figures.
+struct CauseGroup {
+  std::string cause = {};
+  std::set<std::string> cells = {}, problems = {}, optimizers = {};
+  std::set<std::string> worse = {}, better = {}, changed = {};  // keys of cells, rounding apart
+  std::size_t incomparable = 0;
+  Real most_rounding = 0;  // the largest of the differences that rounding explains, relative
+
+  void add(const ComparedCell& cell);
+  std::size_t rounded() const;     // cells that differ by rounding alone
+  std::string cells_text() const;  // "51 cells of adam, gd on 12 problems"
+};
+
+// "51 cells of adam, gd on 12 problems: 3 worse, 48 by rounding alone (3e-15 at most)".
+std::string cause_group_text(const CauseGroup& group);
+
 struct GateResult {
-  std::size_t joined = 0, equal = 0;          // subjects in both; of them, without any difference
+  std::size_t joined = 0, equal = 0;          // cells in both; of them, without any difference
   std::size_t chaotic = 0;                    // of them, judged by status and coarse targets
   std::vector<std::string> builds, settings;  // what differs before any figure does, in words
   std::vector<Difference> differences;        // worst first
-  std::vector<CauseGroup> causes;             // of them and of what cannot be compared
-  std::vector<TimeVerdict> times;             // worst first
+  // Of them and of what cannot be compared: those with something worse first, then those that
+  // cannot be compared, then by their cells.
+  std::vector<CauseGroup> causes;
+  std::vector<TimeVerdict> times;                    // worst first
   std::vector<std::string> only_before, only_after;  // titles; the allowed ones are not among them
-  std::vector<OtherTerms> other_terms;               // of them, asked with another budget
-  std::string lack;                                  // which optimizers NEW lacks cells of
-  std::vector<AllowedCell> allowed;                  // only in BASE
-  std::vector<Incomparable> incomparable;
+  std::vector<CauseGroup> other_terms;  // of them, asked with another budget: "iterations 20 → 30"
+  std::string lack;                     // which optimizers NEW lacks cells of
+  std::vector<ReasonedCell> allowed;    // only in BASE
+  std::vector<ReasonedCell> incomparable;
   std::vector<std::string> remarks;
   std::string verdict;  // one sentence, which names the cause
   ExitCode exit_code = kGood;
@@ -58,8 +76,6 @@ struct GateResult {
 // Two result folders, or a baseline and a result folder.
 GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,
                            const GateOptions& options);
-GateResult compare_subjects(const std::vector<Subject>& before, const std::vector<Subject>& after,
-                            const GateOptions& options);
 
 // The summary, then so many lines of tables as a reader reads, or all.
 std::string gate_terminal(const GateResult& result, bool lists_all = false);
@@ -68,17 +84,9 @@ std::string gate_json(const GateResult& result);  // schema isoline.comparison/1
 
 inline constexpr const char* kComparisonSchema = "isoline.comparison/1";
 
-// The sentence and the exit code that a comparison ends with.
-
-// Fills both in, once all else is there.
-void conclude(GateResult& result, const GateOptions& options);
-
 // Pieces of these texts.
-const char* name_of(Change change);
-const char* name_of_time(int change);
-std::string counts_of(const GateResult& result);           // "3 cells in both: 3 equal, …"
-std::string step_text(const Difference& difference);       // "loss 1e-3 → 2e-3"
-std::string remainder_text(const Difference& difference);  // "+5 %, and 3 more of its kind"
-std::string ratio_text(const RatioEstimate& ratio);        // "1.31× (1.25 to 1.36)"
+std::string step_text(const Difference& difference);            // "loss 1e-3 → 2e-3"
+std::string ratio_text(const RatioEstimate& ratio);             // "1.31× (1.25 to 1.36)"
+std::string names_text(const std::vector<std::string>& names);  // a dozen of them at most
 
 }  // namespace isoline::reports

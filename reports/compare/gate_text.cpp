@@ -1,22 +1,29 @@
-// Words for changes, ratios and counts.
+// A comparison as sentences and tables, which the formats of reports lay out, and as JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <span>
 
 #include "core/json.h"
 #include "reports/compare/gate.h"
-#include "reports/compare/pairing.h"
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
+
+const char* change_name(Change change) {
+  if (change == Change::changed) return "changed";
+  return change == Change::worse ? "worse" : "better";
+}
+
+const char* time_change_name(int change) {
+  if (change == 0) return "same";
+  return change > 0 ? "slower" : "faster";
+}
 
 // "+5 %", "12×" for more than tenfold; empty where no ratio says anything.
 std::string relative_text(Real relative) {
@@ -26,95 +33,65 @@ std::string relative_text(Real relative) {
   return fmt::format("{}{:.3g} %", relative > 0 ? "+" : "−", 100 * std::abs(relative));
 }
 
-}  // namespace
-
-const char* name_of(Change change) {
-  if (change == Change::changed) return "changed";
-  return change == Change::worse ? "worse" : "better";
-}
-
-const char* name_of_time(int change) {
-  if (change == 0) return "same";
-  return change > 0 ? "slower" : "faster";
-}
-
-std::string step_text(const Difference& difference) {
-  return fmt::format("{} {} → {}", difference.what, difference.before, difference.after);
-}
-
+// "+5 %, and 3 more of its kind".
 std::string remainder_text(const Difference& difference) {
   const std::string relative = relative_text(difference.relative);
   if (relative.empty() || difference.note.empty()) return relative + difference.note;
   return relative + ", " + difference.note;
 }
 
-std::string ratio_text(const RatioEstimate& ratio) {
-  return fmt::format("{:.3g}× ({:.3g} to {:.3g})", ratio.ratio, ratio.low, ratio.high);
+// "adam, gd", or how many there are.
+std::string few_names(const std::set<std::string>& names, const char* noun) {
+  constexpr std::size_t kFew = 3;
+  if (names.size() > kFew) return counted(names.size(), noun);
+  return joined({names.begin(), names.end()});
 }
 
-std::string counts_of(const GateResult& result) {
+// "3 worse, 2 better"; what there is none of is left out.
+std::string counts_text(std::initializer_list<std::pair<std::size_t, std::string>> counts) {
+  std::vector<std::string> words;
+  for (const auto& [number, word] : counts)
+    if (number > 0) words.push_back(fmt::format("{} {}", number, word));
+  return joined(words);
+}
+
+// "3 cells in both: 3 equal; differences: 1 worse".
+std::string summary_text(const GateResult& result) {
   const auto count = [&](Change change) {
     return static_cast<std::size_t>(
         std::ranges::count(result.differences, change, &Difference::change));
   };
   const auto rounded = static_cast<std::size_t>(
       std::ranges::count(result.differences, true, &Difference::is_rounding));
-  const auto text = [](std::initializer_list<std::pair<std::size_t, const char*>> counts) {
-    std::vector<std::string> words;
-    for (const auto& [number, word] : counts)
-      if (number > 0) words.push_back(fmt::format("{} {}", number, word));
-    return joined(words);
-  };
-  const std::string cells = text({{result.equal, "equal"},
-                                  {result.chaotic, "chaotic"},
-                                  {result.incomparable.size(), "not comparable"}});
-  const std::string differences = text({{count(Change::worse), "worse"},
-                                        {count(Change::better), "better"},
-                                        {count(Change::changed), "changed"},
-                                        {rounded, "of them by rounding alone"}});
+  const std::string cells = counts_text({{result.equal, "equal"},
+                                         {result.chaotic, "chaotic"},
+                                         {result.incomparable.size(), "not comparable"}});
+  const std::string differences = counts_text({{count(Change::worse), "worse"},
+                                               {count(Change::better), "better"},
+                                               {count(Change::changed), "changed"},
+                                               {rounded, "of them by rounding alone"}});
   return fmt::format("{} in both{}{}{}{}", counted(result.joined, "cell"),
                      cells.empty() ? "" : ": ", cells,
                      differences.empty() ? "" : "; differences: ", differences);
 }
 
-// A comparison as a section of tables, which the formats of reports lay out: for the terminal, and
-// as Markdown for the summary of a job.
-
-namespace {
-
-constexpr std::size_t kMostRows = 40;  // of a table
-
 using Row = std::vector<TableCell>;
 
 // A table without rows is left out.
 template <class Value, class ToRow>
-void add_table(Section& section, Table table, const std::vector<Value>& all, ToRow row) {
+void add_table(Section& section, const std::string& title, const std::vector<std::string>& columns,
+               const std::string& align, const std::vector<Value>& all, ToRow row) {
   if (all.empty()) return;
-  table.title += fmt::format(" ({})", all.size());
+  Table table{.title = fmt::format("{} ({})", title, all.size()),
+              .columns = columns,
+              .align = align,
+              .names = columns.size() > 1};
   for (const Value& value : all) table.rows.push_back(row(value));
   section.tables.push_back(std::move(table));
 }
 
-// Of each table as many rows as a reader reads.
-void cut(Section& section) {
-  for (Table& table : section.tables) {
-    if (table.rows.size() <= kMostRows) continue;
-    table.caption =
-        fmt::format("{} more are left out here; --json lists them.", table.rows.size() - kMostRows);
-    table.rows.resize(kMostRows, {""});
-  }
-}
-
 Row line(const std::string& text) { return {text}; }
-
-Row time_row(const TimeVerdict& time) {
-  return {name_of_time(time.change),
-          time.title,
-          ratio_text(time.ratio),
-          fmt::format("±{}", percent(time.noise)),
-          fmt::format("{:.2g}", time.adjusted),
-          fmt::format("{}, {}", time.n_before, time.n_after)};
-}
+Row reasoned(const ReasonedCell& cell) { return {cell.title, cell.reason}; }
 
 // A table a cause, in the order of the causes; what rounding explains is in none.
 void add_differences(Section& section, const GateResult& result) {
@@ -123,56 +100,27 @@ void add_differences(Section& section, const GateResult& result) {
     std::ranges::copy_if(result.differences, std::back_inserter(its), [&](const Difference& one) {
       return one.cause == cause.cause && !one.is_rounding;
     });
-    add_table(section,
-              {.title = "Differences: " + cause.cause,
-               .columns = {"", "cell", "figure", "change"},
-               .align = "llll"},
-              its, [](const Difference& one) -> Row {
-                return {name_of(one.change), one.title, step_text(one), remainder_text(one)};
+    add_table(section, "Differences: " + cause.cause, {"", "cell", "figure", "change"}, "llll", its,
+              [](const Difference& one) -> Row {
+                return {change_name(one.change), one.title, step_text(one), remainder_text(one)};
               });
   }
 }
 
-void add_what_differs(Section& section, const GateResult& result) {
-  add_table(section, {.title = "Builds that differ", .columns = {"part"}, .names = 0},
-            result.builds, line);
-  add_table(section, {.title = "Options that differ", .columns = {"option"}, .names = 0},
-            result.settings, line);
-  add_table(section,
-            {.title = "Time, NEW over BASE",
-             .columns = {"", "cell", "ratio (95 % interval)", "noise", "p, adjusted", "runs"},
-             .align = "llrrrr"},
-            result.times, [](const TimeVerdict& time) { return time_row(time); });
-}
-
-void add_what_is_apart(Section& section, const GateResult& result) {
-  add_table(section,
-            {.title = "In both, with another budget",
-             .columns = {"what differs", "cells"},
-             .align = "ll"},
-            result.other_terms, [](const OtherTerms& terms) -> Row {
-              return {terms.what,
-                      fmt::format("{} of {}", counted(terms.cells, "cell"),
-                                  names_text({terms.optimizers.begin(), terms.optimizers.end()}))};
-            });
-  add_table(section, {.title = "Only in BASE", .columns = {"cell"}}, result.only_before, line);
-  add_table(section,
-            {.title = "Only in BASE, as allowed", .columns = {"cell", "reason"}, .align = "ll"},
-            result.allowed, [](const AllowedCell& cell) -> Row {
-              return {cell.title, cell.reason};
-            });
-  add_table(section, {.title = "Not comparable", .columns = {"cell", "reason"}, .align = "ll"},
-            result.incomparable, [](const Incomparable& pair) -> Row {
-              return {pair.title, pair.reason};
-            });
-  add_table(section, {.title = "Only in NEW", .columns = {"cell"}}, result.only_after, line);
+Row time_row(const TimeVerdict& time) {
+  return {time_change_name(time.change),
+          time.title,
+          ratio_text(time.ratio),
+          fmt::format("±{}", percent(time.noise)),
+          fmt::format("{:.2g}", time.adjusted),
+          fmt::format("{}, {}", time.n_before, time.n_after)};
 }
 
 // The verdict is its title; then the counts, the causes and what else must be known.
-Section section_of(const GateResult& result, bool lists_all) {
+Section gate_section(const GateResult& result, bool lists_all) {
   constexpr std::size_t kMostCauses = 8;
   Section section{.id = "comparison", .title = "Comparison: " + result.verdict};
-  section.readings.push_back({"", counts_of(result) + "."});
+  section.readings.push_back({"", summary_text(result) + "."});
   const std::size_t told =
       lists_all ? result.causes.size() : std::min(kMostCauses, result.causes.size());
   for (const CauseGroup& cause : std::span(result.causes).first(told))
@@ -183,31 +131,25 @@ Section section_of(const GateResult& result, bool lists_all) {
                                                 counted(result.causes.size() - told, "cause"))});
   for (const std::string& remark : result.remarks) section.readings.push_back({"", remark + "."});
   add_differences(section, result);
-  add_what_differs(section, result);
-  add_what_is_apart(section, result);
+  add_table(section, "Builds that differ", {"part"}, "", result.builds, line);
+  add_table(section, "Options that differ", {"option"}, "", result.settings, line);
+  add_table(section, "Time, NEW over BASE",
+            {"", "cell", "ratio (95 % interval)", "noise", "p, adjusted", "runs"}, "llrrrr",
+            result.times, time_row);
+  add_table(section, "In both, with another budget", {"what differs", "cells"}, "ll",
+            result.other_terms, [](const CauseGroup& terms) -> Row {
+              return {terms.cause, terms.cells_text()};
+            });
+  add_table(section, "Only in BASE", {"cell"}, "", result.only_before, line);
+  add_table(section, "Only in BASE, as allowed", {"cell", "reason"}, "ll", result.allowed,
+            reasoned);
+  add_table(section, "Not comparable", {"cell", "reason"}, "ll", result.incomparable, reasoned);
+  add_table(section, "Only in NEW", {"cell"}, "", result.only_after, line);
   return section;
 }
 
-}  // namespace
-
-std::string gate_terminal(const GateResult& result, bool lists_all) {
-  const Section section = section_of(result, lists_all);
-  return terminal_text(section.title) + "\n\n" +
-         terminal_section(section, lists_all ? kAllRows : kFewRows);
-}
-
-std::string gate_markdown(const GateResult& result) {
-  Section section = section_of(result, false);
-  cut(section);
-  return markdown_section(section);
-}
-
-// A comparison as JSON, schema isoline.comparison/1.
-
-namespace {
-
-Json json_of(const Difference& d) {
-  return {{"change", name_of(d.change)},
+Json to_json(const Difference& d) {
+  return {{"change", change_name(d.change)},
           {"cell", d.key},
           {"title", d.title},
           {"optimizer", d.optimizer},
@@ -221,8 +163,8 @@ Json json_of(const Difference& d) {
           {"rounding", d.is_rounding}};
 }
 
-Json json_of(const TimeVerdict& t) {
-  return {{"change", name_of_time(t.change)},
+Json to_json(const TimeVerdict& t) {
+  return {{"change", time_change_name(t.change)},
           {"cell", t.key},
           {"title", t.title},
           {"n", {t.n_before, t.n_after}},
@@ -234,7 +176,7 @@ Json json_of(const TimeVerdict& t) {
           {"noise", json_number(t.noise)}};
 }
 
-Json json_of(const CauseGroup& group) {
+Json to_json(const CauseGroup& group) {
   return {{"cause", group.cause},
           {"cells", group.cells.size()},
           {"optimizers", group.optimizers},
@@ -246,24 +188,72 @@ Json json_of(const CauseGroup& group) {
           {"not_comparable", group.incomparable}};
 }
 
-Json json_of(const OtherTerms& terms) {
-  return {{"what", terms.what}, {"cells", terms.cells}, {"optimizers", terms.optimizers}};
-}
-
-Json json_of(const AllowedCell& cell) { return {{"title", cell.title}, {"reason", cell.reason}}; }
-
-Json json_of(const Incomparable& one) { return {{"title", one.title}, {"reason", one.reason}}; }
+Json to_json(const ReasonedCell& one) { return {{"title", one.title}, {"reason", one.reason}}; }
 
 template <class Value>
-Json list_of(const std::vector<Value>& values) {
+Json json_list(const std::vector<Value>& values) {
   Json list = Json::array();
-  for (const Value& value : values) list.push_back(json_of(value));
+  for (const Value& value : values) list.push_back(to_json(value));
   return list;
 }
 
 }  // namespace
 
+std::string step_text(const Difference& difference) {
+  return fmt::format("{} {} → {}", difference.what, difference.before, difference.after);
+}
+
+std::string ratio_text(const RatioEstimate& ratio) {
+  return fmt::format("{:.3g}× ({:.3g} to {:.3g})", ratio.ratio, ratio.low, ratio.high);
+}
+
+std::string names_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 12;
+  if (names.size() <= kMost) return joined(names);
+  return fmt::format("{} and {} more", joined({names.begin(), names.begin() + kMost}),
+                     names.size() - kMost);
+}
+
+std::string CauseGroup::cells_text() const {
+  return fmt::format("{} of {} on {}", counted(cells.size(), "cell"),
+                     few_names(optimizers, "optimizer"), few_names(problems, "problem"));
+}
+
+std::string cause_group_text(const CauseGroup& group) {
+  const std::string rounded =
+      fmt::format("different by rounding alone ({:.1e} at most, relative)", group.most_rounding);
+  return fmt::format("{}: {}", group.cells_text(),
+                     counts_text({{group.worse.size(), "worse"},
+                                  {group.better.size(), "better"},
+                                  {group.changed.size(), "changed"},
+                                  {group.rounded(), rounded},
+                                  {group.incomparable, "not comparable"}}));
+}
+
+std::string gate_terminal(const GateResult& result, bool lists_all) {
+  const Section section = gate_section(result, lists_all);
+  return terminal_text(section.title) + "\n\n" +
+         terminal_section(section, lists_all ? kAllRows : kFewRows);
+}
+
+// Of each table as many rows as a reader reads.
+std::string gate_markdown(const GateResult& result) {
+  constexpr std::size_t kMostRows = 40;
+  Section section = gate_section(result, false);
+  for (Table& table : section.tables) {
+    if (table.rows.size() <= kMostRows) continue;
+    table.caption =
+        fmt::format("{} more are left out here; --json lists them.", table.rows.size() - kMostRows);
+    table.rows.resize(kMostRows, {""});
+  }
+  return markdown_section(section);
+}
+
 std::string gate_json(const GateResult& result) {
+  Json other_budgets = Json::array();
+  for (const CauseGroup& terms : result.other_terms)
+    other_budgets.push_back(
+        {{"what", terms.cause}, {"cells", terms.cells.size()}, {"optimizers", terms.optimizers}});
   const Json json{{"schema", kComparisonSchema},
                   {"verdict", result.verdict},
                   {"exit_code", static_cast<int>(result.exit_code)},
@@ -272,13 +262,13 @@ std::string gate_json(const GateResult& result) {
                   {"chaotic", result.chaotic},
                   {"builds", result.builds},
                   {"options", result.settings},
-                  {"differences", list_of(result.differences)},
-                  {"causes", list_of(result.causes)},
-                  {"other_budgets", list_of(result.other_terms)},
-                  {"times", list_of(result.times)},
-                  {"not_comparable", list_of(result.incomparable)},
+                  {"differences", json_list(result.differences)},
+                  {"causes", json_list(result.causes)},
+                  {"other_budgets", other_budgets},
+                  {"times", json_list(result.times)},
+                  {"not_comparable", json_list(result.incomparable)},
                   {"only_in_base", result.only_before},
-                  {"allowed", list_of(result.allowed)},
+                  {"allowed", json_list(result.allowed)},
                   {"only_in_new", result.only_after},
                   {"remarks", result.remarks}};
   return json_text(json, 1) + "\n";

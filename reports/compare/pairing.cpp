@@ -1,15 +1,13 @@
-// Reads the list of cells that NEW may lack, and looks subjects up in it.
+// Pairs cells by what identifies them best first, and words what they were given or built of.
 #include "reports/compare/pairing.h"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <string>
 
 #include "core/errors.h"
 #include "core/json.h"
@@ -26,24 +24,14 @@ bool names(const std::string& pattern, const Given& given) {
 
 }  // namespace
 
-// Greedy, with one place to come back to: the last star, which takes one letter more each time.
-bool matches(std::string_view pattern, std::string_view text) {
-  std::size_t p = 0, t = 0, star = std::string_view::npos, taken = 0;
-  while (t < text.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      taken = t;
-    } else if (p < pattern.size() && pattern[p] == text[t]) {
-      ++p;
-      ++t;
-    } else if (star != std::string_view::npos) {
-      p = star + 1;
-      t = ++taken;
-    } else {
-      return false;
-    }
+// Of the wildcards of a shell only the star counts: brackets belong to specifications.
+bool matches(const std::string& pattern, const std::string& text) {
+  std::string escaped;
+  for (const char letter : pattern) {
+    if (letter != '*') escaped += '\\';
+    escaped += letter;
   }
-  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+  return ::fnmatch(escaped.c_str(), text.c_str(), 0) == 0;
 }
 
 AllowedList allowed_from_json(const Json& json) {
@@ -69,41 +57,37 @@ AllowedList read_allowed(const std::filesystem::path& file) {
   return allowed_from_json(read_json(file));
 }
 
-AllowedList::const_iterator entry_for(const AllowedList& list, const Subject& subject) {
+AllowedList::const_iterator entry_for(const AllowedList& list, const ComparedCell& cell) {
   return std::ranges::find_if(list, [&](const AllowedCells& cells) {
-    return names(cells.problem, subject.problem) && names(cells.optimizer, subject.optimizer);
+    return names(cells.problem, cell.problem) && names(cells.optimizer, cell.optimizer);
   });
 }
 
-// Pairs subjects, by what identifies them best first.
-
 namespace {
 
-using Left = std::vector<const Subject*>;  // not paired yet; nullptr where it is
-using Identity = std::string (*)(const Subject&);
+using Unpaired = std::vector<const ComparedCell*>;  // nullptr where it is paired
+using Identity = std::string (*)(const ComparedCell&);
 
-std::string as_keyed(const Subject& subject) { return subject.key; }
-
-std::string in_terms(const Subject& subject, const std::string& problem,
-                     const std::string& optimizer) {
-  return problem + " × " + optimizer + ", " + subject.terms;
+std::string asked_pair(const ComparedCell& cell) {
+  return fmt::format("{} × {}, seed {}", cell.problem.asked, cell.optimizer.asked, cell.seed);
 }
 
-std::string as_asked(const Subject& subject) {
-  return in_terms(subject, subject.problem.asked, subject.optimizer.asked);
-}
-
-std::string as_given(const Subject& subject) {
-  return in_terms(subject, subject.problem.spec, subject.optimizer.spec);
-}
+constexpr Identity kIdentities[] = {
+    [](const ComparedCell& cell) { return cell.key; },
+    [](const ComparedCell& cell) { return asked_pair(cell) + cell.terms; },
+    [](const ComparedCell& cell) {
+      return fmt::format("{} × {}, seed {}{}", cell.problem.spec, cell.optimizer.spec, cell.seed,
+                         cell.terms);
+    },
+    asked_pair};
 
 // Where each identity stands; those that two share are nowhere.
-std::map<std::string, std::size_t> places_of(const Left& left, Identity identity) {
+std::map<std::string, std::size_t> places_of(const Unpaired& cells, Identity identity) {
   constexpr std::size_t kTwice = static_cast<std::size_t>(-1);
   std::map<std::string, std::size_t> places;
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (left[i] == nullptr) continue;
-    const auto [at, is_first] = places.emplace(identity(*left[i]), i);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] == nullptr) continue;
+    const auto [at, is_first] = places.emplace(identity(*cells[i]), i);
     if (!is_first) at->second = kTwice;
   }
   std::erase_if(places,
@@ -111,17 +95,17 @@ std::map<std::string, std::size_t> places_of(const Left& left, Identity identity
   return places;
 }
 
-Left addresses(const std::vector<Subject>& subjects) {
-  Left all;
-  for (const Subject& subject : subjects) all.push_back(&subject);
+Unpaired addresses(const std::vector<ComparedCell>& cells) {
+  Unpaired all;
+  for (const ComparedCell& cell : cells) all.push_back(&cell);
   return all;
 }
 
 }  // namespace
 
-Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& after) {
-  Left old = addresses(before), now = addresses(after), answer(old.size(), nullptr);
-  for (const Identity identity : {as_keyed, as_asked, as_given}) {
+Pairs paired(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after) {
+  Unpaired old = addresses(before), now = addresses(after), answer(old.size(), nullptr);
+  for (const Identity identity : kIdentities) {
     const auto places = places_of(now, identity);
     for (const auto& [name, i] : places_of(old, identity)) {
       const auto at = places.find(name);
@@ -137,11 +121,9 @@ Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& aft
     else
       pairs.only_before.push_back(old[i]);
   std::ranges::copy_if(now, std::back_inserter(pairs.only_after),
-                       [](const Subject* subject) { return subject != nullptr; });
+                       [](const ComparedCell* cell) { return cell != nullptr; });
   return pairs;
 }
-
-// Holds the options and the builds of paired subjects to each other.
 
 namespace {
 
@@ -168,120 +150,83 @@ bool says_nothing(const OptionValue* option) {
 }
 
 // Paired by what was asked, two differ in an option only by a default or by a table of rates.
-std::string change_text(const Given& a, const Given& b, const std::string& option) {
+std::string option_change_text(const Given& a, const Given& b, const std::string& option) {
   const OptionValue* const old = a.options->find(option);
   const OptionValue* const now = b.options->find(option);
   if (old == nullptr) return fmt::format("new option {} {}", option, short_text(*now));
   if (now == nullptr) return fmt::format("option {} is gone, it was {}", option, short_text(*old));
-  if (is_set_in(a.spec, option) && is_set_in(b.spec, option))
-    return fmt::format("tabled {} {} → {}", option, short_text(*old), short_text(*now));
-  return fmt::format("default of {} {} → {}", option, short_text(*old), short_text(*now));
+  const bool is_tabled = is_set_in(a.spec, option) && is_set_in(b.spec, option);
+  return fmt::format("{} {} {} → {}", is_tabled ? "tabled" : "default of", option, short_text(*old),
+                     short_text(*now));
 }
 
-void count_changes(const Given& a, const Given& b, std::map<std::string, std::size_t>& changes) {
+void add_changes(const Given& a, const Given& b, std::set<std::string>& changes) {
   if (a.options == b.options) return;
   std::set<std::string> options;
-  for (const OptionValues* values : {&*a.options, &*b.options})
+  for (const OptionValues* values : {a.options.get(), b.options.get()})
     for (const NamedOption& each : *values) options.insert(each.name);
   for (const std::string& option : options) {
     const OptionValue* const old = a.options->find(option);
     const OptionValue* const now = b.options->find(option);
     if (old != nullptr && now != nullptr && *old == *now) continue;
     if (says_nothing(old) && says_nothing(now)) continue;
-    ++changes[a.name + ": " + change_text(a, b, option)];
+    changes.insert(a.name + ": " + option_change_text(a, b, option));
   }
 }
 
-// A part of a build, and how its change is told: of many cells, of one.
-struct Part {
-  const char *name, *text, *cause;
-};
-constexpr std::array<Part, 5> kParts = {
-    {{"platform", "another platform (compiler, flags, libraries or kernel)", "another platform"},
-     {"harness", "another harness (core, meter or run loop)", "another harness"},
-     {"problem", "another source of the problems", "another source of the problem"},
-     {"network", "another source of the networks of", "another source of the network"},
-     {"optimizer", "another source of the optimizers", "another source of the optimizer"}}};
-
-bool is_other(const Subject& a, const Subject& b, const Part& part) {
-  const auto old = a.parts->find(part.name), now = b.parts->find(part.name);
-  return old != a.parts->end() && now != b.parts->end() && old->second != now->second;
-}
-
-struct PartChange {
-  std::set<std::string> names;  // of problems or optimizers, where it is theirs
-  std::size_t cells = 0;
-};
-
-std::map<std::string, std::size_t> changes_between(const Subject& a, const Subject& b) {
-  std::map<std::string, std::size_t> changes;
-  count_changes(a.problem, b.problem, changes);
-  count_changes(a.optimizer, b.optimizer, changes);
-  return changes;
-}
-
-void count_parts(const Subject& a, const Subject& b, std::map<std::string, PartChange>& changes) {
-  for (const Part& part : kParts) {
-    if (!is_other(a, b, part)) continue;
-    PartChange& change = changes[part.name];
-    ++change.cells;
-    const std::string name = part.name;
-    if (name == "optimizer") change.names.insert(b.optimizer.name);
-    if (name == "problem" || name == "network") change.names.insert(b.problem.name);
-  }
+// The members of the budget in "budget {"iterations":20}, threads 1", and the threads.
+Json terms_json(const std::string& terms) {
+  const std::size_t begin = terms.find('{'), end = terms.rfind('}');
+  Json json = parse_json(terms.substr(begin, end - begin + 1), "terms");
+  json["threads"] = std::stoi(terms.substr(terms.rfind(' ')));
+  return json;
 }
 
 }  // namespace
 
-std::string cause_of(const Subject& before, const Subject& after) {
-  std::vector<std::string> causes;
-  for (const auto& [text, cells] : changes_between(before, after)) causes.push_back(text);
-  if (before.builds != after.builds) {
-    const std::size_t given = causes.size();
-    for (const Part& part : kParts)
-      if (is_other(before, after, part)) causes.emplace_back(part.cause);
-    if (causes.size() == given) causes.emplace_back("another build");
+std::string change_of_terms(const ComparedCell& before, const ComparedCell& after) {
+  const Json old = terms_json(before.terms), now = terms_json(after.terms);
+  Json both = old;
+  both.update(now);
+  const auto value_text = [](const Json& terms, const std::string& key) {
+    return terms.contains(key) ? json_text(terms.at(key)) : std::string("no limit");
+  };
+  std::vector<std::string> changes;
+  for (const auto& [key, value] : both.items())
+    if (const auto was = value_text(old, key), is = value_text(now, key); was != is)
+      changes.push_back(fmt::format("{} {} → {}", key, was, is));
+  return joined(changes);
+}
+
+std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after) {
+  std::set<std::string> changes;
+  add_changes(before.problem, after.problem, changes);
+  add_changes(before.optimizer, after.optimizer, changes);
+  return changes;
+}
+
+std::vector<std::string> changed_parts(const ComparedCell& before, const ComparedCell& after) {
+  if (before.build == after.build) return {};
+  std::vector<std::string> changes;
+  for (const auto& [part, text] :
+       {std::pair("platform", "another platform (compiler, flags, libraries or kernel)"),
+        {"harness", "another harness (core, meter or run loop)"},
+        {"problem", "another source of the problem"},
+        {"network", "another source of the network"},
+        {"optimizer", "another source of the optimizer"}}) {
+    const auto old = before.parts->find(part), now = after.parts->find(part);
+    if (old != before.parts->end() && now != after.parts->end() && old->second != now->second)
+      changes.emplace_back(text);
   }
+  if (changes.empty()) changes.emplace_back("another build");
+  return changes;
+}
+
+std::string cause_of(const ComparedCell& before, const ComparedCell& after) {
+  const std::set<std::string> options = changed_options(before, after);
+  std::vector<std::string> causes(options.begin(), options.end());
+  std::ranges::copy(changed_parts(before, after), std::back_inserter(causes));
   return causes.empty() ? "the same build and options" : joined(causes);
-}
-
-std::string names_text(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 12;
-  if (names.size() <= kMost) return joined(names);
-  return fmt::format("{} and {} more", joined({names.begin(), names.begin() + kMost}),
-                     names.size() - kMost);
-}
-
-std::vector<std::string> changed_settings(const Pairs& pairs) {
-  std::map<std::string, std::size_t> changes;
-  for (const auto& [a, b] : pairs.both)
-    for (const auto& [text, cells] : changes_between(*a, *b)) changes[text] += cells;
-  std::vector<std::string> lines;
-  for (const auto& [text, cells] : changes)
-    lines.push_back(fmt::format("{} ({})", text, counted(cells, "cell")));
-  return lines;
-}
-
-std::vector<std::string> changed_builds(const Pairs& pairs) {
-  std::map<std::string, PartChange> changes;
-  std::size_t silent = 0;
-  for (const auto& [a, b] : pairs.both) {
-    if (a->builds == b->builds) continue;
-    count_parts(*a, *b, changes);
-    silent += a->parts->empty() || b->parts->empty();
-  }
-  std::vector<std::string> lines;
-  for (const Part& part : kParts) {
-    const auto at = changes.find(part.name);
-    if (at == changes.end()) continue;
-    const auto& [names, cells] = at->second;
-    const std::string of = names.empty() ? "" : " " + names_text({names.begin(), names.end()});
-    lines.push_back(fmt::format("{}{}: {}", part.text, of, counted(cells, "cell")));
-  }
-  if (silent > 0)
-    lines.push_back(fmt::format("another build, whose parts a side does not tell: {}",
-                                counted(silent, "cell")));
-  return lines;
 }
 
 }  // namespace isoline::reports

@@ -1,13 +1,15 @@
-// Which subject of NEW answers which of BASE, and which options and build parts differ.
+// Which cell of NEW answers which of BASE, what NEW may lack, and which options and build parts
+// differ.
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "reports/compare/subject.h"
+#include "reports/compare/cells.h"
 
 namespace isoline::reports {
 
@@ -22,37 +24,31 @@ using AllowedList = std::vector<AllowedCells>;
 AllowedList allowed_from_json(const Json& json);  // UsageError where it is no such list
 AllowedList read_allowed(const std::filesystem::path& file);
 
-// The first entry that names the subject; the list's end where none does.
-AllowedList::const_iterator entry_for(const AllowedList& list, const Subject& subject);
+// The first entry that names the cell; the list's end where none does.
+AllowedList::const_iterator entry_for(const AllowedList& list, const ComparedCell& cell);
 
-bool matches(std::string_view pattern, std::string_view text);
-
-// Which subject of NEW answers which of BASE, and which options and build parts differ.
+bool matches(const std::string& pattern, const std::string& text);
 
 struct Pairs {
-  std::vector<std::pair<const Subject*, const Subject*>> both;  // in the order of BASE
-  std::vector<const Subject*> only_before, only_after;
+  std::vector<std::pair<const ComparedCell*, const ComparedCell*>> both;  // in the order of BASE
+  std::vector<const ComparedCell*> only_before, only_after;
 };
 
 // By their keys; then by what was asked, as typed, with its seed and budget, since a changed
-// default or rate changes the key; then by the options given. What two of a side have in common
-// pairs neither. The subjects must outlive the pairs.
-Pairs paired(const std::vector<Subject>& before, const std::vector<Subject>& after);
+// default or rate changes the key; then by the options given; at last by what was asked and the
+// seed, with another budget or other threads. What two of a side have in common pairs neither. The
+// cells must outlive the pairs.
+Pairs paired(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after);
 
-// What differs between paired subjects before any figure does: what they were given, and which
-// parts of the program computed them.
+// "iterations 20 → 30": what differs between the terms of two cells.
+std::string change_of_terms(const ComparedCell& before, const ComparedCell& after);
 
-// "levenberg-marquardt: default of initial-damping 1e-4 → 1e4 (51 cells)", a line a change.
-std::vector<std::string> changed_settings(const Pairs& pairs);
+// What differs between paired cells before any figure does. Of options "adam: default of epsilon
+// 1e-8 → 0.01"; of the build "another harness".
+std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after);
+std::vector<std::string> changed_parts(const ComparedCell& before, const ComparedCell& after);
 
-// "another optimizer: adam, gd (51 cells)", a line a part of the build, the widest first.
-std::vector<std::string> changed_builds(const Pairs& pairs);
-
-// Why the two of a pair may differ: "adam: default of epsilon 1e-8 → 0.01, another harness", or
-// that nothing of what was given or computed explains it.
-std::string cause_of(const Subject& before, const Subject& after);
-
-// The names, a dozen of them at most, and how many more there are.
-std::string names_text(const std::vector<std::string>& names);
+// Why the two of a pair may differ: both of these, or that nothing of them explains it.
+std::string cause_of(const ComparedCell& before, const ComparedCell& after);
 
 }  // namespace isoline::reports

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/compare/subject.h"
 #include "reports/read/metrics.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"

@@ -87,8 +87,9 @@ Record record_of(const PlainRun& run) {
   record.curve = curve_of(run);
   record.hits = hits_of(run);
   const bool has_curve = !record.curve.loss.empty();
-  record.summary = {.iterations = static_cast<std::int64_t>(run.hits),
-                    .work = static_cast<std::int64_t>(run.hits) * run.work_per_hit,
+  const auto iterations = static_cast<std::int64_t>(std::max<std::size_t>(run.hits, 1) - 1);
+  record.summary = {.iterations = iterations,
+                    .work = iterations * run.work_per_hit,
                     .start_loss = 1,
                     .loss = has_curve ? record.curve.loss.back() : NAN,
                     .best_loss = has_curve ? record.curve.loss.back() : NAN,

@@ -2,6 +2,7 @@
 #include "reports/compare/gate.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,27 +10,17 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/records/schema.h"
-#include "reports/report.h"
-#include "tests/reports/changed_cell.h"
+#include "tests/reports/gate_fixture.h"
 
 namespace isoline::reports {
 namespace {
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-GateResult compared(const std::function<void(Record&)>& change, const GateOptions& options = {}) {
-  const ResultFolder before, after;
-  fill(before, [](Record&) {});
-  fill(after, change);
-  return compare_results(before.path(), after.path(), options);
-}
+const std::filesystem::path kTree = ISOLINE_SOURCE_DIR;
 
 TEST(Gate, TwoRunsOfOneBuildAreEqual) {
   const GateResult result = compared([](Record& record) {
     record.summary.wall_seconds = 99;  // times and provenance of a run may differ
-    record.curve.wall_seconds[3] = 99;
+    record.curve.wall_seconds.back() = 99;
     record.hits->wall_seconds[3] = 99;
     record.provenance.run.started = "2026-07-01T00:00:00Z";
   });
@@ -38,80 +29,72 @@ TEST(Gate, TwoRunsOfOneBuildAreEqual) {
   EXPECT_EQ(result.equal, 12U);
   EXPECT_TRUE(result.differences.empty());
   EXPECT_EQ(result.verdict, "equal");
+  EXPECT_TRUE(has(gate_terminal(result), "too few repetitions"));
 }
 
 TEST(Gate, CatchesFivePercentOfQualityInOneCell) {
-  const GateResult loss = compared([](Record& record) { record.summary.loss *= 1.05; });
+  const GateResult loss = compared(loss_times(1.05));
   EXPECT_EQ(loss.exit_code, 2);
   ASSERT_EQ(loss.differences.size(), 1U);
   EXPECT_EQ(loss.differences[0].what, "loss");
   EXPECT_NEAR(loss.differences[0].relative, 0.05, 1e-12);
   EXPECT_EQ(loss.equal, 11U);
   const GateResult error =
-      compared([](Record& record) { record.summary.x_error *= 1.05; }, {.tolerance = 0.01});
+      compared([](Record& record) { end_in_x_at(record, 1.05 * record.summary.x_error); },
+               {.tolerance = 0.01});
   EXPECT_EQ(error.exit_code, 2);
   EXPECT_EQ(error.differences.at(0).what, "error in x");
-  const GateResult work = compared([](Record& record) {
-    for (std::int64_t& some : record.hits->work) some += some / 20;
-  });
+  const GateResult work = compared(take_five_percent_more_work);
   EXPECT_EQ(work.exit_code, 2);
   EXPECT_TRUE(has(work.differences.at(0).what, "work to ")) << work.differences.at(0).what;
   EXPECT_TRUE(has(work.differences.at(0).note, "more of its kind"));
 }
 
 TEST(Gate, AToleranceLetsSmallDifferencesPass) {
-  const auto change = [](Record& record) { record.summary.loss *= 1 + 1e-9; };
-  EXPECT_EQ(compared(change).exit_code, 2);
-  EXPECT_EQ(compared(change, {.tolerance = 1e-6}).exit_code, 0);
+  EXPECT_EQ(compared(loss_times(1 + 1e-9)).exit_code, 2);
+  EXPECT_EQ(compared(loss_times(1 + 1e-9), {.tolerance = 1e-6}).exit_code, 0);
   // Below 1e-16 of the start there is rounding alone; not-a-number is no better than infinite.
-  const auto rounding = [](Record& record) { record.summary.loss += 5e-17; };
+  const auto rounding = [](Record& record) { end_at(record, record.summary.loss + 5e-17); };
   EXPECT_EQ(compared(rounding, {.tolerance = 0}).exit_code, 0);
-  const auto lost = [](Record& record) { record.summary.loss = std::nan(""); };
-  EXPECT_EQ(compared(lost, {.tolerance = 1}).exit_code, 2);
+  EXPECT_EQ(compared(loss_times(std::nan("")), {.tolerance = 1}).exit_code, 2);
 }
 
 TEST(Gate, AWorseStatusIsWorseAndABetterOneBetter) {
-  const auto with = [](Status status) {
-    return compared([status](Record& record) { record.status = status; }).exit_code;
-  };
-  EXPECT_EQ(with(Status::crashed), 2);
-  EXPECT_EQ(with(Status::diverged), 2);
-  EXPECT_EQ(with(Status::target), 3);
-  EXPECT_EQ(with(Status::stalled), 0);  // changed, and said so
-  EXPECT_EQ(compared([](Record& record) { record.summary.loss /= 2; }).exit_code, 3);
+  EXPECT_EQ(compared(ends_as(Status::crashed)).exit_code, 2);
+  EXPECT_EQ(compared(ends_as(Status::diverged)).exit_code, 2);
+  EXPECT_EQ(compared(ends_as(Status::converged)).exit_code, 3);
+  EXPECT_EQ(compared(ends_as(Status::stalled)).exit_code, 0);  // changed, and said so
+  EXPECT_EQ(compared(loss_times(0.5)).exit_code, 3);
 }
 
 TEST(Gate, ListsWhatIsWorstFirst) {
-  const ResultFolder before, after;
-  for (const auto& [seed, factor] : {std::pair{0, 1.1}, {1, 3.0}, {2, 0.5}, {3, 1.0}, {4, 1.2}}) {
-    Record record = record_of({.seed = static_cast<std::uint64_t>(seed)});
-    before.add(record);
-    record.summary.loss *= factor;
+  const TwoFolders two;
+  for (const auto& [seed, factor] : {std::pair{0, 1.1}, {1, 3.0}, {2, 0.99}, {3, 1.0}, {4, 1.2}}) {
+    Record record =
+        record_of({.seed = static_cast<std::uint64_t>(seed), .status = Status::converged});
+    two.before.add(record);
+    end_at(record, record.summary.loss * factor);
     if (seed == 3) record.status = Status::failed;
-    after.add(record);
+    two.after.add(record);
   }
-  const GateResult result = compare_results(before.path(), after.path(), {});
   std::vector<std::string> order;
-  for (const Difference& difference : result.differences)
+  for (const Difference& difference : two.compared().differences)
     order.push_back(difference.title.substr(difference.title.size() - 1) + " " + difference.what);
   EXPECT_EQ(order, (std::vector<std::string>{"3 status", "1 loss", "4 loss", "0 loss", "2 loss"}));
 }
 
-TEST(Gate, ADifferenceOfThePathAloneIsAChange) {
-  const GateResult result = compared([](Record& record) { record.curve.step_norm[2] *= 2; });
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.equal, 11U);
-  ASSERT_EQ(result.differences.size(), 1U);
-  EXPECT_EQ(result.differences[0].change, Change::changed);
-  EXPECT_TRUE(has(result.differences[0].note, "the path differs"));
-}
-
-TEST(Gate, WhatDiffersBesideThePathIsCalledByItsName) {
-  const GateResult result = compared([](Record& record) { record.message = "as it likes"; });
-  EXPECT_EQ(result.exit_code, 0);
-  ASSERT_EQ(result.differences.size(), 1U);
-  EXPECT_EQ(result.differences[0].what, "message");
-  EXPECT_FALSE(has(gate_terminal(result), "the path differs")) << gate_terminal(result);
+TEST(Gate, WhatNoFigureShowsIsAChangeAndCalledByItsName) {
+  const GateResult path = compared([](Record& record) { record.curve.step_norm[2] *= 2; });
+  EXPECT_EQ(path.exit_code, 0);
+  EXPECT_EQ(path.equal, 11U);
+  ASSERT_EQ(path.differences.size(), 1U);
+  EXPECT_EQ(path.differences[0].change, Change::changed);
+  EXPECT_TRUE(has(path.differences[0].note, "the path differs"));
+  const GateResult beside = compared([](Record& record) { record.message = "as it likes"; });
+  EXPECT_EQ(beside.exit_code, 0);
+  ASSERT_EQ(beside.differences.size(), 1U);
+  EXPECT_EQ(beside.differences[0].what, "message");
+  EXPECT_FALSE(has(gate_terminal(beside), "the path differs")) << gate_terminal(beside);
 }
 
 TEST(Gate, AnotherBuildIsNotComparableWithoutATolerance) {
@@ -128,8 +111,8 @@ TEST(Gate, AnotherBuildIsNotComparableWithoutATolerance) {
 }
 
 TEST(Gate, CellsOfOneSideAreListedAndThoseThatNewLacksAreWorse) {
-  const ResultFolder all, some;
-  fill(all, [](Record&) {});
+  const ResultFolder all, some, empty;
+  fill(all);
   some.add(read_study({all.path()}).runs[0]);
   const GateResult lacking = compare_results(all.path(), some.path(), {});
   EXPECT_EQ(lacking.exit_code, kWorse);
@@ -138,48 +121,256 @@ TEST(Gate, CellsOfOneSideAreListedAndThoseThatNewLacksAreWorse) {
   const GateResult grown = compare_results(some.path(), all.path(), {});
   EXPECT_EQ(grown.exit_code, 0);
   EXPECT_EQ(grown.only_after.size(), 11U);
-  const ResultFolder empty;
   EXPECT_EQ(compare_results(all.path(), empty.path(), {.is_common_only = true}).exit_code, 4);
   EXPECT_THROW(compare_results(all.path(), "/no/such/folder", {}), UsageError);
 }
 
-TEST(Gate, SaysWhereRepetitionsAreTooFew) {
-  EXPECT_TRUE(has(gate_terminal(compared([](Record&) {})), "too few repetitions"));
-}
-
-// b's best loss is the reference for both: with f_L = 1e-2 of BASE the goal stays where it was.
-TEST(Gate, AnUndeclaredMinimumIsTheBestOfTheFirst) {
-  const ResultFolder before, after;
-  for (const ResultFolder* folder : {&before, &after}) {
-    Record record = record_of({.hits = folder == &before ? 11U : 16U});
-    record.hits.reset();
+// Without f_L there are no targets: a path that takes longer to the same end is found all the same.
+TEST(Gate, ASlowerPathIsWorseWhereNoMinimumIsKnown) {
+  const auto unknown = [](Record& record) {
     record.minimum.reset();
-    folder->add(record);
-  }
-  const GateResult result = compare_results(before.path(), after.path(), {});
-  EXPECT_EQ(result.exit_code, 3);
-  for (const Difference& difference : result.differences)
-    EXPECT_NE(difference.change, Change::worse) << difference.what;
+    record.hits.reset();
+  };
+  const auto slower = [&](Record& record) {
+    unknown(record);
+    for (std::size_t i = 1; i + 2 < record.curve.loss.size(); ++i) record.curve.loss[i] *= 1.4;
+  };
+  const TwoFolders two;
+  fill(two.before, {{5, unknown}});
+  fill(two.after, {{5, slower}});
+  const GateResult result = two.compared({.tolerance = 1e-6});
+  EXPECT_EQ(result.exit_code, kWorse);
+  EXPECT_EQ(result.differences.at(0).what, "mean loss of the path");
 }
 
 TEST(Gate, AReportIsNoSide) {
   const ResultFolder folder;
-  fill(folder, [](Record&) {});
+  fill(folder);
   folder.add_file("report.json", "{\"schema\": \"isoline.report/1\"}");
   EXPECT_THROW(compare_results(folder.path() / "report.json", folder.path(), {}), UsageError);
   EXPECT_THROW(compare_results(folder.path(), folder.path() / "report.json", {}), UsageError);
 }
 
 TEST(Gate, AllFormatsTellTheSame) {
-  const GateResult result = compared([](Record& record) { record.summary.loss *= 1.05; });
+  const GateResult result = compared(loss_times(1.05));
   for (const std::string& text : {gate_terminal(result), gate_markdown(result)})
     for (const char* part : {"worse", "square × gd, seed 5", "loss", "+5 %"})
       EXPECT_TRUE(has(text, part)) << part << "\n" << text;
-  const Json schema =
-      read_json(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas/comparison.json");
+  const Json schema = read_json(kTree / "benchmarks/schemas/comparison.json");
   const Json json = parse_json(gate_json(result), "comparison");
   EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>());
   EXPECT_EQ(json["differences"][0]["figure"], "loss");
+}
+
+// Declared and undeclared minima, a second build, a cell in dispute, and what is no record.
+TEST(Gate, AFolderReadRecordByRecordGivesTheCellsOfItsStudy) {
+  const ResultFolder folder;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    Record record = record_of({.seed = seed, .work_per_hit = 2});
+    if (seed == 1) record.minimum.reset();
+    if (seed == 1) record.hits.reset();
+    folder.add(record);
+    if (seed == 2) folder.add(record_of({.seed = 2, .work_per_hit = 3, .build = "b1"}));
+    if (seed != 3) continue;
+    end_at(record, record.summary.loss + 1);
+    folder.add_file("runs/copy-of-3.json", file_text(record));
+  }
+  folder.add(record_of({.problem = "heat", .status = Status::inapplicable}));
+  folder.add_file("runs/torn.json", "{");
+  mkfifo((folder.path() / "runs" / "pipe.json").c_str(), 0600);
+  const Study study = read_study({folder.path()});
+  const std::vector<ComparedCell> whole = compared_cells(study);
+  const FolderCells found = read_cells(folder.path());
+  EXPECT_EQ(found.superseded, study.superseded);
+  EXPECT_EQ(found.unreadable, 2U);
+  ASSERT_EQ(found.cells.size(), whole.size());
+  std::size_t doubtful = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const ComparedCell &a = whole[i], &b = found.cells[i];
+    for (const auto text : {&ComparedCell::key, &ComparedCell::title, &ComparedCell::terms,
+                            &ComparedCell::trace, &ComparedCell::rest, &ComparedCell::doubt})
+      EXPECT_EQ(a.*text, b.*text);
+    EXPECT_EQ(a.members.size(), b.members.size());
+    doubtful += !b.doubt.empty();
+    ASSERT_EQ(a.figures.size(), b.figures.size());
+    for (std::size_t q = 0; q < a.figures.size(); ++q) {
+      EXPECT_EQ(figure_name(a.figures[q]), figure_name(b.figures[q]));
+      EXPECT_EQ(a.figures[q].value, b.figures[q].value) << figure_name(a.figures[q]);
+    }
+  }
+  EXPECT_GE(doubtful, 1U) << "two records of one cell and build differ";
+  EXPECT_THROW(read_cells("/nowhere/at/all"), UsageError);
+}
+
+// What stands under the name of a record costs itself: the comparison is that of all others.
+TEST(Gate, ComparesAllThatCanBeReadBesidesWhatCannot) {
+  const TwoFolders two;
+  two.before.add(record_of({}));
+  two.after.add(record_of({}));
+  two.after.add_file("runs/huge.json", "[1e400]");
+  ASSERT_EQ(mkfifo((two.after.path() / "runs" / "pipe.json").c_str(), 0600), 0);
+  std::filesystem::create_symlink("circle.json", two.after.path() / "runs" / "circle.json");
+  const GateResult result = two.compared();
+  EXPECT_EQ(result.joined, 1U);
+  EXPECT_EQ(result.equal, 1U);
+  EXPECT_EQ(result.exit_code, kGood);
+  ASSERT_FALSE(result.remarks.empty());
+  EXPECT_TRUE(has(result.remarks[0], "3 files")) << result.remarks[0];
+}
+
+// What a comparison must not take at its word. A loss that a clock cut may be anything.
+TEST(Doubt, ACellThatAClockCutIsNotComparableOrWorseByItsStatus) {
+  const auto cut = [](Status status) {
+    return compared([status](Record& record) {
+      record.is_nondeterministic = true;
+      record.status = status;
+      end_at(record, record.summary.loss * 1e18);
+    });
+  };
+  const GateResult same = cut(Status::budget);
+  EXPECT_EQ(same.exit_code, kNotComparable);
+  EXPECT_EQ(same.equal, 11U);
+  ASSERT_EQ(same.incomparable.size(), 1U);
+  EXPECT_TRUE(has(same.incomparable[0].reason, "a clock or a kill ended it in NEW (budget)"));
+  EXPECT_TRUE(has(same.verdict, "seed 5: a clock or a kill ended it")) << same.verdict;
+  const GateResult killed = cut(Status::timeout);
+  EXPECT_EQ(killed.exit_code, kWorse);
+  EXPECT_TRUE(has(killed.verdict, "status budget → timeout")) << killed.verdict;
+}
+
+TEST(Doubt, ATimeoutIsCutWhateverItsRecordSaysBesides) {
+  const TwoFolders two;
+  for (const ResultFolder* folder : {&two.before, &two.after})
+    fill(*folder, {{5, ends_as(Status::timeout)}});
+  EXPECT_EQ(two.compared().exit_code, kNotComparable);
+}
+
+TEST(Doubt, TwoRecordsOfOneCellAndBuildThatDifferAreNamedAndNotCompared) {
+  const TwoFolders two;
+  fill(two.before);
+  fill(two.after);
+  Record other = read_study({two.after.path()}).runs[5];
+  other.repeat_wall_seconds = {0.3};
+  two.after.add_file("runs/other.json", to_json(other).dump());
+  EXPECT_EQ(two.compared().exit_code, kGood) << "other times alone";
+  other.message = "another result";
+  two.after.add_file("runs/other.json", to_json(other).dump());
+  const GateResult result = two.compared();
+  EXPECT_EQ(result.exit_code, kNotComparable);
+  ASSERT_EQ(result.incomparable.size(), 1U);
+  EXPECT_TRUE(result.incomparable[0].title.ends_with("seed 5"));
+  EXPECT_TRUE(has(result.incomparable[0].reason, "two records of this cell and build differ"));
+}
+
+TEST(Doubt, ACellThatIsNotTheDigestOfItsRequestIsNotCompared) {
+  const GateResult result = compared([](Record& record) { record.request.budget.work = 7; });
+  EXPECT_EQ(result.exit_code, kNotComparable);
+  ASSERT_EQ(result.incomparable.size(), 1U);
+  EXPECT_TRUE(has(result.incomparable[0].reason, "its cell is not the digest of its request"));
+}
+
+// From 0 to 4.4e-15, twenty units in the last place of x = 1.
+TEST(Doubt, RoundingOfAnErrorInXIsNoDifferenceWithinATolerance) {
+  const auto with = [](Real before, Real after, Real scale, Real tolerance) {
+    const TwoFolders two;
+    for (const auto& [folder, x_error] : {std::pair(&two.before, before), {&two.after, after}})
+      fill(*folder, {{5, [&](Record& record) {
+                        end_in_x_at(record, x_error);
+                        record.x_scale = scale;
+                      }}});
+    return two.compared({.tolerance = tolerance}).exit_code;
+  };
+  EXPECT_EQ(with(0, 4.4e-15, 1, 1e-6), kGood);
+  EXPECT_EQ(with(0, 4.4e-15, 1e-9, 1e-6), kWorse) << "not where x is that small";
+  EXPECT_EQ(with(0, 4.4e-9, 1, 1e-6), kWorse) << "nor where it is no rounding";
+  EXPECT_EQ(with(1e-3, 1.1e-3, 1, 1e-6), kWorse);
+}
+
+// A start of 1e107 explains no difference of 1e90: rounding goes by the scale of the problem.
+TEST(Doubt, RoundingGoesByTheScaleOfTheProblemNotByTheStart) {
+  const TwoFolders two;
+  for (const auto& [folder, loss] : {std::pair(&two.before, 0.07), {&two.after, 1e90}})
+    fill(*folder, {{5, [&](Record& record) {
+                      record.minimum.reset();
+                      record.hits.reset();
+                      record.scale = 10;
+                      record.summary.start_loss = record.curve.loss[0] = 1e107;
+                      end_at(record, loss);
+                    }}});
+  EXPECT_EQ(two.compared({.tolerance = 1e-6}).exit_code, kWorse);
+}
+
+TEST(Doubt, ATimeThatIsNotANumberIsLeftOut) {
+  const TwoFolders two;
+  for (const ResultFolder* folder : {&two.before, &two.after})
+    fill(*folder, {{5, [](Record& record) {
+                      record.repeat_wall_seconds = std::vector<Real>(10, 0.1);
+                      record.repeat_wall_seconds.back() = std::nan("");
+                    }}});
+  const GateResult result = two.compared();
+  EXPECT_EQ(result.exit_code, kGood);
+  ASSERT_EQ(result.times.size(), 1U);
+  EXPECT_EQ(result.times[0].n_before, 9U);
+  EXPECT_TRUE(has(gate_terminal(result), "2 timings left out")) << gate_terminal(result);
+}
+
+// What NEW lacks is worse, unless a list that gives reasons allows it.
+GateResult compared_without_adam(const AllowedList& allowed) {
+  const TwoFolders two;
+  fill(two.before, {"adam", "gd", "newton"}, as_it_was);
+  fill(two.after, {"gd", "newton"}, as_it_was);
+  return two.compared({.allowed = allowed});
+}
+
+TEST(Allowed, AMissingOptimizerIsWorseAndNamedInOneLine) {
+  const GateResult result = compared_without_adam({});
+  EXPECT_EQ(result.exit_code, kWorse);
+  EXPECT_EQ(result.only_before.size(), 4U);
+  EXPECT_EQ(result.lack, "all 4 of adam");
+  EXPECT_TRUE(has(result.verdict, "NEW lacks 4 cells of BASE (all 4 of adam)")) << result.verdict;
+}
+
+TEST(Allowed, WhatTheListAllowsMayBeMissingAndStandsWithItsReason) {
+  const GateResult result =
+      compared_without_adam({{.problem = "*", .optimizer = "ad*m", .reason = "it was renamed"}});
+  EXPECT_EQ(result.exit_code, kGood) << gate_terminal(result);
+  EXPECT_TRUE(result.only_before.empty());
+  EXPECT_EQ(result.allowed.size(), 4U);
+  EXPECT_TRUE(has(gate_terminal(result), "it was renamed")) << gate_terminal(result);
+  const GateResult half =
+      compared_without_adam({{.problem = "sine", .optimizer = "adam", .reason = "gone"}});
+  EXPECT_EQ(half.exit_code, kWorse);
+  EXPECT_EQ(half.only_before.size(), 2U);
+}
+
+TEST(Allowed, AnEntryOfTheListThatIsNotNeededIsNamed) {
+  const GateResult result = compared_without_adam(
+      {{.optimizer = "adam", .reason = "gone"}, {.optimizer = "gd", .reason = "gone"}});
+  EXPECT_EQ(result.exit_code, kGood);
+  EXPECT_TRUE(has(gate_terminal(result), "* × gd, which NEW does not lack"))
+      << gate_terminal(result);
+}
+
+TEST(Allowed, AListOfAllowedCellsKeepsToItsSchemaAndGivesReasons) {
+  const Json schema = read_json(kTree / "benchmarks/schemas/allowed.json");
+  EXPECT_EQ(schema_violations(read_json(kTree / "benchmarks/baselines/allowed.json"), schema),
+            std::vector<std::string>());
+  Json list = {{"schema", kAllowedSchema},
+               {"cells", {{{"optimizer", "ceres-*"}, {"reason", "built without Ceres"}}}}};
+  EXPECT_EQ(schema_violations(list, schema), std::vector<std::string>());
+  EXPECT_EQ(allowed_from_json(list).at(0).problem, "*");
+  list["cells"][0]["reason"] = "";
+  EXPECT_THROW(allowed_from_json(list), UsageError);
+  list["cells"][0] = {{"reason", "everything"}};
+  EXPECT_THROW(allowed_from_json(list), UsageError);
+  EXPECT_THROW(allowed_from_json({{"schema", "isoline.run/1"}}), UsageError);
+}
+
+TEST(Allowed, AStarStandsForAnyText) {
+  for (const char* pattern : {"*", "sine*", "*[xi=32]", "s*[*]", "sine[xi=32]", "**32*"})
+    EXPECT_TRUE(matches(pattern, "sine[xi=32]")) << pattern;
+  for (const char* pattern : {"", "sine", "*sine", "sine[xi=3]", "cos*", "*33*"})
+    EXPECT_FALSE(matches(pattern, "sine[xi=32]")) << pattern;
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST(Tables, ExpectedRunningTimeCountsWhatFailedRunsSpent) {
   study.runs = {record_of({.seed = 0, .work_per_hit = 2}),
                 record_of({.seed = 1, .hits = 10, .work_per_hit = 2, .status = Status::budget})};
   const Table table = restart_table(compare_optimizers(study));
-  EXPECT_TRUE(at(table, "gd", "square").starts_with("80 [60–")) << at(table, "gd", "square");
+  EXPECT_TRUE(at(table, "gd", "square").starts_with("78 [60–")) << at(table, "gd", "square");
   EXPECT_TRUE(at(table, "gd", "square").ends_with("(1/2)")) << at(table, "gd", "square");
 }
 

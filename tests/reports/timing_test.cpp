@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "reports/compare/differences.h"
+#include "reports/statistics/times.h"
 
 namespace isoline::reports {
 namespace {
