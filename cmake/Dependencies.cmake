@@ -32,8 +32,6 @@ isoline_library(Isoline::valijson "" valijson/validator.hpp)
 isoline_library(Isoline::ceres "libceres.so;glog" ceres/ceres.h)
 find_package(Ceres 2.1 REQUIRED)
 
-find_file(ISOLINE_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js REQUIRED)
-
 # The library versions that each record names.
 file(STRINGS ${Isoline__onednn_INCLUDE}/oneapi/dnnl/dnnl_version.h _lines REGEX "VERSION_(MAJOR|MINOR|PATCH) ")
 string(REGEX REPLACE "[^0-9;]" "" _lines "${_lines}")

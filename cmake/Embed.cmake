@@ -1,14 +1,16 @@
-# isoline_embed(target name file): embeds `file` in the binary, as the text
+# isoline_embed(target name file...): embeds files, joined, in the binary, as the text
 # `std::string_view embedded_<name>()` in the namespace of the target isoline_<module>.
-function(isoline_embed target name file)
+function(isoline_embed target name)
   string(REPLACE "isoline_" "" module ${target})
   set(stem ${CMAKE_CURRENT_BINARY_DIR}/embedded_${name})
+  list(TRANSFORM ARGN REPLACE "(.+)" "    .incbin \"\\1\"" OUTPUT_VARIABLE parts)
+  list(JOIN parts "\n" parts)
   file(CONFIGURE OUTPUT ${stem}.S @ONLY CONTENT [[
     .section .rodata
     .global isoline_@name@_begin
     .global isoline_@name@_end
 isoline_@name@_begin:
-    .incbin "@file@"
+@parts@
 isoline_@name@_end:
     .section .note.GNU-stack,"",%progbits
 ]])
@@ -22,7 +24,7 @@ std::string_view embedded_@name@() {
 }
 }  // namespace isoline::@module@
 ]])
-  set_source_files_properties(${stem}.S PROPERTIES OBJECT_DEPENDS ${file})
+  set_source_files_properties(${stem}.S PROPERTIES OBJECT_DEPENDS "${ARGN}")
   target_sources(${target} PRIVATE ${stem}.S ${stem}.cpp)
 endfunction()
 

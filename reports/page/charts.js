@@ -1,172 +1,237 @@
-// Charts over the page's data: axes, and curves with their range over seeds.
+// Charts as the report drew them. Lines lie in an area of coordinates from 0 to 5,000; to zoom is to
+// change its view, and to read a point is to read the line's own path.
 'use strict';
 
-function axis(title, rest = {}) {
-  const soft = cssColour('--soft'), line = cssColour('--line');
-  return {
-    title: {display: true, text: title, color: soft},
-    grid: {color: line, borderColor: line, drawTicks: false},
-    ...rest,
-    ticks: {color: soft, padding: 6, maxRotation: 0, ...rest.ticks},
-  };
-}
+const AREA = 5000;
 
-// Within a factor of three a linear axis says as much, and has figures on it.
-const LEAST_FACTOR = 3;
+const axisOf = (chart, key) => {
+  const [low, high, kind] = chart.dataset[key].split(' ');
+  return {low: Number(low), high: Number(high), kind};
+};
+// A value at a share of the axis as it was drawn, and the share of a value.
+const valueAt = ({low, high, kind}, share) => (kind === 'log' ? low * (high / low) ** share : low + (high - low) * share);
+const shareOf = ({low, high, kind}, value) => (kind === 'log' ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
 
-// Powers of ten are labelled, not more of them than fit; within two decades also 2 and 5 times these.
-function logAxis(title, low, high) {
-  if (high / low < LEAST_FACTOR) return axis(title, {type: 'linear', min: low, max: high, ticks: {includeBounds: false}});
-  const decades = Math.ceil(Math.log10(high / low));
-  const every = Math.max(1, Math.ceil(decades / 8));
-  return axis(title, {
-    type: 'logarithmic', min: low, max: high,
-    ticks: {
-      autoSkip: false,
-      callback: (value) => {
-        const power = Math.log10(value), whole = Math.round(power);
-        const leading = value / 10 ** Math.floor(power + 1e-9);
-        if (decades <= 2 && [2, 5].some((digit) => Math.abs(leading - digit) < 1e-6)) return String(Number(value.toPrecision(1)));
-        if (Math.abs(power - whole) > 1e-9 || whole % every !== 0) return null;
-        return whole >= 0 && whole < 4 ? String(10 ** whole) : `1e${whole}`;
-      },
-    },
-    grid: {
-      drawTicks: false, borderColor: cssColour('--line'),
-      color: (context) => {
-        const power = Math.log10(context.tick?.value ?? 1);
-        return Math.abs(power - Math.round(power)) < 1e-9 ? cssColour('--line') : 'transparent';
-      },
-    },
-  });
-}
-
-function newChart(place, label, datasets, scales, tooltip, hasEndLabels = false) {
-  const holder = document.createElement('div');
-  holder.className = 'canvas';
-  const canvas = document.createElement('canvas');
-  canvas.setAttribute('role', 'img');
-  canvas.setAttribute('aria-label', label);
-  holder.append(canvas);
-  place.append(holder);
-  return new Chart(canvas, {
-    type: 'scatter',
-    data: {datasets},
-    plugins: [END_LABELS],
-    options: {
-      hasEndLabels,
-      layout: {padding: {right: hasEndLabels && place.clientWidth >= NARROW ? 130 : 8, top: 4}},
-      onHover: (_, items, chart) => highlight(chart, chart.data.datasets[items[0]?.datasetIndex]?.optimizer),
-      animation: false, parsing: false, normalized: true, responsive: true, maintainAspectRatio: false,
-      interaction: {mode: 'nearest', intersect: true},
-      scales,
-      plugins: {legend: {display: false}, tooltip},
-    },
-  });
-}
-
-const short = (value) => String(Number(value.toPrecision(3)));
-const tooltipOf = (unit) => ({
-  displayColors: false,
-  filter: (item) => item.dataset.label !== undefined,
-  callbacks: {label: (item) => `${item.dataset.label}: ${unit(item.raw)}`},
-});
-
-function least(values) {
-  return values.reduce((low, value) => (value > 0 && value < low ? value : low), Infinity);
-}
-
-// What the curve had taken at each of its points, by the measure of the page.
-const takenAlong = (curve) => curve[measureNow().name];
-
-// Of a direct problem the best loss so far, which holds until a better one is evaluated: a staircase
-// through the very medians of the tables where these are of the loss, so that a line crosses τ where
-// the table says. Points between and beyond them come from the kept iterations.
-function stairs(curve, cell, {problem, vertical}) {
-  const xs = takenAlong(curve), points = [];
-  const medians = vertical === 'gap' && problem.goal === undefined ? mediansOf(cell, view.measure) : [];
-  const first = medians[0] ?? Infinity, last = medians[medians.length - 1] ?? -Infinity;
-  const keep = (x, i) => curve[vertical][i] !== null && x !== null && (x < first || x > last);
-  xs.forEach((x, i) => { if (keep(x, i)) points.push({x, y: curve[vertical][i]}); });
-  medians.forEach((x, place) => points.push({x, y: tauOf(TARGETS[place])}));
-  points.sort((a, b) => a.x - b.x || b.y - a.y);
-  if (vertical === 'gap')
-    for (let i = 1; i < points.length; ++i) points[i].y = Math.min(points[i].y, points[i - 1].y);
-  return points.filter((point, i) => i === 0 || i === points.length - 1 || point.y !== points[i - 1].y);
-}
-
-// Zero has no logarithm: it is drawn below all others, and what is below the floor on the floor.
-const HIGHEST = 1e3;  // of a loss gap: a run that diverges would flatten all others
-const LOWEST = 1e-12;  // of a loss gap or error: below lies rounding
-
-function linesOf(state) {
-  const {problem, vertical} = state;
-  return problem.curves.filter((curve) => state.visible.has(curve.s) && isShown('s', curve.s) && curve[vertical] !== undefined)
-      .map((curve) => ({curve, points: problem.learned === undefined
-          ? stairs(curve, cellOf(problem, curve.s), state) : pointsAlong(curve, vertical)}));
-}
-
-// Of a learned problem what the network of each kept iteration is worth.
-function pointsAlong(curve, vertical) {
-  return takenAlong(curve).map((x, i) => ({x, y: curve[vertical][i]})).filter(({x, y}) => x !== null && y !== null);
-}
-
-// The range over seeds, where the curve has one: two unseen stairs with what is between them filled.
-function bandDatasets(curve, state, place) {
-  const low = curve[`${state.vertical}_low`], high = curve[`${state.vertical}_high`];
-  if (low === undefined || state.visible.size > FEW) return [];
-  const xs = takenAlong(curve);
-  const band = {
-    bandOf: curve.s, borderWidth: 0, pointRadius: 0, pointHitRadius: 0, pointHoverRadius: 0, showLine: true, stepped: true,
-    backgroundColor: colourOf(curve.s) + BAND, order: 4,
-  };
-  const line = (values, never) => xs.map((x, i) => ({x, y: values[i] ?? never})).filter(({x, y}) => x !== null && y !== null).map(place);
-  return [{...band, data: line(low, null), fill: false}, {...band, data: line(high, HIGHEST), fill: '-1'}];
-}
-
-function curveDatasets(state) {
-  const lines = linesOf(state), points = lines.flatMap((line) => line.points);
-  const zeroX = least(points.map((point) => point.x)) / 2, zeroY = Math.max(LOWEST, least(points.map((point) => point.y)) / 10);
-  const place = ({x, y}) => ({x: x > 0 ? x : zeroX, y: Math.max(y, zeroY)});
-  return lines.flatMap(({curve, points: own}) => [
-    {
-      label: DATA.optimizers[curve.s], data: own.map(place), ...lineStyle(curve.s), stepped: true,
-      pointRadius: own.length > 60 ? 0 : 1.8, pointStyle: markerOf(curve.s),
-    },
-    ...bandDatasets(curve, state, place)]);
-}
-
-const AXES = {gap: 'relative loss gap, best so far', x_error: 'error in x'};
-const axisName = (state) => (state.vertical === 'gap' && state.problem.learned !== undefined ? 'relative loss gap' : AXES[state.vertical]);
-
-// The tolerance of the page, as a line to cross: of the relative loss gap, or of x.
-function toleranceLine(scale, from, to) {
-  const tau = scale * tauOf(view.target);
-  return {
-    label: `τ = ${tauName(view.target)}`, data: [{x: from, y: tau}, {x: to, y: tau}], showLine: true, pointRadius: 0,
-    pointHitRadius: 0, borderColor: cssColour('--soft'), borderDash: [3, 4], borderWidth: 1.2, order: 5,
-  };
-}
-
-function drawCurves(place, state, reading) {
-  const datasets = curveDatasets(state);
-  const points = datasets.filter((set) => set.label !== undefined).flatMap((set) => set.data);
-  const ends = (key) => {
-    const values = points.map((point) => point[key]);
-    if (values.length === 0) return [1, 10];
-    const low = values.reduce((a, b) => Math.min(a, b)), high = values.reduce((a, b) => Math.max(a, b));
-    return [low, high > low ? high : low * 10];
-  };
-  const across = ends('x'), up = ends('y');
-  if (state.vertical === 'gap') {
-    up[1] = Math.min(up[1] * 1.5, HIGHEST);
-    if (state.problem.goal === undefined) datasets.push(toleranceLine(1, ...across));
-  } else if (state.problem.goal !== undefined) {
-    datasets.push(toleranceLine(state.problem.goal, ...across));
+// Round values within: the same as ticks_of in the report.
+function ticksOf(low, high, isLog) {
+  const ticks = [];
+  if (isLog) {
+    let factor = high / low <= 100 ? 2 : 10;
+    factor **= Math.max(1, Math.ceil(Math.log(high / low) / Math.log(factor) / 8));
+    for (let tick = factor ** Math.ceil(Math.log(low) / Math.log(factor) - 1e-9); tick <= high * (1 + 1e-9) && ticks.length < 64; tick *= factor) ticks.push(tick);
+    return ticks;
   }
-  const {counted, unit} = measureNow(), title = counted === unit ? counted : `${counted}, ${unit}`;
-  const scales = {x: logAxis(title, ...across), y: logAxis(axisName(state), ...up)};
-  const label = `${axisName(state)} against ${title} on ${state.problem.spec}. ${reading}`;
-  return newChart(place, label, datasets, scales,
-      tooltipOf((point) => `${short(point.y)} at ${short(point.x)}`), true);
+  const rough = (high - low) / 8, power = 10 ** Math.floor(Math.log10(rough));
+  const step = ([1, 2, 5].find((digit) => digit * power >= rough) ?? 10) * power;
+  for (let at = Math.ceil(low / step - 1e-9); at * step <= high + 1e-9 * step && ticks.length < 64; ++at) ticks.push(at * step);
+  return ticks;
 }
+
+const svgElement = (tag, attributes, text = '') => {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.textContent = text;
+  return made;
+};
+
+const areaOf = (chart) => chart.querySelector('.area');
+const boxOf = (area) => Object.fromEntries(['x', 'y', 'width', 'height'].map((name) => [name, Number(area.getAttribute(name))]));
+const viewOf = (area) => area.getAttribute('viewBox').split(' ').map(Number);
+
+// Grid lines and figures of what is in view; the names of both axes stay.
+function drawAxes(chart) {
+  const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), axes = chart.querySelector('.axes');
+  const names = [...axes.querySelectorAll('text')].filter((text) => text.matches('.name') || Number.isNaN(Number(text.textContent.replace('%', '')))), made = [];
+  const word = (kind, value) => (kind === 'share' ? `${Math.round(100 * value)}%` : value > 9999 ? value.toExponential(0).replace('+', '') : figure(value));
+  const x = axisOf(chart, 'x'), y = axisOf(chart, 'y');
+  for (const tick of ticksOf(valueAt(x, left / AREA), valueAt(x, (left + width) / AREA), x.kind === 'log')) {
+    const at = box.x + box.width * (shareOf(x, tick) * AREA - left) / width;
+    made.push(svgElement('path', {class: 'grid', d: `M${at} ${box.y}v${box.height}`}), svgElement('text', {x: at, y: box.y + box.height + 15, 'text-anchor': 'middle'}, word(x.kind, tick)));
+  }
+  for (const tick of ticksOf(valueAt(y, 1 - (top + height) / AREA), valueAt(y, 1 - top / AREA), y.kind === 'log')) {
+    const at = box.y + box.height * ((1 - shareOf(y, tick)) * AREA - top) / height;
+    made.push(svgElement('path', {class: 'grid', d: `M${box.x} ${at}h${box.width}`}), svgElement('text', {x: box.x - 6, y: at + 4, 'text-anchor': 'end'}, word(y.kind, tick)));
+  }
+  axes.replaceChildren(...made, ...names);
+}
+
+// The corners of a path of the report: [[x, y], …].
+const POINTS = new WeakMap();
+function pointsOf(path) {
+  if (POINTS.has(path)) return POINTS.get(path);
+  const points = [];
+  let x = 0, y = 0;
+  for (const [, letter, first, second] of path.getAttribute('d').matchAll(/([MLHhvl])(-?\d+)(?: ?(-?\d+))?/g)) {
+    const [a, b] = [Number(first), Number(second)];
+    if (letter === 'M') [x, y] = [a, b];
+    else if (letter === 'l') [x, y] = [x + a, y + b];
+    else if (letter === 'h') x += a;
+    else if (letter === 'H') x = a;
+    else y += a;
+    if (points.length === 0 || letter === 'M' || a !== 0 || letter === 'l') points.push([x, y]);
+  }
+  POINTS.set(path, points);
+  return points;
+}
+
+const LINE = ':is([data-s], [data-line])';
+const lineOf = ({dataset}) => Number(dataset.s ?? dataset.line);
+const lineIn = (place, line) => [...place.querySelectorAll(LINE)].find((one) => lineOf(one) === line);
+const isLineShown = (group) => !group.classList.contains('off') && (group.dataset.s === undefined || isShown('s', Number(group.dataset.s)));
+const linesOf = (chart) => [...chart.querySelectorAll(`.area > ${LINE}`)];
+const pathOf = (group) => group.querySelector('.line');
+
+// Names at the ends of lines, each below those above it that it would meet, placed once.
+const END_HEIGHT = 14;
+function placedEnds(ends) {
+  const placed = [];
+  for (const end of [...ends].sort((a, b) => a.y - b.y)) {
+    let y = end.y;
+    for (const other of placed)  // from top to bottom, as they were placed
+      if (end.x < other.x + other.width && other.x < end.x + end.width && Math.abs(other.y - y) < END_HEIGHT) y = other.y + END_HEIGHT;
+    placed.push({...end, y});
+    placed.sort((a, b) => a.y - b.y);
+  }
+  return placed;
+}
+
+// The name of a line at its end, and its points, which the report leaves to those who show it.
+const nameOf = (group) => (group.dataset.s === undefined ? group.querySelector('title').textContent : DATA.optimizers[Number(group.dataset.s)]);
+function endOf(chart, group) {
+  const ends = chart.querySelector('.ends'), there = lineIn(ends, lineOf(group));
+  if (there !== undefined) return there;
+  const made = svgElement('text', {'data-s': lineOf(group)}, nameOf(group).replace(/(.{23}).{2,}/, '$1…'));
+  ends.append(made);
+  if (chart.matches('.marked')) group.append(svgElement('path', {class: 'points', d: pointsOf(pathOf(group)).map(([x, y]) => `M${x} ${y}h0`).join('')}));
+  return made;
+}
+
+function placeNames(chart) {
+  if (chart.querySelector('.ends') === null) return;
+  const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), ends = [], clamp = (share) => Math.min(1, Math.max(0, share));
+  for (const group of linesOf(chart)) {
+    const inside = isLineShown(group) ? pointsOf(pathOf(group)).filter(([x]) => x <= left + width) : [];
+    if (inside.length === 0) {
+      lineIn(chart.querySelector('.ends'), lineOf(group))?.classList.add('off');
+      continue;
+    }
+    const [x, y] = inside[inside.length - 1], text = endOf(chart, group);
+    text.classList.remove('off');
+    ends.push({text, x: box.x + box.width * clamp((x - left) / width) + 6, y: box.y + box.height * clamp((y - top) / height), width: 6.4 * text.textContent.length});
+  }
+  for (const {text, x, y} of placedEnds(ends)) {
+    text.setAttribute('x', x);
+    text.setAttribute('y', y + 4);
+  }
+}
+
+function setView(chart, left, top, width, height) {
+  areaOf(chart).setAttribute('viewBox', [left, top, width, height].map(Math.round).join(' '));
+  drawAxes(chart);
+  placeNames(chart);
+}
+
+// As the report drew it, but wide enough for all that is shown: no axis leaves out the end of a line
+// that did not leave all measure.
+function fitView(chart) {
+  const inside = ([x, y]) => Math.abs(x) < 4 * AREA && Math.abs(y - AREA) < 4 * AREA;
+  let [left, top, right, bottom] = [0, 0, AREA, AREA];
+  for (const group of chart.closest('.plane') ? [] : linesOf(chart).filter(isLineShown)) {
+    const points = pointsOf(pathOf(group)).filter(inside);
+    for (const [x] of points) [left, right] = [Math.min(left, x), Math.max(right, x)];
+    for (const [, y] of points.slice(-1)) [top, bottom] = [Math.min(top, y - 100), Math.max(bottom, y + 100)];
+  }
+  setView(chart, left, top, right - left, bottom - top);
+}
+
+// Shows those lines of all charts of a place, and presses their buttons.
+function showLinesIn(place, lines) {
+  for (const chart of place.querySelectorAll('.chart')) {
+    for (const group of linesOf(chart)) group.classList.toggle('off', !lines.has(lineOf(group)));
+    fitView(chart);
+  }
+  for (const button of place.querySelectorAll('button.name')) button.setAttribute('aria-pressed', lines.has(lineOf(button)));
+}
+
+function light(place, line) {
+  for (const chart of place.querySelectorAll('.chart')) {
+    chart.classList.toggle('lit', line !== undefined);
+    for (const one of chart.querySelectorAll(LINE)) one.classList.toggle('lit', lineOf(one) === line);
+  }
+}
+
+// The nearest corner of a line that is shown, within so many pixels of the pointer.
+const NEAR = 14;
+function nearest(chart, event) {
+  const area = areaOf(chart), [left, top, width, height] = viewOf(area), matrix = area.getScreenCTM(), frame = boxOf(area);
+  const shape = chart.getBoundingClientRect(), scale = shape.width / chart.viewBox.baseVal.width;
+  if (matrix === null) return undefined;
+  const across = shape.left + frame.x * scale, down = shape.top + frame.y * scale;
+  let best;
+  for (const group of linesOf(chart).filter(isLineShown))
+    for (const [x, y] of pointsOf(pathOf(group))) {
+      const off = Math.hypot(across + (x - left) / width * frame.width * scale - event.clientX, down + (y - top) / height * frame.height * scale - event.clientY);
+      if (off < (best?.off ?? NEAR)) best = {off, x, y, group};
+    }
+  return best;
+}
+
+const short = (value) => figure(Number(value.toPrecision(3)));
+
+function explainPoint(event) {
+  const chart = event.target.closest?.('.chart'), tip = document.getElementById('tip');
+  if (!chart) return;
+  const point = nearest(chart, event);
+  light(chart.parentElement, point && lineOf(point.group));
+  tip.hidden = point === undefined;
+  if (point === undefined) return;
+  const x = short(valueAt(axisOf(chart, 'x'), point.x / AREA)), y = short(valueAt(axisOf(chart, 'y'), 1 - point.y / AREA));
+  showTip(tip, [nameOf(point.group), `${y} at ${x}`], {getBoundingClientRect: () => new DOMRect(event.clientX, event.clientY - 8, 1, 16)});
+}
+
+// The τ of the page, where a chart has its line.
+function moveTolerance(chart) {
+  const line = chart.querySelector('.tau');
+  if (line === null) return;
+  const y = Math.round((1 - shareOf(axisOf(chart, 'y'), Number(line.dataset.scale) * tauOf(view.target))) * AREA);
+  line.setAttribute('d', `M${-4 * AREA} ${y}h${9 * AREA}`);
+}
+
+// Rows of methods move up into the places of those filtered out.
+function closeRows(plot) {
+  const step = Number(plot.dataset.row), hidden = new Set(hiddenMethods());
+  let place = 0;
+  [...plot.querySelectorAll('g[data-method]')].forEach((row, i) => {
+    row.setAttribute('transform', `translate(0 ${step * (place - i)})`);
+    if (!hidden.has(row.dataset.method)) ++place;
+  });
+  const [left, top, width] = plot.getAttribute('viewBox').split(' ');
+  plot.setAttribute('viewBox', `${left} ${top} ${width} ${Number(plot.dataset.edge) + step * place}`);
+}
+
+document.addEventListener('pointermove', explainPoint);
+document.addEventListener('pointerout', (event) => {
+  const chart = event.target.closest?.('.chart');
+  if (chart && !chart.contains(event.relatedTarget)) {
+    light(chart.parentElement, undefined);
+    document.getElementById('tip').hidden = true;
+  }
+});
+for (const [event, isLit] of [['pointerover', true], ['pointerout', false], ['focusin', true], ['focusout', false]])
+  document.addEventListener(event, ({target}) => {
+    const name = target.closest?.('button.name');
+    if (name) light(name.closest('figure, article'), isLit ? lineOf(name) : undefined);
+  });
+document.addEventListener('click', ({target}) => {
+  const name = target.closest('button.name');
+  if (name === null) return;
+  const place = name.closest('figure, article'), line = lineOf(name);
+  const lines = new Set([...place.querySelectorAll('button.name[aria-pressed=true]')].map(lineOf));
+  if (!lines.delete(line)) lines.add(line);
+  if (place.matches('article')) CHOSEN.set(Number(place.dataset.p), lines);
+  showLinesIn(place, lines);
+});
+ON_UNPACK.push((place) => {
+  place.querySelectorAll('svg[data-row]').forEach((plot) => live(plot, () => closeRows(plot)));
+  if (!place.matches('article')) place.querySelectorAll('.chart').forEach((chart) => live(chart, () => fitView(chart)));
+});

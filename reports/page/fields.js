@@ -1,25 +1,54 @@
-// Fields of a problem on a grid: a slider over the kept steps changes every picture of x.
+// Fields of a problem on a grid: a byte a cell, painted on a canvas; a slider over the kept steps
+// changes every picture of x.
 'use strict';
 
-const ZERO = 128;  // the byte of the value 0; colours are of bytes, a difference is one of bytes
-const bytesOf = (text) => Array.from(atob(text), (letter) => letter.charCodeAt(0));
-const textOf = (bytes) => btoa(bytes.map((byte) => String.fromCharCode(byte)).join(''));
+const ZERO = 128;  // the byte of the value 0
+const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const lessTruth = (bytes, truth) => bytes.map((byte, i) => Math.min(255, Math.max(1, ZERO + byte - truth[i])));
 
-function showPicture(image, address, alt) {
-  image.src = address;
-  image.alt = alt;
+// Of each byte its colour: greys, or blue below 0 and orange above. Both arms are straight lines of
+// even steps in Oklab (Ottosson 2020), to one lightness and chroma, in hues that stay apart in all
+// three dichromacies.
+const RAMPS = {
+  grey: (byte) => `rgb(${byte} ${byte} ${byte})`,
+  diverging: (byte) => {
+    const share = Math.min(1, 2 * Math.abs(byte - ZERO) / 127);
+    return `oklch(${0.97 - 0.5 * share} ${0.105 * share} ${byte < ZERO ? 255 : 55})`;
+  },
+};
+
+const PALETTES = new Map();
+function paletteOf(ramp) {
+  if (!PALETTES.has(ramp)) {
+    const context = new OffscreenCanvas(256, 1).getContext('2d');
+    for (let byte = 0; byte < 256; ++byte) {
+      context.fillStyle = RAMPS[ramp](byte);
+      context.fillRect(byte, 0, 1, 1);
+    }
+    PALETTES.set(ramp, new Uint32Array(context.getImageData(0, 0, 256, 1).data.buffer));
+  }
+  return PALETTES.get(ramp);
+}
+
+function paint(canvas, bytes = bytesOf(canvas.dataset.cells)) {
+  const context = canvas.getContext('2d', {willReadFrequently: true}), image = context.createImageData(canvas.width, canvas.height), palette = paletteOf(canvas.dataset.ramp);
+  new Uint32Array(image.data.buffer).set(Uint32Array.from(bytes, (byte) => palette[byte]));
+  context.putImageData(image, 0, 0);
 }
 
 // The step of the slider, or the last where a run kept fewer.
-function showStep(figure, {found, head, labels, truth}, step) {
+function showStep(figure, {found, labels, truth}, step) {
   const at = Math.min(step, found.iterations.length) - 1, cells = bytesOf(found.x[at]);
-  const [x, missing] = figure.querySelectorAll('img'), of = `of ${DATA.optimizers[found.s]} at iteration ${found.iterations[at]}`;
+  const [x, missing] = figure.querySelectorAll('canvas'), of = `of ${DATA.optimizers[found.s]} at iteration ${found.iterations[at]}`;
   const apart = found.apart[at] === '' ? '' : `, ‖x − x*‖ ${found.apart[at]} ‖x*‖`;
-  showPicture(x, `data:image/bmp;base64,${head}${found.x[at]}`, `${labels[0]} ${of}${apart}`);
+  const show = (canvas, bytes, label) => {
+    paint(canvas, bytes);
+    canvas.setAttribute('aria-label', `${label} ${of}${apart}`);
+  };
+  show(x, cells, labels[0]);
   figure.querySelector('.at').textContent = found.iterations[at];
   if (missing === undefined) return;
-  showPicture(missing, `data:image/bmp;base64,${head}${textOf(lessTruth(cells, truth))}`, `${labels[1]} ${of}${apart}`);
+  show(missing, lessTruth(cells, truth), labels[1]);
   figure.querySelector('.apart').textContent = found.apart[at];
 }
 
@@ -41,4 +70,7 @@ function makeFields(article) {
       element('small', {}, ' from the start to the end of each run, spread as the logarithm of its iterations'));
 }
 
-ON_UNPACK.push((place) => { if (place.matches('.problem')) makeFields(place); });
+ON_UNPACK.push((place) => {
+  place.querySelectorAll('canvas').forEach((canvas) => paint(canvas));
+  if (place.matches('.problem')) makeFields(place);
+});

@@ -3,53 +3,41 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdint>
+#include <array>
 #include <map>
 
 namespace isoline::reports {
 namespace {
 
-// Fowler, Noll, Vo: the same on every machine, and moved by any letter.
-std::uint32_t digest_of(std::string_view name) {
-  constexpr std::uint32_t kOffset = 2166136261U, kPrime = 16777619U;
-  std::uint32_t digest = kOffset;
-  for (const char letter : name) digest = (digest ^ static_cast<unsigned char>(letter)) * kPrime;
-  return digest ^ digest >> 15U;
-}
+const std::map<std::string_view, std::string> kTitles = {{"gradient", "Gradient"},
+                                                         {"adaptive", "Adaptive gradient"},
+                                                         {"quasi-newton", "Quasi-Newton"},
+                                                         {"second-order", "Second order"},
+                                                         {"least-squares", "Least squares"},
+                                                         {"half-inverse", "Half-inverse gradients"},
+                                                         {"inversion", "Inversion of the physics"},
+                                                         {"derivative-free", "Derivative-free"}};
+
+constexpr std::array<std::string_view, 5> kDashes = {"none", "7 3", "2 3", "9 3 2 3", "14 4"};
+constexpr std::array<int, 3> kShares = {100, 72, 50};  // of the kind's colour; the rest is ink
 
 }  // namespace
 
-LineStyle style_of(const OptimizerAxis& optimizer) {
-  const auto at = std::ranges::find(kMathematics, optimizer.mathematics());
-  const auto kind =
-      std::min<std::ptrdiff_t>(at - kMathematics.begin(), std::ssize(kMathematics) - 1);
-  // Settings of a method differ by their options.
-  const std::uint32_t method = digest_of(optimizer.method), setting = digest_of(optimizer.label);
-  return {static_cast<std::size_t>(kind), method % kDashes.size(), setting % kMarkers};
-}
-
 std::string kind_title(std::string_view kind) {
-  static const std::map<std::string_view, std::string> kTitles = {
-      {"gradient", "Gradient"},
-      {"adaptive", "Adaptive gradient"},
-      {"quasi-newton", "Quasi-Newton"},
-      {"second-order", "Second order"},
-      {"least-squares", "Least squares"},
-      {"half-inverse", "Half-inverse gradients"},
-      {"inversion", "Inversion of the physics"},
-      {"derivative-free", "Derivative-free"}};
   const auto at = kTitles.find(kind);
   return at == kTitles.end() ? "Other" : at->second;
 }
 
 std::string kind_rules(const Comparison& c) {
   std::string rules;
+  std::map<std::string, std::size_t> counts;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const LineStyle style = style_of(c.optimizers[s]);
-    const std::string_view dash = kDashes[style.dash];
-    rules += fmt::format("[data-s=\"{}\"]{{--series:var(--{});--dash:{}}}\n", s,
-                         kMathematics[style.kind], dash.empty() ? "none" : dash);
+    std::string kind = c.optimizers[s].mathematics();
+    if (!kTitles.contains(kind)) kind = "other";
+    const std::size_t place = counts[kind]++;
+    rules += fmt::format(
+        "[data-s=\"{}\"]{{--series:color-mix(in oklab,var(--{}) {}%,var(--ink));--dash:{}}}\n", s,
+        kind, kShares[place / kDashes.size() % kShares.size()], kDashes[place % kDashes.size()]);
   }
   return rules;
 }

@@ -2,80 +2,135 @@
 // for every one of them.
 'use strict';
 
-function setText(cell, text, small = '') {
-  cell.textContent = text;
-  if (small !== '') cell.append(element('small', {}, small));
+const SHOWN_AT_FIRST = 12;  // of the standings; the others on demand
+
+const cellWith = (text, small = '', properties = {}) => element('td', properties, text, ...small === '' ? [] : [element('small', {}, small)]);
+const nameOfMethod = (s) => [element('a', {href: `#optimizer-${s}`}, swatch(s), DATA.optimizers[s]), ...DATA.marks[s] === '' ? [] : [element('sup', {title: DATA.privileges[s]}, DATA.marks[s].trim())]];
+
+function filledTable(table, caption, heads, rows) {
+  table.replaceChildren(element('caption', {}, caption), element('thead', {}, ...heads), element('tbody', {}, ...rows));
+}
+
+// Its score as a dot on a track from 0 to 1, with the interval of the report's own order.
+function trackOf(s, score) {
+  const dot = element('i'), [, , , low, high] = DATA.given[s];
+  dot.style.setProperty('--at', score);
+  if (isOwn() && low !== null) {
+    dot.style.setProperty('--low', low);
+    dot.style.setProperty('--high', high);
+  }
+  return element('td', {className: 'track'}, dot);
+}
+
+function standingRow({s, score, solved, settings, wins, typical, reached, runs, failed}, place, isRest) {
+  const row = element('tr', {className: isRest ? 'rest' : ''}, cellWith(place === undefined ? '–' : String(place + 1)),
+      element('th', {scope: 'row'}, ...nameOfMethod(s)), trackOf(s, score), cellWith(score.toFixed(3)), cellWith(String(solved), `/${settings}`),
+      cellWith(wins === 0 ? '·' : String(wins)), cellWith(multiple(typical)), cellWith(String(reached), `/${runs}`),
+      cellWith(failed === 0 ? '·' : String(failed), '', {className: failed === 0 ? '' : 'lost'}));
+  row.dataset.s = s;
+  return row;
 }
 
 function drawStandings(table) {
-  const rows = new Map([...table.tBodies[0].rows].map((row) => [Number(row.dataset.s), row]));
-  table.caption.textContent = `Standings to ${tauName(view.target)} by ${measureNow().counted}`;
-  standingsNow().forEach((standing, place) => {
-    const row = rows.get(standing.s);
-    if (row === undefined) return;
-    const [rank, , track, score, solved, wins, typical, runs] = row.cells;
-    const dot = track.firstElementChild, [, , , low, high] = DATA.given[standing.s];
-    setText(rank, standing.isApart ? '–' : String(place + 1));
-    dot.style.setProperty('--at', standing.score);
-    for (const [name, end] of [['--low', low], ['--high', high]])  // an interval of the report's own order
-      if (isOwn() && end !== null) dot.style.setProperty(name, end); else dot.style.removeProperty(name);
-    setText(score, standing.score.toFixed(3));
-    setText(solved, String(standing.solved), `/${standing.settings}`);
-    setText(wins, standing.wins === 0 ? '·' : String(standing.wins));
-    setText(typical, multiple(standing.typical));
-    setText(runs, String(standing.reached), `/${standing.runs}`);
-    row.classList.toggle('rest', place >= DATA.shownAtFirst);
-    table.tBodies[0].append(row);
-  });
-  for (const head of table.tHead.rows[0].cells) head.removeAttribute('aria-sort');
+  const rows = standingsNow().filter((standing) => standing.settings > 0);  // others learn alone
+  const shown = rows.filter(({s}) => isShown('s', s));  // what the reader chose is not folded
+  const heads = ['#', 'optimizer', 'score, 0 to 1', 'score', 'solved', 'best on', '× least', 'runs', 'failed'];
+  if (rows.length === 0 || DATA.allLearned)
+    return table.replaceChildren(element('caption', {}, 'Nothing here is ranked by work: what was learned is told by its error in x.'));
+  filledTable(table, `Standings to ${tauName(view.target)} by ${measureNow().counted}`,
+      [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], rows.map((row) => standingRow(row, row.isApart ? undefined : rows.indexOf(row), shown.indexOf(row) >= SHOWN_AT_FIRST)));
+  makeSortable(table);
 }
 
 // How far from the best, as a class of the style sheet: how many of the report's steps are passed.
 const heatOf = (value, low) => `h${DATA.shades.filter((step) => value / low > step).length}`;
 
-function drawHeatCell(place, cell, low, best) {
-  if (!isMeasured(cell)) return;  // not applicable, or missing: to every tolerance
+function heatCell(cell, low, best) {
+  if (cell === undefined) return cellWith('', '', {className: 'none'});
   const work = takenBy(cell), {failed, missing} = cell, all = cell.reached.length, reached = reachedOf(cell);
+  if (all === 0) return missing > 0 ? cellWith('missing', '', {className: 'lost'}) : cellWith('n/a', '', {className: 'na'});
   const isTold = (reached > 0 && reached < all) || failed > 0 || missing > 0;
   const told = `${reached}/${all}${failed > 0 ? `, ${failed} failed` : ''}${missing > 0 ? `, ${missing} missing` : ''}`;
-  place.className = work === Infinity ? 'no' : work <= best ? 'h0 best' : heatOf(atLeast(work), atLeast(low));
-  setText(place, amount(work), isTold ? told : '');
+  return cellWith(amount(work), isTold ? told : '', {className: work === Infinity ? 'no' : work <= best ? 'h0 best' : heatOf(atLeast(work), atLeast(low))});
 }
 
+// The error in x of a learned problem at equal work.
+function learnedCell(problem, s) {
+  const row = problem.learned.rows.find((one) => one.s === s), least = problem.learned.rows[0]?.error;
+  if (row === undefined) return heatCell(cellOf(problem, s), 0, 0);
+  if (row.error === null) return cellWith('✗', '', {className: 'no'});
+  return cellWith(figure(row.error), '', {className: row.error === least ? 'h0 best' : heatOf(row.error, least)});
+}
+
+// Best first; where all is learned, by how often each is nearest in x at equal work.
+function bestFirst() {
+  const nearest = (s) => DATA.problems.filter(({learned}) => learned?.rows[0]?.s === s).length, all = [...DATA.kinds.keys()];
+  return DATA.allLearned ? all.sort((a, b) => nearest(b) - nearest(a)) : all;
+}
+
+function heatHeads(columns) {
+  const groups = new Map();
+  for (const p of columns) groups.set(DATA.problems[p].group, (groups.get(DATA.problems[p].group) ?? 0) + 1);
+  const head = (text, properties) => element('th', {scope: 'col', ...properties}, text);
+  return [element('tr', {}, head('optimizer', {rowSpan: 2}), head('solved', {rowSpan: 2}),
+      ...[...groups].map(([group, count]) => head(group === 'learned' ? 'learned: error in x' : group, {className: 'group', colSpan: count, scope: 'colgroup'}))),
+    element('tr', {}, ...columns.map((p) => {
+      const made = head(element('a', {href: `#problem-${p}`}, element('span', {}, DATA.problems[p].spec)));
+      made.dataset.p = p;
+      return made;
+    }))];
+}
+
+// The best of each kind is shown, the rest of its kind below it on demand.
 function drawHeat(table) {
   const {counted, unit} = measureNow(), solved = new Map(standingsNow().map((standing) => [standing.s, standing]));
   const leastOf = (cells) => cells.reduce((low, cell) => Math.min(low, takenBy(cell)), Infinity);
+  const columns = ['toy', 'physics', 'classical', 'other', 'learned'].flatMap((group) => [...DATA.problems.keys()].filter((p) => DATA.problems[p].group === group));
   const least = DATA.problems.map(({cells}) => leastOf(cells));
   const best = DATA.problems.map(({cells}, p) =>  // on common settings of the ranked ones
     leastOf(DATA.common.includes(p) ? cells.filter((cell) => DATA.ranked.includes(cell.s)) : cells));
-  table.caption.textContent = `Median ${counted} to ${tauName(view.target)}${unit === counted ? '' : `, in ${unit}`}; ` +
-      'of learned problems the error in x at equal work';
-  for (const row of table.tBodies[0].rows) {
-    const s = Number(row.dataset.s), standing = solved.get(s);
-    if (standing !== undefined) setText(row.cells[1], String(standing.solved), `/${standing.settings}`);
-    for (const place of row.querySelectorAll('td[data-p]')) {
-      const p = Number(place.dataset.p), problem = DATA.problems[p], cell = cellOf(problem, s);
-      if (problem.learned === undefined && cell !== undefined) drawHeatCell(place, cell, least[p], best[p]);
-    }
-  }
+  const kinds = new Map();
+  for (const s of bestFirst()) kinds.set(DATA.kinds[s], [...kinds.get(DATA.kinds[s]) ?? [], s]);
+  const shown = [...kinds].flatMap(([kind, all]) => all.filter((s) => isShown('s', s)).map((s, i) => ({s, kind: i === 0 ? kind : undefined})));
+  const rows = shown.map(({s, kind}) => {
+    const standing = solved.get(s), by = new Map(DATA.problems.map((problem, p) => [p, problem.cells.find((cell) => cell.s === s)]));
+    const row = element('tr', {className: kind === undefined ? 'rest' : ''},
+        element('th', {scope: 'row'}, ...nameOfMethod(s), ...kind === undefined ? [] : [element('small', {}, kind)]),
+        standing === undefined ? cellWith('') : cellWith(String(standing.solved), `/${standing.settings}`, {className: 'solved'}),
+        ...columns.map((p) => {
+          const place = DATA.problems[p].learned === undefined ? heatCell(by.get(p), least[p], best[p]) : learnedCell(DATA.problems[p], s);
+          place.dataset.p = p;
+          return place;
+        }));
+    row.dataset.s = s;
+    return row;
+  });
+  filledTable(table, `Median ${counted} to ${tauName(view.target)}${unit === counted ? '' : `, in ${unit}`}; of learned problems the error in x at equal work`,
+      heatHeads(columns), rows);
 }
 
 // Rows of class `rest` are shown on demand.
-function makeMore(button) {
-  const table = document.getElementById(button.dataset.table), all = button.textContent;
-  button.hidden = false;
-  button.addEventListener('click', () => {
-    const isFolded = table.classList.toggle('folded');
-    button.textContent = isFolded ? all : button.dataset.less;
+function makeMore(table, draw) {
+  const button = pressable('', undefined, () => {
+    table.classList.toggle('folded');
+    label();
   });
+  button.className = 'more';
+  table.parentElement.after(element('p', {}, button));
+  const label = () => {
+    const rest = table.querySelectorAll('.rest').length, all = table.tBodies[0]?.rows.length ?? 0;
+    button.hidden = rest === 0;
+    button.textContent = table.classList.contains('folded') ? `all ${all}` : `the first ${all - rest}`;
+  };
+  return () => {
+    draw(table);
+    label();
+  };
 }
 
 function liveOverview() {
   const standings = document.getElementById('standings-table'), heat = document.getElementById('heat');
-  let areChanged = false;  // as they come they are right
-  FOLLOWERS.push(() => { areChanged = areChanged || !isOwn(); });
-  live(standings, () => { if (areChanged) drawStandings(standings); });  // none where all is learned
-  live(heat, () => { if (areChanged) drawHeat(heat); });
-  if (heat !== null) explainMatrix(heat);
-  document.querySelectorAll('button.more').forEach(makeMore);
+  live(standings, makeMore(standings, drawStandings));
+  live(heat, makeMore(heat, drawHeat));
+  explainMatrix(heat);
 }

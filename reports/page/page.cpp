@@ -1,6 +1,5 @@
-// The page: its sections in the frame of outer.html, with style, scripts and Chart.js, filled with
-// tables and data.
-// One file that asks nothing of the network.
+// The page: its template with style and scripts, filled with tables, drawings and data. One file
+// that asks nothing of the network.
 #include "reports/page/page.h"
 
 #include <fmt/format.h>
@@ -19,26 +18,8 @@
 
 namespace isoline::reports {
 
-std::string_view embedded_outer_html();
 std::string_view embedded_page_html();
 std::string_view embedded_page_css();
-std::string_view embedded_parts_css();
-std::string_view embedded_plots_css();
-std::string_view embedded_fields_css();
-std::string_view embedded_chart_js();
-std::string_view embedded_lines_js();
-std::string_view embedded_view_js();
-std::string_view embedded_cells_js();
-std::string_view embedded_tabs_js();
-std::string_view embedded_bar_js();
-std::string_view embedded_charts_js();
-std::string_view embedded_planes_js();
-std::string_view embedded_figures_js();
-std::string_view embedded_tables_js();
-std::string_view embedded_overview_js();
-std::string_view embedded_pair_js();
-std::string_view embedded_problem_js();
-std::string_view embedded_fields_js();
 std::string_view embedded_page_js();
 
 namespace {
@@ -65,17 +46,22 @@ std::string remarks_html(const Document& document) {
   return html.empty() ? "" : "<ul class=remarks>" + html + "</ul>";
 }
 
+std::string day_of(const Record& record) {
+  constexpr std::size_t kDay = 10;
+  return record.provenance.run.started.substr(0, kDay);
+}
+
 // "quick · 2026-11-22 · 1a2b3c4 · 38 optimizers on …": the suites, the last day a run began, the
 // commits of the programs that ran.
 std::string head_html(const Document& document) {
   const Comparison& c = document.comparison;
-  constexpr std::size_t kDay = 10, kShort = 7;
+  constexpr std::size_t kShort = 7;
   std::vector<std::string> parts = c.study->plan.suites;
   std::string day;
   std::set<std::string> commits;
   for (const Run& run : c.runs) {
     const Provenance& from = run.record->provenance;
-    day = std::max(day, from.run.started.substr(0, kDay));
+    day = std::max(day, day_of(*run.record));
     if (!run.record->imported && !from.build->commit.empty())
       commits.insert(from.build->commit.substr(0, kShort));
   }
@@ -84,6 +70,16 @@ std::string head_html(const Document& document) {
   if (commits.size() > 1) parts.push_back(counted(commits.size(), "commit"));
   parts.push_back(document.headline);
   return html_text(joined(parts, " · "));
+}
+
+// "quick, 2026-11-22": what tells two tabs of a browser apart.
+std::string title_of(const Document& document) {
+  const Comparison& c = document.comparison;
+  std::vector<std::string> parts = c.study->plan.suites;
+  std::string day;
+  for (const Run& run : c.runs) day = std::max(day, day_of(*run.record));
+  if (!day.empty()) parts.push_back(day);
+  return (parts.empty() ? "" : joined(parts) + " · ") + "Isoline";
 }
 
 // What marks mean besides that of privileges, where any method or problem has them.
@@ -103,81 +99,91 @@ std::string profile_html(const Comparison& c) {
   return html_text(profile_reading(c, kTightest));
 }
 
-constexpr std::string_view (*kScripts[])() = {
-    embedded_chart_js,   embedded_lines_js,  embedded_view_js,     embedded_cells_js,
-    embedded_tabs_js,    embedded_bar_js,    embedded_charts_js,   embedded_planes_js,
-    embedded_figures_js, embedded_tables_js, embedded_overview_js, embedded_pair_js,
-    embedded_problem_js, embedded_fields_js, embedded_page_js,
-};
+// --- the first tab
 
-std::string scripts_html() {
+std::string alerts_html(const Document& document) {
+  const Comparison& c = document.comparison;
   std::string html;
-  for (const auto script : kScripts) html.append("<script>").append(script()).append("</script>\n");
+  if (!document.incomplete.empty())
+    html += fmt::format("<p class=alert role=alert><b>Incomplete.</b> {}</p>\n",
+                        html_text(document.incomplete));
+  const std::size_t unread = c.study->unreadable.size();
+  if (!c.failures.empty() || unread > 0)
+    html += fmt::format(
+        "<p class=alert><b>{} failed</b>{} — <a href=\"#failures\">which, and why</a></p>\n",
+        counted(c.failures.size(), "run"),
+        unread > 0 ? fmt::format(", {} unreadable", counted(unread, "file")) : "");
   return html;
 }
 
-// A link to each section of a page, by the name that it bears there.
-std::string tabs_html(std::string_view sections) {
-  constexpr std::string_view kOpening = "<section id=\"", kNamed = "\" class=\"tab\" aria-label=\"";
-  std::string html;
-  for (std::size_t at = sections.find(kOpening); at != std::string_view::npos;
-       at = sections.find(kOpening, at)) {
-    at += kOpening.size();
-    const std::size_t named = sections.find(kNamed, at), name = named + kNamed.size();
-    html += fmt::format("  <a href=\"#{}\">{}</a>\n", sections.substr(at, named - at),
-                        sections.substr(name, sections.find('"', name) - name));
-  }
-  return html;
+// A sentence decides; all that these runs say opens.
+std::string verdict_html(const Comparison& c) {
+  const std::vector<std::string> sentences = verdict(c);
+  if (sentences.empty()) return "";
+  std::string html = fmt::format("<p class=verdict>{}</p>\n", html_text(short_verdict(c)));
+  html += "<details><summary>All that these runs say</summary>";
+  for (const std::string& sentence : sentences)
+    html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence));
+  return html + "</details>\n";
 }
 
-// A page of these sections in the frame that all pages share.
-std::string framed(std::string_view sections, const char* title, const char* about, Parts parts) {
-  parts["sections"] = filled(sections, parts);
-  parts["tabs"] = tabs_html(sections);
-  parts["scripts"] = scripts_html();
-  parts["title"] = title;
-  parts["about"] = about;
-  return filled(embedded_outer_html(), parts);
+std::string settled_html(const Comparison& c) {
+  std::string html = "<dl class=settled>";
+  for (const Reading& reading : settled_readings(c))
+    html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
+  return html + "</dl>\n";
 }
 
-// Style, and what the bar of filters says before scripts run.
-Parts common_parts(const Comparison& c, const AllFields& fields) {
-  return {{"style", std::string(embedded_page_css())
-                        .append(embedded_parts_css())
-                        .append(embedded_plots_css())
-                        .append(embedded_fields_css())},
-          {"kinds", kind_rules(c)},
-          {"tau", tau_name(c)},
-          {"problems", problems_html(c, fields)}};
+std::string endings_html(const Comparison& c) {
+  std::string html =
+      fmt::format("<li><b>{}<small>/{}</small></b>runs complete</li>", c.answered, c.planned);
+  for (const auto& [status, count] : c.statuses)
+    html += fmt::format("<li class=\"{}\"><b>{}</b>{}<small>{}</small></li>",
+                        is_failure(status) ? "bad" : "", count, status_meaning(status),
+                        name_of(status));
+  return "<ul class=tiles>" + html + "</ul>";
 }
 
 }  // namespace
 
+std::string marks_html(const OptimizerAxis& axis) {
+  std::string marks;
+  if (!axis.privileges.empty())
+    marks = fmt::format("<sup><a href=\"#privileges\" title=\"given: {}\">†</a></sup>",
+                        html_text(joined(axis.privileges)));
+  if (axis.is_imported) marks += "<sup title=\"imported: by its own figures\">§</sup>";
+  return marks;
+}
+
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
-  const std::vector<Interval> intervals = score_intervals(c);
+  const Ladders ladders(c);
   const AllFields fields = all_found_fields(c);
-  Parts parts = common_parts(c, fields);
-  parts.merge(Parts{{"headline", head_html(document)},
-                    {"counted", std::string(counted_name(c))},
-                    {"unit", std::string(unit_name(c))},
-                    {"setting", std::string(setting_noun(c))},
-                    {"overview", overview_html(document)},
-                    {"endings", endings_html(c)},
-                    {"remarks", remarks_html(document)},
-                    {"standings", standings_html(c, intervals)},
-                    {"heat", heat_html(c)},
-                    {"profile", profile_html(c)},
-                    {"details", details_html(c)},
-                    {"figures", figures_html(document)},
-                    {"claims", claims_html(document)},
-                    {"methods", methods_html(c)},
-                    {"optimizers", optimizers_html(c)},
-                    {"legend", legend_html(c)},
-                    {"data", page_data(document, intervals, fields)}});
+  Parts parts{{"title", html_text(title_of(document))},
+              {"style", std::string(embedded_page_css()) + kind_rules(c)},
+              {"scripts", std::string(embedded_page_js())},
+              {"tau", tau_name(c)},
+              {"headline", head_html(document)},
+              {"counted", std::string(counted_name(c))},
+              {"unit", std::string(unit_name(c))},
+              {"setting", std::string(setting_noun(c))},
+              {"overview", alerts_html(document) + verdict_html(c) + settled_html(c)},
+              {"endings", endings_html(c)},
+              {"remarks", remarks_html(document)},
+              {"order", section_html(document.section("standings"))},
+              {"matrix", section_html(document.section("problems"))},
+              {"problems", problems_html(c, ladders, fields)},
+              {"profile", profile_html(c)},
+              {"details", details_html(c)},
+              {"figures", figures_html(document)},
+              {"claims", claims_html(document)},
+              {"methods", methods_html(c)},
+              {"optimizers", optimizers_html(c)},
+              {"legend", legend_html(c)},
+              {"data", page_data(document, ladders, fields)}};
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
-  return framed(embedded_page_html(), "Isoline report", "The page of a report.", std::move(parts));
+  return filled(embedded_page_html(), parts);
 }
 
 }  // namespace isoline::reports

@@ -3,8 +3,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "reports/page/svg.h"
 #include "reports/read/found_fields.h"
+#include "reports/read/ranking.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/standings.h"
 
@@ -14,29 +18,41 @@ std::string html_report(const Document& document);  // one file that asks nothin
 
 // A section as every other: sentences, plots, tables. Complete without scripts.
 std::string section_html(const Section& section);
-std::string plot_html(const Plot& plot);
-std::string plot_svg(const Plot& plot);
 
-// What the scripts redraw, and what no other format has.
-std::string overview_html(const Document& document);     // alerts, verdict, what is settled
-std::string endings_html(const Comparison& comparison);  // how the runs ended
-// With the intervals of scores, which the scripts draw too.
-std::string standings_html(const Comparison& comparison, const std::vector<Interval>& intervals);
-std::string heat_html(const Comparison& comparison);  // what each took on each problem, by kind
+// What no other format has.
 std::string details_html(const Comparison& comparison);
 // One article each, with what fields its runs keep.
-std::string problems_html(const Comparison& comparison, const AllFields& fields);
+std::string problems_html(const Comparison& comparison, const Ladders& ladders,
+                          const AllFields& fields);
 std::string methods_html(const Comparison& comparison);     // the grid of properties
 std::string optimizers_html(const Comparison& comparison);  // one article each
-std::string figures_html(const Document& document);
 std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
 
-// What the charts draw, as JSON that is safe inside a script element.
-std::string page_data(const Document& document, const std::vector<Interval>& intervals,
-                      const AllFields& fields);
-inline constexpr std::size_t kShownAtFirst = 12;  // of the standings; the others on demand
-std::string figures_json(const std::vector<Figure>& figures);
+// Drawings with their words.
+std::string curves_html(const Comparison& comparison, const Ladders& ladders, std::size_t problem);
+std::string planes_html(const Comparison& comparison, std::size_t problem);
+std::string figures_html(const Document& document);
+std::vector<std::size_t> first_lines(const Comparison& comparison, std::size_t problem);
+
+// Fields. Bytes 1 to 255, of which 128 is 0 and 255 twice `scale`: colours end at ±scale, and what
+// a difference of two may need is not lost before. Beyond twice the scale a value is cut.
+std::string field_bytes(const std::vector<float>& values, Real scale);
+std::string radix64(std::string_view bytes);  // RFC 4648, section 4
+// A byte a cell, painted by the scripts in the colours of a ramp, "grey" or "diverging".
+std::string canvas_html(std::string_view bytes, Index rows, Index columns, std::string_view ramp,
+                        std::string_view words);
+std::string fields_html(const Comparison& comparison, const FoundFields& all);
+std::string fields_json(const FoundFields& all);
+
+// The data of the scripts, as JSON that is safe inside a script element.
+std::string page_data(const Document& document, const Ladders& ladders, const AllFields& fields);
 std::string json_quoted(const std::string& text);
+// Those that the page can be switched to, in the order of its data.
+std::vector<Measure> measures_of(const Comparison& comparison);
+// Those of the 51 targets that the page holds medians to: all, but of a study too large for that
+// the tolerances of its report alone.
+std::vector<std::size_t> targets_of(const Comparison& comparison);
+Real tau_of(const Comparison& comparison);  // of the report
 
 // † tells what an optimizer sees that others do not, § that its figures are claims of others; empty
 // where neither holds.

@@ -22,47 +22,20 @@ function newSwitch(caption, choices, chosen, onChoose) {
   return group;
 }
 
-// Draws into a place anew, whatever it held before; `redraw.chart` is what stands there.
-function redrawer(place, draw) {
-  const redraw = () => {
-    redraw.chart?.destroy();
-    place.replaceChildren();
-    redraw.chart = draw(place);
-  };
-  return redraw;
+function isDark() {
+  const chosen = document.documentElement.dataset.theme;
+  return chosen ? chosen === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
 }
 
 function offerThemes(button) {
   const label = () => { button.textContent = isDark() ? 'Light' : 'Dark'; };
-  const redrawAll = () => { label(); refreshAll(); };
   button.hidden = false;
   label();
   button.addEventListener('click', () => {
     document.documentElement.dataset.theme = isDark() ? 'light' : 'dark';
-    redrawAll();
+    label();
   });
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
-}
-
-const shellWord = (text) => `'${text.replaceAll("'", "'\\''")}'`;
-
-// The command that repeats the runs of a row: problem, optimizer with all its options, seeds, budget.
-function commandOf(row, again, budgets) {
-  const [budget, seeds, ...optimizer] = again.split(' ');
-  return `./isoline run --problem ${shellWord(DATA.problems[Number(row.dataset.p)].asked)} ` +
-      `--optimizer ${shellWord(optimizer.join(' ') || DATA.labels[Number(row.dataset.s)])} --seeds ${seeds} ${budgets[Number(budget)]}`;
-}
-
-// To those of the table's rows that stand in the page.
-function offerCopies(table) {
-  const budgets = JSON.parse(table.dataset.budgets);
-  for (const cell of table.querySelectorAll('[data-again]')) {
-    if (cell.childElementCount > 0) continue;  // it has one
-    const button = pressable('copy', undefined, () => copyText(button.title, button));
-    button.className = 'copy';
-    button.title = commandOf(cell.parentElement, cell.dataset.again, budgets);
-    cell.append(button);
-  }
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', label);
 }
 
 async function copyText(text, button) {
@@ -80,22 +53,20 @@ ON_UNPACK.push((place) => {
   if (place.id !== 'cells') return;
   const table = place.querySelector('table'), wide = document.getElementById('wide');
   if (table === null) return;  // too many
-  countRows = makeFilter(document.getElementById('filter'), table, document.getElementById('shown'), () => offerCopies(table));
+  countRows = makeFilter(document.getElementById('filter'), table, document.getElementById('shown'));
   document.querySelector('.filter').hidden = false;
   wide.addEventListener('change', () => table.classList.toggle('wide', wide.checked));
 });
 
-// Buttons and plots of what was unpacked.
+// What was drawn of a place before it was unpacked was nothing.
 ON_UNPACK.push((place) => {
-  for (const button of place.querySelectorAll('[data-command]')) {
-    button.hidden = false;
-    button.addEventListener('click', () => copyText(button.dataset.command, button));
-  }
-  place.querySelectorAll('svg.dots').forEach((plot) => live(plot, () => closeRows(plot)));
-  if (LIVE.has(place)) {
-    STALE.add(place);  // what was drawn of it before was nothing
-    soon(place, () => refresh(place));
-  }
+  if (!LIVE.has(place)) return;
+  STALE.add(place);
+  soon(place, () => refresh(place));
+});
+document.addEventListener('click', ({target}) => {
+  const button = target.closest('[data-command]');
+  if (button !== null) copyText(button.dataset.command, button);
 });
 
 document.documentElement.classList.add('js');
@@ -106,7 +77,6 @@ document.querySelectorAll('table.sortable').forEach(makeSortable);
 liveOverview();
 livePair(document.getElementById('pair'));
 document.querySelectorAll('article.problem').forEach(liveProblem);
-document.querySelectorAll('figure.panel').forEach(liveFigure);
 FOLLOWERS.push(hideClaims, () => countRows());
 makeTabs();
 applyView();

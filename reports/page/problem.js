@@ -3,12 +3,7 @@
 
 const CHOSEN = new Map();  // the lines that a reader chose, by problem
 
-// The best two of this problem, and the best of each kind, unless chosen otherwise.
-function linesAtFirst(problem) {
-  const ranking = rankingOf(problem);
-  return new Set([...ranking.slice(0, 2), ...firstOfEachKind(ranking)]);
-}
-const linesShown = (p) => CHOSEN.get(p) ?? linesAtFirst(DATA.problems[p]);
+const linesShown = (p) => CHOSEN.get(p) ?? new Set(DATA.problems[p].lines);
 
 function showLines(p, lines) {
   CHOSEN.set(p, new Set(lines));
@@ -43,18 +38,12 @@ function figuresOf(problem, s, {low, most}) {
   return [taken, td(time === Infinity ? '' : String(time)), td(`${reachedOf(cell)}/${cell.reached.length}`)];
 }
 
-function legendRow(problem, s, ends, state, chart) {
-  const button = pressable(DATA.optimizers[s], state.visible.has(s), () => {
-    if (!state.visible.delete(s)) state.visible.add(s);
-    CHOSEN.set(DATA.problems.indexOf(problem), new Set(state.visible));
-    button.setAttribute('aria-pressed', state.visible.has(s));
-    state.redraw();
-  });
+function legendRow(problem, s, ends, isDrawn) {
+  const button = pressable(DATA.optimizers[s], isDrawn, () => {});
   button.className = 'name';
+  button.dataset.s = s;
   button.prepend(swatch(s));
   button.append(DATA.marks[s]);
-  for (const [event, lit] of [['pointerenter', s], ['pointerleave', undefined], ['focus', s], ['blur', undefined]])
-    button.addEventListener(event, () => chart(lit));
   const row = element('tr', {}, element('th', {scope: 'row'}, button, ...originOf(cellOf(problem, s))), ...figuresOf(problem, s, ends));
   row.dataset.s = s;
   return row;
@@ -67,19 +56,19 @@ function captionOf(problem, count, all) {
   return `Median ${measureNow().counted} to τ = ${tauName(view.target)}: ${count} of ${all} reach it. Press a name to draw or hide its line.`;
 }
 
-function drawLegend(place, problem, state, chart) {
+function drawLegend(place, problem, lines) {
   const ranking = rankingOf(problem), works = ranking.map((s) => takenBy(cellOf(problem, s))).filter((work) => work < Infinity);
   const ends = {low: works[0], most: works[works.length - 1]};
   const rows = ranking.map((s, i) => {
-    const row = legendRow(problem, s, ends, state, chart);
-    row.classList.toggle('rest', i >= MOST_ROWS && !state.visible.has(s));
+    const row = legendRow(problem, s, ends, lines.has(s));
+    row.classList.toggle('rest', i >= MOST_ROWS && !lines.has(s));
     return row;
   });
   const heads = problem.learned === undefined ? ['method', measureNow().name, 'ms', 'runs'] : ['method', 'error in x', 'loss', 'runs'];
   const table = element('table', {className: 'folded'}, element('caption', {}, captionOf(problem, works.length, ranking.length)),
       element('thead', {}, element('tr', {}, ...heads.map((text) => element('th', {scope: 'col'}, text)))), element('tbody', {}, ...rows));
   const choose = (lines) => () => showLines(DATA.problems.indexOf(problem), lines);
-  const presets = [pressable('one of each kind', undefined, choose(linesAtFirst(problem))), pressable('all lines', undefined, choose(ranking)),
+  const presets = [pressable('one of each kind', undefined, choose(problem.lines)), pressable('all lines', undefined, choose(ranking)),
     pressable('none', undefined, choose([]))];
   const rest = rows.filter((row) => row.classList.contains('rest')).length;
   if (rest > 0)
@@ -90,36 +79,32 @@ function drawLegend(place, problem, state, chart) {
   place.replaceChildren(element('div', {className: 'presets'}, ...presets), table);
 }
 
-// Built at the first call, drawn anew at each.
-function problemDrawer(article, problem) {
-  const aimed = problem.learned !== undefined || problem.goal !== undefined ? 'x_error' : 'gap';  // what its user wants
-  const hasError = problem.curves.some((curve) => curve.x_error !== undefined);
-  const state = {problem, visible: new Set(), vertical: hasError ? aimed : 'gap'};
-  const reading = article.querySelector('.reading'), curves = article.querySelector('.curves'), place = element('div');
-  const draws = [redrawer(place, () => drawCurves(place, state, reading.textContent))];
-  for (const plane of article.querySelectorAll('.plane'))
-    draws.push(redrawer(plane, () => drawPlane(plane, state, plane.dataset.space)));
-  const light = (index) => draws.forEach((draw) => highlight(draw.chart, index));
-  // The curves at once, the planes in frames of their own; on paper there is none.
-  const later = (draw) => (isPrinting ? draw() : soon(draw, draw));
-  state.redraw = () => draws.forEach((draw, i) => (i === 0 ? draw() : later(draw)));
-  if (hasError)
-    curves.append(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, state.vertical, (value) => { state.vertical = value; draws[0](); }));
-  curves.append(place);
-  return () => {
-    state.visible = new Set(linesShown(DATA.problems.indexOf(problem)));
-    drawLegend(article.querySelector('.reached'), problem, state, light);
-    state.redraw();
-  };
+// The chart of the measure and the quantity chosen, with the lines chosen; the others wait hidden.
+function drawProblem(article) {
+  const p = Number(article.dataset.p), problem = DATA.problems[p], lines = linesShown(p), {vertical} = article.dataset;
+  const charts = [...article.querySelectorAll('.curves > .chart')], by = charts.some((chart) => chart.dataset.by === measureNow().name) ? measureNow().name : DATA.by;
+  for (const chart of charts) {
+    chart.toggleAttribute('hidden', chart.dataset.by !== by || chart.dataset.vertical !== vertical);
+    moveTolerance(chart);
+  }
+  drawLegend(article.querySelector('.reached'), problem, lines);
+  showLinesIn(article, lines);
 }
 
 function liveProblem(article) {
-  const problem = DATA.problems[Number(article.dataset.p)];
-  if (problem.curves.length === 0) return;
-  let draw;
   live(article, () => {
-    if (article.querySelector('.curves') === null) return;  // it was not opened yet
-    draw ??= problemDrawer(article, problem);
-    draw();
+    const curves = article.querySelector('.curves');
+    if (curves?.firstElementChild) drawProblem(article);  // else it was not opened yet, or nothing ran
   });
 }
+
+ON_UNPACK.push((article) => {
+  const own = article.querySelector('.curves > .chart:not([hidden])');
+  if (own === null) return;
+  article.dataset.vertical = own.dataset.vertical;
+  if (article.querySelector('.chart[data-vertical=x_error]') !== null)
+    own.parentElement.prepend(newSwitch('show', {gap: 'loss', x_error: 'error in x'}, own.dataset.vertical, (value) => {
+      article.dataset.vertical = value;
+      drawProblem(article);
+    }));
+});

@@ -18,6 +18,11 @@
 namespace isoline::reports {
 namespace {
 
+// Copies it, by a script.
+std::string command_button(const std::string& command) {
+  return fmt::format("<button class=copy data-command=\"{}\">copy</button>", html_text(command));
+}
+
 // What an element is about, as attributes by which the page filters.
 std::string about(const std::vector<Topic>& topics, std::size_t i) {
   if (i >= topics.size()) return "";
@@ -168,10 +173,8 @@ std::string readings_html(const Section& claim) {
   for (const Reading& reading : claim.readings)
     html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
   if (!claim.command.empty())
-    html += fmt::format(
-        "<dt>To repeat it<dd><code>{0}</code> <button class=copy type=button "
-        "data-command=\"{0}\" hidden>copy</button>",
-        html_text(claim.command));
+    html += fmt::format("<dt>To repeat it<dd><code>{}</code> {}", html_text(claim.command),
+                        command_button(claim.command));
   return html + "</dl>\n";
 }
 
@@ -220,36 +223,26 @@ std::string time_cell(const Spread& seconds, bool is_timed_alone) {
                      range.empty() ? "" : "<small>" + range + "</small>");
 }
 
-// "0..2", where the seeds of a cell follow each other and were asked for alike; else the first.
-std::string seeds_of(const Comparison& c, const Cell& cell) {
+// The command that repeats a cell: all its seeds where these follow each other and were asked for
+// alike, else the first.
+std::string cell_command(const Comparison& c, const Cell& cell) {
   const Request& first = c.runs[cell.runs.front()].record->request;
   std::uint64_t next = first.seed;
   for (const std::size_t run : cell.runs) {
     const Request& request = c.runs[run].record->request;
     const bool is_alike = request.optimizer.spec == first.optimizer.spec &&
                           budget_options(request) == budget_options(first);
-    if (request.seed != next++ || !is_alike) return fmt::format("={}", first.seed);
+    if (request.seed != next++ || !is_alike) return rerun_command(first);
   }
-  const std::uint64_t last = next - 1;
-  return first.seed == last ? fmt::format("={}", last) : fmt::format("{}..{}", first.seed, last);
+  const std::string one = fmt::format("--seeds ={} ", first.seed);
+  std::string command = rerun_command(first);
+  if (next - 1 > first.seed)
+    command.replace(command.find(one), one.size(),
+                    fmt::format("--seeds {}..{} ", first.seed, next - 1));
+  return command;
 }
 
-// What the command that repeats a cell has of its own, for scripts to put together: which budget,
-// the seeds, and the optimizer where its name in the row is not its spec.
-std::string again_cell(const Comparison& c, const Cell& cell, std::size_t s,
-                       std::vector<std::string>& budgets) {
-  const Request& request = c.runs[cell.runs[0]].record->request;
-  const std::string budget = budget_options(request), &spec = request.optimizer.spec;
-  const auto at = std::ranges::find(budgets, budget);
-  const auto place = at - budgets.begin();
-  if (at == budgets.end()) budgets.push_back(budget);
-  const bool is_shown = shown_spec(c.optimizers[s].brief) == spec;
-  return fmt::format("<td data-again=\"{} {}{}\">", place, seeds_of(c, cell),
-                     is_shown ? "" : " " + html_text(spec));
-}
-
-std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
-                       std::vector<std::string>& budgets) {
+std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   std::string row = fmt::format(
       "<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, html_text(problem_name(c.problems[p])),
@@ -268,8 +261,8 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s,
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     row += time_cell(cell.taken[Measure::time][t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
-  return row +
-         fmt::format("<td>{}{}\n", status_text(cell.statuses), again_cell(c, cell, s, budgets));
+  return row + fmt::format("<td>{}<td>{}\n", status_text(cell.statuses),
+                           command_button(cell_command(c, cell)));
 }
 
 }  // namespace
@@ -282,17 +275,13 @@ std::string details_html(const Comparison& c) {
         "in report.csv.</p>",
         kMost);
   std::string rows;
-  std::vector<std::string> budgets;
   for (std::size_t p = 0; p < c.problems.size(); ++p)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s, budgets);
-  std::vector<std::string> quoted;
-  for (const std::string& budget : budgets) quoted.push_back(json_quoted(budget));
+      if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s);
   std::string html = fmt::format(
-      "<table class=sortable id=detail-table data-budgets=\"{}\"><thead><tr><th "
-      "scope=col>problem<th scope=col>"
+      "<table class=sortable id=detail-table><thead><tr><th scope=col>problem<th scope=col>"
       "optimizer<th scope=col>runs<br>to {}",
-      html_text("[" + joined(quoted) + "]"), tau_name(c));
+      tau_name(c));
   const std::string_view counted =
       c.yardstick.by == Measure::time ? "work" : name_of(c.yardstick.by);
   for (const std::string_view what : {counted, std::string_view("time, ms,")})

@@ -1,4 +1,4 @@
-// Axes as SVG.
+// Axes, lines, dots and bars as SVG; colours and dashes are in page.css.
 #include "reports/page/svg.h"
 
 #include <fmt/format.h>
@@ -9,16 +9,20 @@
 #include <limits>
 
 #include "reports/formats/escape.h"
-#include "reports/page/page.h"
-#include "reports/sections/figures.h"
+#include "reports/page/kinds.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
-Real share_of(Real value, Real low, Real high) {
-  if (!(high > low)) return 0;
-  return std::clamp((value - low) / (high - low), 0.0, 1.0);
+constexpr Real kArea = 5'000, kBeyond = 4;  // lines go as many times the area beyond it
+
+Real share_of(Real value, Real low, Real high, bool is_log) {
+  if (!(high > low) || std::isnan(value)) return 0;
+  if (is_log && !(value > 0)) return 0;
+  const Real share =
+      is_log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+  return std::clamp(share, -kBeyond, kBeyond);
 }
 
 std::string tick_text(Real value) {
@@ -29,18 +33,9 @@ std::string tick_text(Real value) {
 
 }  // namespace
 
-Real Frame::x(Real value) const {
-  if (is_log_x)
-    return left +
-           width * share_of(std::log(std::max(value, x_low)), std::log(x_low), std::log(x_high));
-  return left + width * share_of(value, x_low, x_high);
-}
-
+Real Frame::x(Real value) const { return left + width * share_of(value, x_low, x_high, is_log_x); }
 Real Frame::y(Real value) const {
-  if (is_log_y)
-    return bottom() -
-           height * share_of(std::log(std::max(value, y_low)), std::log(y_low), std::log(y_high));
-  return bottom() - height * share_of(value, y_low, y_high);
+  return bottom() - height * share_of(value, y_low, y_high, is_log_y);
 }
 
 std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
@@ -69,232 +64,297 @@ std::vector<Real> ticks_of(Real low, Real high, bool is_logarithmic) {
   return ticks;
 }
 
-namespace {
-
-// 1, 2 and 5 times the powers of ten within two decades, else the powers alone.
-std::vector<Real> heights_of(const Frame& frame) {
-  constexpr Real kNear = 100;
-  if (!frame.is_log_y || frame.y_high > kNear * frame.y_low)
-    return ticks_of(frame.y_low, frame.y_high, frame.is_log_y);
-  std::vector<Real> ticks;
-  Real power = std::pow(10.0, std::floor(std::log10(frame.y_low)));
-  for (int decade = 0; decade <= 3; ++decade) {
-    for (const Real digit : {1, 2, 5})
-      if (digit * power >= frame.y_low && digit * power <= frame.y_high)
-        ticks.push_back(digit * power);
-    power *= 10;
-  }
-  return ticks;
-}
-
-}  // namespace
-
 std::string x_axis(const Frame& frame, const std::string& label) {
   std::string svg;
   for (const Real tick : ticks_of(frame.x_low, frame.x_high, frame.is_log_x))
     svg += fmt::format(
         "<path class=grid d=\"M{0:.1f} {1:.0f}V{2:.0f}\"/><text x={0:.1f} y={3:.0f} "
-        "class=tick text-anchor=middle>{4}</text>",
-        frame.x(tick), frame.top, frame.bottom(), frame.bottom() + 14, tick_text(tick));
-  return svg + fmt::format("<text x={:.0f} y={:.0f} class=tick text-anchor=middle>{}</text>",
-                           frame.left + frame.width / 2, frame.bottom() + 30, html_text(label));
+        "text-anchor=middle>{4}</text>",
+        frame.x(tick), frame.top, frame.bottom(), frame.bottom() + 15, tick_text(tick));
+  return svg + fmt::format("<text x={:.0f} y={:.0f} text-anchor=middle>{}</text>",
+                           frame.left + frame.width / 2, frame.bottom() + 31, html_text(label));
 }
 
 std::string y_axis(const Frame& frame, const std::string& label, bool is_share) {
   std::string svg;
-  for (const Real tick : heights_of(frame)) {
-    if (is_share && std::lround(10 * tick) % 2 != 0) continue;
+  for (const Real tick : ticks_of(frame.y_low, frame.y_high, frame.is_log_y))
     svg += fmt::format(
-        "<path class=grid d=\"M{0:.0f} {1:.1f}H{2:.0f}\"/><text x={3:.0f} y={4:.1f} class=tick "
+        "<path class=grid d=\"M{0:.0f} {1:.1f}H{2:.0f}\"/><text x={3:.0f} y={4:.1f} "
         "text-anchor=end>{5}</text>",
         frame.left, frame.y(tick), frame.right(), frame.left - 6, frame.y(tick) + 4,
-        is_share ? percent(tick) : figure(tick));
-  }
-  return svg + fmt::format("<text x={:.0f} y={:.0f} class=tick>{}</text>", frame.left,
-                           frame.top - 8, html_text(label));
+        is_share ? percent(tick) : tick_text(tick));
+  return svg + fmt::format("<text x=4 y={:.0f}>{}</text>", frame.top - 8, html_text(label));
 }
 
-// Draws lines with their bands, and a bar where a published value says a line should be.
+// Lines.
 
 namespace {
 
-// Narrow, so that its letters can be read on a telephone.
-constexpr Real kWidth = 480, kHeight = 300, kLeft = 58, kTop = 26, kRight = 18, kBelow = 40;
-constexpr std::size_t kFewPoints = 16;  // are marked
+constexpr Real kLeft = 62, kTop = 26, kBelow = 40, kNameWidth = 150;
 
-Frame frame_of(const Plot& plot) {
-  const Window window = window_of(plot);
-  return {.left = kLeft,
-          .top = kTop,
-          .width = kWidth - kLeft - kRight,
-          .height = kHeight - kTop - kBelow,
-          .x_low = window.x_low,
-          .x_high = window.x_high,
-          .y_low = window.y_low,
-          .y_high = window.y_high,
-          .is_log_x = plot.is_log_x,
-          .is_log_y = plot.is_log_y};
+bool is_hidden(const Drawing& drawing, const PlotSeries& line) {
+  return line.optimizer && drawing.on_demand.contains(*line.optimizer);
 }
 
-// "M1 2L3 4", with a gap where there is no number.
-std::string path_of(const Frame& frame, const std::vector<Real>& x, const std::vector<Real>& y) {
+// Narrow where names stand below, so that letters can be read on a telephone.
+Frame frame_of(const Drawing& drawing) {
+  const Real width = drawing.has_names ? 760 : 480, height = drawing.has_names ? 380 : 300;
+  const Plot& plot = drawing.plot;
+  Frame frame{.left = kLeft,
+              .top = kTop,
+              .width = width - kLeft - (drawing.has_names ? kNameWidth : 16),
+              .height = height - kTop - kBelow,
+              .is_log_x = plot.is_log_x,
+              .is_log_y = plot.is_log_y};
+  Plot shown = plot;
+  std::erase_if(shown.series, [&](const PlotSeries& line) { return is_hidden(drawing, line); });
+  Window window = drawing.window.value_or(window_of(shown.series.empty() ? plot : shown));
+  if (plot.kind == Plot::Kind::steps && !drawing.window)
+    window = {plot.series[0].x.front(), plot.series[0].x.back(), 0, 1};
+  if (drawing.is_to_scale) {
+    const Real unit = std::max((window.x_high - window.x_low) / frame.width,
+                               (window.y_high - window.y_low) / frame.height);
+    const Real x = (window.x_low + window.x_high) / 2, y = (window.y_low + window.y_high) / 2;
+    window = {x - unit * frame.width / 2, x + unit * frame.width / 2, y - unit * frame.height / 2,
+              y + unit * frame.height / 2};
+  }
+  frame.x_low = window.x_low;
+  frame.x_high = window.x_high;
+  frame.y_low = window.y_low;
+  frame.y_high = window.y_high;
+  return frame;
+}
+
+// The same window in the coordinates of the area.
+Frame area_of(Frame frame) {
+  frame.left = frame.top = 0;
+  frame.width = frame.height = kArea;
+  return frame;
+}
+
+// Relative and whole, since a page has many: "M1 2h3v4", with a gap where there is no number.
+std::string path_of(const Frame& area, const std::vector<Real>& x, const std::vector<Real>& y,
+                    Join join) {
   std::string path;
+  std::int64_t last_x = 0, last_y = 0;
   bool is_down = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const bool is_number = !std::isnan(y[i]);
-    if (is_number)
-      path += fmt::format("{}{:.0f} {:.1f}", is_down ? 'L' : 'M', frame.x(x[i]), frame.y(y[i]));
+    const bool is_number = !std::isnan(x[i]) && !std::isnan(y[i]);
+    if (is_number) {
+      const std::int64_t at_x = std::llround(area.x(x[i])), at_y = std::llround(area.y(y[i]));
+      const std::int64_t across = at_x - last_x, up = at_y - last_y;
+      if (!is_down || join == Join::none)
+        path += fmt::format("M{} {}{}", at_x, at_y, join == Join::none ? "h0" : "");
+      else if (join == Join::straight)
+        path += fmt::format("l{}{}{}", across, up < 0 ? "" : " ", up);
+      else if (across != 0 || up != 0)
+        path += (across != 0 ? fmt::format("h{}", across) : "") +
+                (up != 0 ? fmt::format("v{}", up) : "");
+      last_x = at_x;
+      last_y = at_y;
+    }
     is_down = is_number;
   }
   return path;
 }
 
-std::string band_of(const Frame& frame, const PlotSeries& line) {
-  std::vector<Real> x, y;
-  for (std::size_t i = 0; i < line.x.size(); ++i)
+std::string band_of(const Frame& area, const PlotSeries& line, Join join) {
+  std::vector<Real> x, low, high;
+  for (std::size_t i = 0; i < line.low.size(); ++i)
     if (!std::isnan(line.low[i]) && !std::isnan(line.high[i])) {
       x.push_back(line.x[i]);
-      y.push_back(line.high[i]);
+      low.push_back(line.low[i]);
+      high.push_back(line.high[i]);
     }
-  for (std::size_t i = line.x.size(); i-- > 0;)
-    if (!std::isnan(line.low[i]) && !std::isnan(line.high[i])) {
-      x.push_back(line.x[i]);
-      y.push_back(line.low[i]);
+  if (x.empty()) return "";
+  if (join == Join::steps) {  // a stair back from its end turns before its steps, not after
+    std::vector<Real> stair_x, stair_low;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (i > 0) {
+        stair_x.push_back(x[i]);
+        stair_low.push_back(low[i - 1]);
+      }
+      stair_x.push_back(x[i]);
+      stair_low.push_back(low[i]);
     }
-  return x.empty() ? "" : fmt::format("<path class=band d=\"{}Z\"/>", path_of(frame, x, y));
+    std::ranges::reverse(stair_x);
+    std::ranges::reverse(stair_low);
+    std::string back = path_of(area, stair_x, stair_low, Join::straight);
+    back[0] = 'L';
+    return fmt::format("<path class=band d=\"{}{}Z\"/>", path_of(area, x, high, join), back);
+  }
+  for (std::size_t i = x.size(); i-- > 0;) {
+    x.push_back(x[i]);
+    high.push_back(low[i]);
+  }
+  return fmt::format("<path class=band d=\"{}Z\"/>", path_of(area, x, high, Join::straight));
 }
 
-std::string line_svg(const Frame& frame, const PlotSeries& line, std::size_t place) {
-  std::string svg = fmt::format("<g class=c{}>", place % 8);
-  if (!line.low.empty() && line.low != line.high) svg += band_of(frame, line);
-  svg += fmt::format("<path class=line d=\"{}\"><title>{}</title></path>",
-                     path_of(frame, line.x, line.y), html_text(line.name));
-  for (std::size_t i = 0; i < line.x.size() && line.x.size() <= kFewPoints; ++i)
-    if (std::isfinite(line.y[i]))
-      svg += fmt::format("<circle cx={:.0f} cy={:.1f} r=3><title>{}: {}</title></circle>",
-                         frame.x(line.x[i]), frame.y(line.y[i]), html_text(line.name),
-                         figure(line.y[i]));
+// What is filtered with an optimizer, a problem or a method.
+std::string topic_attributes(const Topic& topic) {
+  std::string tag;
+  if (topic.optimizer) tag += fmt::format(" data-s={}", *topic.optimizer);
+  if (topic.problem) tag += fmt::format(" data-p={}", *topic.problem);
+  if (!topic.method.empty()) tag += fmt::format(" data-method=\"{}\"", html_text(topic.method));
+  return tag;
+}
+
+// Which line a button is of: of an optimizer in all drawings the same.
+std::string line_attributes(const PlotSeries& line, std::size_t place, std::string classes) {
+  if (!line.optimizer) classes += fmt::format("{}c{}", classes.empty() ? "" : " ", place % 8);
+  return fmt::format(" data-{}={}{}", line.optimizer ? "s" : "line", line.optimizer.value_or(place),
+                     classes.empty()    ? ""
+                     : classes == "off" ? " class=off"
+                                        : fmt::format(" class=\"{}\"", classes));
+}
+
+std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t place) {
+  constexpr std::size_t kFewPoints = 16;  // are marked
+  const PlotSeries& line = drawing.plot.series[place];
+  const bool is_off = is_hidden(drawing, line);
+  std::string svg = fmt::format("<g{}>", line_attributes(line, place, is_off ? "off" : ""));
+  if (!line.low.empty() && line.low != line.high && !is_off)
+    svg += band_of(area, line, drawing.join);
+  std::string path = path_of(area, line.x, line.y, drawing.join);
+  if (drawing.plot.kind == Plot::Kind::steps) path += fmt::format("H{:.0f}", kArea);
+  if (drawing.join == Join::none)
+    svg += fmt::format("<path class=\"line points\" d=\"{}\"", path);
+  else
+    svg += fmt::format("<path class=line d=\"{}\"", path);
+  // What the scripts show later they mark and name.
+  svg += is_off ? "/>" : fmt::format("><title>{}</title></path>", html_text(line.name));
+  const bool are_few = drawing.join == Join::straight && line.x.size() <= kFewPoints;
+  if (!is_off && (drawing.has_points || are_few))
+    svg += fmt::format("<path class=points d=\"{}\"/>", path_of(area, line.x, line.y, Join::none));
   return svg + "</g>";
 }
 
-// A bar over the values that agree, crossed at the published one; a band along a line otherwise.
-std::string published_svg(const Frame& frame, const PlotSeries& goal) {
-  if (goal.x.size() > 1)
-    return fmt::format(
-        "<g class=goal>{}{}</g>", band_of(frame, goal),
-        goal.y.empty()
-            ? fmt::format("<path class=line d=\"M{0:.0f} {1:.0f}V{2:.0f}\"/>",
-                          frame.x(goal.x[goal.x.size() / 2]), frame.top, frame.bottom())
-            : fmt::format("<path class=line d=\"{}\"/>", path_of(frame, goal.x, goal.y)));
-  constexpr Real kHalf = 7, kCross = 12, kThinnest = 2;
-  const Real x = frame.x(goal.x[0]), top = frame.y(goal.high[0]);
-  return fmt::format(
-      "<g class=goal><rect class=band x={:.0f} y={:.1f} width={:.0f} height={:.1f} /><path "
-      "class=line d=\"M{:.0f} {:.1f}h{:.0f}\"/><title>published: {} ({} to {})</title></g>",
-      x - kHalf, top, 2 * kHalf, std::max(kThinnest, frame.y(goal.low[0]) - top), x - kCross,
-      frame.y(goal.y[0]), 2 * kCross, figure(goal.y[0]), figure(goal.low[0]), figure(goal.high[0]));
+// A bar over the values that agree, with the published one on it; a band along a line otherwise.
+std::string published_svg(const Frame& area, const PlotSeries& goal) {
+  std::string svg = "<g class=goal>";
+  if (goal.x.size() > 1) {
+    svg += band_of(area, goal, Join::straight);
+    svg += fmt::format("<path class=line d=\"{}\"/>",
+                       goal.y.empty() ? fmt::format("M{:.0f} 0v{:.0f}", area.x(goal.x[1]), kArea)
+                                      : path_of(area, goal.x, goal.y, Join::straight));
+    return svg + "</g>";
+  }
+  const Real x = area.x(goal.x[0]);
+  std::string ends;
+  if (std::isfinite(goal.low[0]) && std::isfinite(goal.high[0])) {
+    svg += fmt::format("<path class=span d=\"M{:.0f} {:.0f}V{:.0f}\"/>", x, area.y(goal.low[0]),
+                       area.y(goal.high[0]));
+    ends = fmt::format(" ({} to {})", figure(goal.low[0]), figure(goal.high[0]));
+  }
+  return svg + fmt::format(
+                   "<path class=points d=\"M{:.0f} {:.0f}h0\"><title>published, {}: {}{}</title>"
+                   "</path></g>",
+                   x, area.y(goal.y[0]), html_text(goal.name), figure(goal.y[0]), ends);
 }
 
-std::string legend_entry(const std::string& kind, const std::string& name) {
-  return fmt::format(
-      "<span class={}><svg class=swatch viewBox=\"0 0 26 8\" aria-hidden=true><path class=line "
-      "d=\"M0 4h26\"/></svg> {}</span> ",
-      kind, html_text(name));
+// Names at the ends of the lines that are shown, each below those above it that it would meet.
+std::string end_names(const Drawing& drawing, const Frame& frame) {
+  constexpr Real kHeight = 14, kLetter = 6.4;
+  constexpr std::size_t kLongest = 24;
+  struct End {
+    Real x, y, width;
+    std::size_t place;
+    std::string text;
+  };
+  std::vector<End> ends;
+  for (std::size_t i = 0; i < drawing.plot.series.size(); ++i) {
+    const PlotSeries& line = drawing.plot.series[i];
+    std::size_t last = line.y.size();
+    while (last > 0 && !std::isfinite(line.y[last - 1])) --last;
+    if (last == 0 || is_hidden(drawing, line)) continue;
+    std::string text = line.name;
+    if (text.size() > kLongest) text = text.substr(0, kLongest - 1) + "…";
+    const Real x = drawing.plot.kind == Plot::Kind::steps ? frame.x_high : line.x[last - 1];
+    ends.push_back({std::min(frame.x(x), frame.right()) + 6,
+                    std::clamp(frame.y(line.y[last - 1]), frame.top, frame.bottom()),
+                    kLetter * static_cast<Real>(text.size()), i, text});
+  }
+  std::ranges::sort(ends, {}, &End::y);
+  std::vector<const End*> placed;
+  std::string svg;
+  for (End& end : ends) {
+    for (const End* other : placed)
+      if (end.x < other->x + other->width && other->x < end.x + end.width &&
+          std::abs(end.y - other->y) < kHeight)
+        end.y = other->y + kHeight;
+    placed.push_back(&end);
+    std::ranges::sort(placed, {}, [](const End* one) { return one->y; });
+    svg += fmt::format("<text x={:.0f} y={:.0f}{}>{}</text>", end.x, end.y + 4,
+                       line_attributes(drawing.plot.series[end.place], end.place, ""),
+                       html_text(end.text));
+  }
+  return "<g class=ends>" + svg + "</g>";
+}
+
+std::string axis_attribute(Real low, Real high, bool is_log, bool is_share) {
+  return fmt::format("{:.6g} {:.6g} {}", low, high, is_log ? "log" : is_share ? "share" : "linear");
 }
 
 }  // namespace
 
-std::string lines_svg(const Plot& plot) {
-  const Frame frame = frame_of(plot);
-  std::string svg =
-      fmt::format("<svg class=lines viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\">",
-                  kWidth, kHeight, html_text(plot.title + ". " + plot.caption));
-  svg += x_axis(frame, plot.x_label) + y_axis(frame, plot.y_label, false);
+std::string drawing_svg(const Drawing& drawing, Real tau) {
+  const Plot& plot = drawing.plot;
+  const Frame frame = frame_of(drawing), area = area_of(frame);
+  const bool is_share = plot.kind == Plot::Kind::steps;
+  std::string svg = fmt::format(
+      "<svg class=\"chart{}\" viewBox=\"0 0 {:.0f} {:.0f}\" data-x=\"{}\" data-y=\"{}\"{} role=img "
+      "aria-label=\"{}\"><title>{}</title><g class=axes>{}{}</g>",
+      drawing.has_names ? drawing.has_points ? " wide marked" : " wide" : "",
+      frame.right() + (drawing.has_names ? kNameWidth : 16), frame.bottom() + kBelow,
+      axis_attribute(frame.x_low, frame.x_high, plot.is_log_x, false),
+      axis_attribute(frame.y_low, frame.y_high, plot.is_log_y, is_share), drawing.attributes,
+      html_text(plot.title + ". " + plot.reading + plot.caption), html_text(plot.title),
+      x_axis(frame, plot.x_label), y_axis(frame, plot.y_label, is_share));
+  svg += fmt::format(
+      "<svg class=area x={:.0f} y={:.0f} width={:.0f} height={:.0f} viewBox=\"0 0 {:.0f} {:.0f}\" "
+      "preserveAspectRatio=none>",
+      frame.left, frame.top, frame.width, frame.height, kArea, kArea);
+  for (const PlotSeries& line : drawing.ground)
+    svg +=
+        fmt::format("<path class=ground d=\"{}\"/>", path_of(area, line.x, line.y, Join::straight));
+  if (drawing.tolerance)
+    svg += fmt::format("<path class=tau data-scale={:.6g} d=\"M{:.0f} {:.0f}h{:.0f}\"/>",
+                       *drawing.tolerance, -kBeyond * kArea, area.y(*drawing.tolerance * tau),
+                       2 * kBeyond * kArea);
   for (std::size_t i = plot.series.size(); i-- > 0;)  // the first on top
-    svg += line_svg(frame, plot.series[i], i);
-  for (const PlotSeries& goal : plot.published) svg += published_svg(frame, goal);
-  return svg + "</svg>";
+    svg += series_svg(drawing, area, i);
+  for (const PlotSeries& goal : plot.published) svg += published_svg(area, goal);
+  for (const PlotSeries& end : drawing.ends)
+    svg += fmt::format(
+        "<g class=end><path d=\"{0}\"/><path class={1} d=\"{0}\"><title>{1}</title></path></g>",
+        path_of(area, end.x, end.y, Join::none), html_text(end.name));
+  return svg + "</svg>" + (drawing.has_names ? end_names(drawing, frame) : "") + "</svg>";
 }
 
-std::string lines_legend(const Plot& plot) {
-  std::string html = "<p class=marks>";
-  for (std::size_t i = 0; i < plot.series.size(); ++i)
-    html += legend_entry(fmt::format("c{}", i % 8), plot.series[i].name);
-  if (!plot.published.empty()) html += legend_entry("goal", "published");
+std::string names_html(const Drawing& drawing) {
+  std::string html = "<p class=names>";
+  for (std::size_t i = 0; i < drawing.plot.series.size(); ++i) {
+    const PlotSeries& line = drawing.plot.series[i];
+    html += fmt::format("<button type=button aria-pressed={}{}>{}{}</button>",
+                        !is_hidden(drawing, line), line_attributes(line, i, "name"), swatch(),
+                        html_text(line.name));
+  }
+  if (!drawing.plot.published.empty())
+    html += fmt::format("<span class=goal>{} published, with its error</span>", swatch());
   return html + "</p>";
 }
 
-// Draws the plots of the statistics as static SVG; colours and dashes are in page/plots.css.
+// Dots and bars, a row each.
 
 namespace {
 
-constexpr Real kPlotWidth = 720, kNames = 190, kRow = 18, kPlotTop = 26, kPlotBelow = 40;
+constexpr Real kPlotWidth = 720, kNames = 190, kRow = 18, kPlotTop = 26;
 constexpr const char* kMarks[] = {"●", "■", "▲", "◆", "▼", "○", "□", "△"};
 
-// Shapes, so that colour is not needed to tell series apart.
-std::string mark_of(std::size_t place) { return kMarks[place % std::size(kMarks)]; }
-
-// The place among marks and colours: of the optimizer, where it is one, in every plot the same.
-std::size_t place_of(const Plot& plot, std::size_t series) {
-  return plot.series[series].optimizer.value_or(series);
-}
-
-// What is filtered with an optimizer, a problem or a method.
-std::string opened(const Topic& topic, std::optional<std::size_t> colour = std::nullopt) {
-  std::string tag = "<g";
-  if (topic.optimizer) tag += fmt::format(" data-s={}", *topic.optimizer);
-  if (topic.problem) tag += fmt::format(" data-p={}", *topic.problem);
-  if (!topic.method.empty()) tag += fmt::format(" data-method=\"{}\"", html_text(topic.method));
-  if (colour && !topic.optimizer) tag += fmt::format(" class=c{}", *colour % 8);
-  return tag + ">";
-}
-
-// y(x) from each x on; backwards from its end where `is_back`.
-std::string steps(const Frame& frame, const PlotSeries& line, const std::vector<Real>& y,
-                  bool is_back) {
-  std::string path;
-  const std::size_t n = line.x.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t i = is_back ? n - 1 - k : k;
-    const Real right = frame.x(i + 1 < n ? line.x[i + 1] : frame.x_high);
-    if (is_back)
-      path += fmt::format("L{:.1f} {:.1f}H{:.1f}", right, frame.y(y[i]), frame.x(line.x[i]));
-    else if (i == 0)
-      path += fmt::format("M{:.1f} {:.1f}H{:.1f}", frame.x(line.x[0]), frame.y(y[0]), right);
-    else
-      path += fmt::format("V{:.1f}H{:.1f}", frame.y(y[i]), right);
-  }
-  return path;
-}
-
-std::string line_svg(const Frame& frame, const Plot& plot, std::size_t place) {
-  const PlotSeries& line = plot.series[place];
-  std::string svg = opened({.optimizer = line.optimizer}, place_of(plot, place));
-  if (!line.low.empty())
-    svg += fmt::format("<path class=band d=\"{}{}Z\"/>", steps(frame, line, line.high, false),
-                       steps(frame, line, line.low, true));
-  svg += fmt::format("<path class=line d=\"{}\"><title>{}</title></path>",
-                     steps(frame, line, line.y, false), html_text(line.name));
-  const Real y = frame.top + 12 + kRow * static_cast<Real>(place);
-  return svg +
-         fmt::format(
-             "<path class=line d=\"M{:.0f} {:.0f}h24\"/><text x={:.0f} y={:.0f}>{}</text></g>",
-             frame.right() + 14, y - 4, frame.right() + 44, y, html_text(line.name));
-}
-
-std::string steps_svg(const Plot& plot) {
-  const auto& x = plot.series[0].x;
-  const Frame frame{.left = 46,
-                    .top = kPlotTop,
-                    .width = kPlotWidth - 46 - kNames - 20,
-                    .height = 250,
-                    .x_low = x.front(),
-                    .x_high = x.back(),
-                    .is_log_x = plot.is_log_x};
-  std::string svg = x_axis(frame, plot.x_label) + y_axis(frame, plot.y_label, true);
-  for (std::size_t i = plot.series.size(); i-- > 0;)  // the first on top
-    svg += line_svg(frame, plot, i);
-  return svg;
+// Shapes, so that colour is not needed to tell series apart; of an optimizer in every plot the
+// same.
+std::string mark_of(const PlotSeries& series, std::size_t place) {
+  return kMarks[series.optimizer.value_or(place) % std::size(kMarks)];
 }
 
 // The finite numbers of bars or dots, from the least to the greatest.
@@ -328,29 +388,29 @@ Frame rows_frame(const Plot& plot) {
           .is_log_x = plot.is_log_x};
 }
 
-std::string row_name(const Plot& plot, const Frame& frame, std::size_t row) {
-  return fmt::format("<text x={:.0f} y={:.0f} text-anchor=end>{}</text>", frame.left - 8,
+std::string row_opened(const Plot& plot, const Frame& frame, std::size_t row) {
+  return fmt::format("<g{}><text x={:.0f} y={:.0f} text-anchor=end>{}</text>",
+                     topic_attributes(plot.rows[row].topic), frame.left - 8,
                      frame.top + kRow * (static_cast<Real>(row) + 0.7),
                      html_text(plot.rows[row].name));
 }
 
 // The mark of one series in a row, with its interval where it has one.
-std::string dot_svg(const Frame& frame, const Plot& plot, std::size_t s, std::size_t i,
+std::string dot_svg(const Frame& frame, const PlotSeries& series, std::size_t place, std::size_t i,
                     Real shift) {
-  const PlotSeries& series = plot.series[s];
   const Real y = frame.top + kRow * (series.y[i] + 0.5) + shift;
-  std::string svg = opened({.optimizer = series.optimizer}, place_of(plot, s));
-  std::string range;
+  const auto x = [&](Real value) { return std::clamp(frame.x(value), frame.left, frame.right()); };
+  std::string svg = fmt::format("<g{}>", line_attributes(series, place, "")), range;
   if (!series.low.empty()) {
-    svg += fmt::format("<path class=whisker d=\"M{:.1f} {:.1f}H{:.1f}\"/>", frame.x(series.low[i]),
-                       y, frame.x(series.high[i]));
+    svg += fmt::format("<path class=whisker d=\"M{:.1f} {:.1f}H{:.1f}\"/>", x(series.low[i]), y,
+                       x(series.high[i]));
     range = fmt::format(" [{}–{}]", reached_figure(series.low[i]), reached_figure(series.high[i]));
   }
   return svg + fmt::format(
                    "<text class=mark x={:.1f} y={:.1f} text-anchor=middle>{}<title>{}: {}{}"
                    "</title></text></g>",
-                   frame.x(series.x[i]), y + 3.5, mark_of(place_of(plot, s)),
-                   html_text(series.name), figure(series.x[i]), range);
+                   x(series.x[i]), y + 3.5, mark_of(series, place), html_text(series.name),
+                   figure(series.x[i]), range);
 }
 
 // Series of different things in one row are moved apart; a row that is an optimizer has one.
@@ -358,13 +418,14 @@ std::string dots_svg(const Plot& plot) {
   const Frame frame = rows_frame(plot);
   std::vector<std::string> rows;
   for (std::size_t row = 0; row < plot.rows.size(); ++row)
-    rows.push_back(opened(plot.rows[row].topic) + row_name(plot, frame, row));
+    rows.push_back(row_opened(plot, frame, row));
   const bool are_apart = !plot.rows.empty() && plot.rows[0].topic.problem.has_value();
   const Real n = static_cast<Real>(plot.series.size());
   for (std::size_t s = 0; s < plot.series.size(); ++s)
     for (std::size_t i = 0; i < plot.series[s].x.size(); ++i)
-      rows[static_cast<std::size_t>(plot.series[s].y[i])] += dot_svg(
-          frame, plot, s, i, are_apart ? (static_cast<Real>(s) - (n - 1) / 2) * 0.7 * kRow / n : 0);
+      rows[static_cast<std::size_t>(plot.series[s].y[i])] +=
+          dot_svg(frame, plot.series[s], s, i,
+                  are_apart ? (static_cast<Real>(s) - (n - 1) / 2) * 0.7 * kRow / n : 0);
   return x_axis(frame, plot.x_label) + joined(rows, "</g>") + (rows.empty() ? "" : "</g>");
 }
 
@@ -373,65 +434,63 @@ std::string bars_svg(const Plot& plot) {
   const PlotSeries& series = plot.series[0];
   std::string svg = x_axis(frame, plot.y_label);
   for (std::size_t i = 0; i < series.y.size(); ++i) {
-    const Real left = std::min(frame.x(0), frame.x(series.y[i]));
-    svg += opened(plot.rows[i].topic) + row_name(plot, frame, i) +
-           fmt::format(
-               "<rect class=\"ratio {}\" x={:.1f} y={:.1f} width={:.1f} height={:.0f}><title>{}: "
-               "{:+.2f}</title></rect></g>",
-               series.y[i] < 0 ? "less" : "more", left, frame.top + kRow * static_cast<Real>(i) + 3,
-               std::max(1.0, std::abs(frame.x(series.y[i]) - frame.x(0))), kRow - 6,
-               html_text(plot.rows[i].name), series.y[i]);
+    const Real end = std::clamp(frame.x(series.y[i]), frame.left, frame.right());
+    svg +=
+        row_opened(plot, frame, i) +
+        fmt::format(
+            "<rect class=\"{}\" x={:.1f} y={:.1f} width={:.1f} height={:.0f}><title>{}: "
+            "{:+.2f}</title></rect></g>",
+            series.y[i] < 0 ? "c0" : "c1", std::min(frame.x(0), end),
+            frame.top + kRow * static_cast<Real>(i) + 3, std::max(1.0, std::abs(end - frame.x(0))),
+            kRow - 6, html_text(plot.rows[i].name), series.y[i]);
   }
   return svg;
 }
 
-Real height_of(const Plot& plot) {
-  const Real rows = static_cast<Real>(plot.rows.size());
-  if (plot.kind == Plot::Kind::steps) return kPlotTop + 250 + kPlotBelow;
-  return kPlotTop + kRow * rows + kPlotBelow;
-}
-
 // What the marks of a plot mean, where its rows do not say.
 std::string marks_html(const Plot& plot) {
-  if (plot.kind == Plot::Kind::lines) return lines_legend(plot);
   if (plot.kind != Plot::Kind::dots || plot.rows.empty() || plot.rows[0].topic.optimizer) return "";
   std::string html = "<p class=marks>";
-  for (std::size_t s = 0; s < plot.series.size(); ++s) {
-    const PlotSeries& series = plot.series[s];
-    const std::size_t place = place_of(plot, s);
-    html += fmt::format("<span{}><b>{}</b> {}</span> ",
-                        series.optimizer ? fmt::format(" data-s={}", *series.optimizer)
-                                         : fmt::format(" class=c{}", place % 8),
-                        mark_of(place), html_text(series.name));
-  }
+  for (std::size_t s = 0; s < plot.series.size(); ++s)
+    html += fmt::format("<span{}><b>{}</b> {}</span> ", line_attributes(plot.series[s], s, ""),
+                        mark_of(plot.series[s], s), html_text(plot.series[s].name));
   return html + "</p>";
 }
 
-// Rows of methods close up where some are hidden: the scripts are told how high a row is.
+// Rows of methods close up where some are hidden: the scripts read how high a row is.
 std::string closing_rows(const Plot& plot) {
   if (plot.rows.empty() || plot.rows[0].topic.method.empty()) return "";
-  return fmt::format(" class=dots data-row={:.0f} data-edge={:.0f}", kRow, kPlotTop + kPlotBelow);
+  return fmt::format(" data-row={:.0f} data-edge={:.0f}", kRow, kPlotTop + kBelow);
+}
+
+Drawing drawing_of(const Plot& plot) {
+  const bool is_steps = plot.kind == Plot::Kind::steps;
+  return {.plot = plot, .join = is_steps ? Join::steps : Join::straight, .has_names = is_steps};
+}
+
+bool is_of_lines(const Plot& plot) {
+  return plot.kind == Plot::Kind::steps || plot.kind == Plot::Kind::lines;
 }
 
 }  // namespace
 
 std::string plot_svg(const Plot& plot) {
-  if (plot.kind == Plot::Kind::lines) return lines_svg(plot);
-  using Draw = std::string (*)(const Plot&);
-  constexpr Draw kDraw[] = {steps_svg, dots_svg, bars_svg};  // by kind
+  if (is_of_lines(plot)) return drawing_svg(drawing_of(plot));
   return fmt::format(
-             "<svg{} viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\"><title>{}</title>",
-             closing_rows(plot), kPlotWidth, height_of(plot),
+             "<svg class=rows{} viewBox=\"0 0 {:.0f} {:.0f}\" role=img aria-label=\"{}\"><title>{}"
+             "</title>",
+             closing_rows(plot), kPlotWidth,
+             kPlotTop + kRow * static_cast<Real>(plot.rows.size()) + kBelow,
              html_text(plot.title + ". " + plot.reading), html_text(plot.title)) +
-         kDraw[static_cast<std::size_t>(plot.kind)](plot) + "</svg>";
+         (plot.kind == Plot::Kind::dots ? dots_svg(plot) : bars_svg(plot)) + "</svg>";
 }
 
 std::string plot_html(const Plot& plot) {
   std::string figure = fmt::format(
       "<figure class=plot id={}><figcaption><b>{}.</b> {}</figcaption>{}{}<p class=legend>{}</p>"
       "</figure>\n",
-      plot.id, html_text(plot.title), html_text(plot.reading), plot_svg(plot), marks_html(plot),
-      html_text(plot.caption));
+      plot.id, html_text(plot.title), html_text(plot.reading), plot_svg(plot),
+      is_of_lines(plot) ? names_html(drawing_of(plot)) : marks_html(plot), html_text(plot.caption));
   if (!plot.is_folded) return figure;
   return fmt::format("<details><summary>{}</summary>{}</details>\n", html_text(plot.title), figure);
 }

@@ -63,9 +63,8 @@ function makeSortable(table) {
   });
 }
 
-// Shows the rows that hold every word of the input, among those of the view, and tells when they
-// stand there; returns how to do so anew.
-function makeFilter(input, table, output, onShown) {
+// Shows the rows that hold every word of the input, among those of the view; returns how to do so anew.
+function makeFilter(input, table, output) {
   const texts = new Map(), all = pressable('', undefined, () => { most = Infinity; show(); });
   let most = MOST_IN_PAGE;
   const textOf = (row) => {
@@ -79,7 +78,6 @@ function makeFilter(input, table, output, onShown) {
     table.tBodies[0].replaceChildren(...wanted.slice(0, most));
     all.hidden = wanted.length <= most;
     all.textContent = `all ${wanted.length} rows`;
-    onShown();
     output.textContent = `${wanted.length} of ${rows.length} rows`;
   };
   LONG.set(table, {rows: [...table.tBodies[0].rows], show});
@@ -99,22 +97,9 @@ function hideClaims() {
   }
 }
 
-// Rows of an SVG plot move up into the places of those filtered out.
-function closeRows(plot) {
-  const step = Number(plot.dataset.row), rows = [...plot.querySelectorAll('g[data-method]')];
-  const hidden = new Set(hiddenMethods());
-  let place = 0;
-  rows.forEach((row, i) => {
-    row.setAttribute('transform', `translate(0 ${step * (place - i)})`);
-    if (!hidden.has(row.dataset.method)) ++place;
-  });
-  const [left, top, width] = plot.getAttribute('viewBox').split(' '), edge = Number(plot.dataset.edge);
-  plot.setAttribute('viewBox', `${left} ${top} ${width} ${edge + step * place}`);
-}
-
 // What is known of a cell of the heat table, at the tolerance and by the measure of the page.
 function explanationOf(p, s) {
-  const problem = DATA.problems[p], cell = cellOf(problem, s), title = `${DATA.labels[s]} on ${problem.spec}`;
+  const problem = DATA.problems[p], cell = cellOf(problem, s), title = `${DATA.optimizers[s]} on ${problem.spec}`;
   if (cell === undefined) return [title, 'never planned'];
   if (!isMeasured(cell)) return [title, 'not applicable'];
   const learned = problem.learned?.rows.find((row) => row.s === s);

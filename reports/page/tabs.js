@@ -1,5 +1,5 @@
 // Tabs: one is laid out at a time. Each has an address, and so has each problem, card and claim in
-// them; what is large is made when its tab is first opened. Paper shows all of them.
+// them; what is large is made when its tab is first opened. Paper shows the open one.
 'use strict';
 
 const TABS = [...document.querySelectorAll('main > .tab')];
@@ -73,8 +73,6 @@ function openAddress() {
   soon(openAddress, showHead);  // once more where drawing what it opened has moved it
 }
 
-let isPrinting = false;
-
 function makeTabs() {
   document.addEventListener('toggle', ({target}) => {
     if (target.open !== true) return;
@@ -86,14 +84,6 @@ function makeTabs() {
     const link = event.target.closest('a[href^="#"]');
     if (link !== null && link.hash === location.hash) openAddress();
   });
-  addEventListener('beforeprint', () => {
-    isPrinting = true;
-    document.querySelectorAll('.packed, .one, details.claim').forEach(unpack);
-    document.querySelectorAll('details').forEach((details) => { details.dataset.wasOpen = details.open; details.open = true; });
-    [...STALE].forEach(refresh);
-  });
-  addEventListener('afterprint', () => {
-    isPrinting = false;
-    document.querySelectorAll('details').forEach((details) => { details.open = details.dataset.wasOpen === 'true'; });
-  });
+  // Paper has the open tab, whole and drawn.
+  addEventListener('beforeprint', () => [...STALE].filter((one) => one.closest('.tab.open') !== null).forEach(refresh));
 }

@@ -223,8 +223,8 @@ TEST(ClaimsOfThePage, AreLedToByTheirRows) {
   const std::string html = claims_html(document_of(compare_optimizers(study), {judgement}));
   EXPECT_EQ(count_of(html, "id=\"claim-twice\""), 1U);
   EXPECT_EQ(count_of(html, "href=\"#claim-twice\""), 1U);
-  EXPECT_EQ(count_of(html, "<svg class=lines"), 1U);
-  EXPECT_EQ(count_of(html, "class=goal><rect"), 1U);
+  EXPECT_EQ(count_of(html, "<svg class=\"chart\""), 1U);
+  EXPECT_EQ(count_of(html, "class=goal><path class=span"), 1U);
 }
 
 TEST(ClaimsOfThePage, LeadToTheRecordsThatAreThere) {

@@ -2,6 +2,9 @@
 // learned problems at equal work, kinds as colours.
 #include <gtest/gtest.h>
 
+#include <set>
+#include <sstream>
+
 #include "reports/page/kinds.h"
 #include "reports/read/axes.h"
 #include "reports/read/ranking.h"
@@ -140,15 +143,22 @@ TEST(Order, IsOfProblemsThatAreNotLearned) {
   EXPECT_EQ(c.order.settings.size(), 5U);
 }
 
-TEST(Kinds, AreFixedByTheNameOfTheMethod) {
-  const Sheet sheet{.kind = "optimizer", .name = "adam", .mathematics = "adaptive"};
-  const OptimizerAxis adam{.label = "adam", .method = "adam", .sheet = &sheet};
-  const OptimizerAxis tuned{.label = "adam, tuned", .method = "adam", .sheet = &sheet};
-  EXPECT_EQ(style_of(adam).kind, style_of(tuned).kind);
-  EXPECT_EQ(style_of(adam).dash, style_of(tuned).dash);
-  EXPECT_EQ(kMathematics[style_of(adam).kind], "adaptive");
-  const OptimizerAxis unknown{.label = "mine", .method = "mine"};
-  EXPECT_EQ(kMathematics[style_of(unknown).kind], "other");
+// A colour is of a kind in every report; within it no two look alike.
+TEST(Kinds, HaveOneColourAndTellTheirMethodsApart) {
+  Comparison c;
+  const Sheet adaptive{.kind = "optimizer", .name = "adam", .mathematics = "adaptive"};
+  for (const char* label : {"adam", "adam, tuned", "adagrad", "lion", "shampoo", "adan"})
+    c.optimizers.push_back({.label = label, .sheet = &adaptive});
+  c.optimizers.push_back({.label = "mine", .method = "mine"});
+  std::set<std::string> looks;
+  std::istringstream rules(kind_rules(c));
+  std::string rule;
+  for (std::size_t s = 0; std::getline(rules, rule); ++s) {
+    EXPECT_NE(rule.find(s + 1 < c.optimizers.size() ? "var(--adaptive)" : "var(--other)"),
+              std::string::npos);
+    looks.insert(rule.substr(rule.find('{')));
+  }
+  EXPECT_EQ(looks.size(), c.optimizers.size());
 }
 
 }  // namespace

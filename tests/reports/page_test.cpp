@@ -65,7 +65,7 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
   for (const char* part :
        {"<article class=\"problem one\" id=problem-1 data-p=1>",
         "<article class=\"optimizer one\" id=optimizer-1 data-s=1>", "<tr data-p=1 data-s=1><th>b",
-        "<th scope=col data-p=1>", "<tr data-s=1"})
+        "<g data-s=1", "<tr data-s=1"})
     EXPECT_TRUE(has(page, part)) << part;
 }
 
@@ -97,6 +97,34 @@ TEST(Page, ShowsFormulasAsTheyAreWritten) {
                    .options_text = "[]"}};
   EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))),
                   "<p class=formula>P(x) = x₁² / ‖x̃‖, Λ^(−κ) &lt; 1</p>"));
+}
+
+TEST(Page, IsTitledByItsSuites) {
+  Study study;
+  study.runs = {record_of({})};
+  study.plan.suites = {"quick"};
+  EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))), "<title>quick"));
+}
+
+// Eight lines can be told apart; the others are shown on demand.
+TEST(Page, ShowsEightLinesOfAProblemAtFirst) {
+  Study study;
+  for (std::size_t s = 0; s < 12; ++s) {
+    const std::string name = "method-" + std::to_string(s);
+    study.runs.push_back(record_of({.optimizer = name}));
+    Sheet sheet{.kind = "optimizer", .name = name, .spec = name, .options_text = "[]"};
+    sheet.mathematics = "kind-" + std::to_string(s);
+    study.sheets.push_back(std::move(sheet));
+  }
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(first_lines(c, 0).size(), 8U);
+  const std::string svg = curves_html(c, Ladders(c), 0);
+  std::size_t hidden = 0;
+  for (std::size_t at = 0; (at = svg.find("class=off", at)) != std::string::npos; ++at) ++hidden;
+  std::size_t charts = 0;
+  for (std::size_t at = 0; (at = svg.find("class=\"chart", at)) != std::string::npos; ++at)
+    ++charts;
+  EXPECT_EQ(hidden, 4 * charts);
 }
 
 TEST(Page, TenThousandRecordsStayBelowEightMegabytes) {

@@ -1,0 +1,443 @@
+// What the page draws of problems and papers: curves by every measure, paths over the loss, the
+// papers' figures.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "reports/formats/escape.h"
+#include "reports/page/contour.h"
+#include "reports/page/page.h"
+#include "reports/page/svg.h"
+#include "reports/read/curves.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+constexpr std::size_t kMostLines = 8;  // at first: more can not be told apart
+
+// The best two of a ranking and the best of each kind, at most eight.
+std::set<std::size_t> shown_at_first(const Comparison& c, const std::vector<std::size_t>& ranking) {
+  std::set<std::size_t> shown;
+  std::set<std::string> kinds;
+  for (std::size_t i = 0; i < ranking.size() && shown.size() < kMostLines; ++i)
+    if (kinds.insert(c.optimizers[ranking[i]].mathematics()).second || i == 1)
+      shown.insert(ranking[i]);
+  return shown;
+}
+
+std::set<std::size_t> all_but(const Comparison& c, const std::set<std::size_t>& shown) {
+  std::set<std::size_t> others;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (!shown.contains(s)) others.insert(s);
+  return others;
+}
+
+// Points a line, so that all lines together stay within a few megabytes.
+std::size_t points_per_curve(const Comparison& c) {
+  constexpr std::size_t kAll = 40000, kLeast = 4, kMost = 64;
+  const std::size_t curves = std::max<std::size_t>(1, c.problems.size() * c.optimizers.size());
+  return std::clamp(kAll / curves, kLeast, kMost);
+}
+
+// --- curves
+
+using Column = std::vector<Real>;
+
+struct Vertical {
+  const char *name, *label;
+  Column MedianCurve::*middle, MedianCurve::*low, MedianCurve::*high;
+};
+constexpr Vertical kVerticals[] = {
+    {"gap", "relative loss gap", &MedianCurve::gap, &MedianCurve::gap_low, &MedianCurve::gap_high},
+    {"x_error", "error in x", &MedianCurve::x_error, &MedianCurve::x_error_low,
+     &MedianCurve::x_error_high}};
+
+constexpr Real kLowest = 1e-12;  // of a gap or an error: below lies rounding
+constexpr Real kHighest = 1e3;   // of a gap: a run that diverges would flatten all others
+
+Column taken_along(const MedianCurve& curve, Measure by) {
+  if (by == Measure::work) return curve.work;
+  if (by == Measure::cost) return curve.cost;
+  if (by == Measure::iterations) return curve.iteration;
+  Column milliseconds;
+  for (const Real seconds : curve.seconds) milliseconds.push_back(1e3 * seconds);
+  return milliseconds;
+}
+
+PlotSeries points_along(const MedianCurve& curve, const Vertical& vertical, Measure by) {
+  PlotSeries line;
+  const Column taken = taken_along(curve, by);
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    const Real y = (curve.*vertical.middle)[i];
+    if (!std::isfinite(taken[i]) || !std::isfinite(y)) continue;
+    line.x.push_back(taken[i]);
+    line.y.push_back(std::max(y, kLowest));
+    line.low.push_back(std::max((curve.*vertical.low)[i], kLowest));
+    line.high.push_back(std::max((curve.*vertical.high)[i], kLowest));
+  }
+  return line;
+}
+
+// Of a direct problem the best loss so far, which holds until a better one is evaluated: a
+// staircase through the very medians of the tables, so that a line crosses τ where the table says.
+// Points between and beyond them come from the kept iterations.
+PlotSeries stairs(const PlotSeries& kept, const std::vector<std::pair<Real, Real>>& medians) {
+  std::vector<std::pair<Real, Real>> points = medians;
+  for (std::size_t i = 0; i < kept.x.size(); ++i)
+    if (medians.empty() || kept.x[i] < medians.front().first || kept.x[i] > medians.back().first)
+      points.emplace_back(kept.x[i], kept.y[i]);
+  std::ranges::sort(points, [](const auto& a, const auto& b) {
+    return a.first < b.first || (a.first == b.first && a.second > b.second);
+  });
+  PlotSeries line;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Real y = line.y.empty() ? points[i].second : std::min(points[i].second, line.y.back());
+    if (i > 0 && i + 1 < points.size() && y == line.y.back()) continue;
+    line.x.push_back(points[i].first);
+    line.y.push_back(y);
+  }
+  return line;
+}
+
+class Curves {
+ public:
+  Curves(const Comparison& c, const Ladders& ladders, std::size_t p)
+      : c_(c), ladders_(ladders), p_(p), ranking_(ranking(c, p)) {
+    for (const std::size_t s : ranking_)
+      curves_.push_back(median_curve(c, c.cell(p, s), points_per_curve(c)));
+    on_demand_ = all_but(c, shown_at_first(c, ranking_));
+    for (const Cell& cell : c.cells[p])
+      for (const std::size_t run : cell.runs)
+        if (const auto& scale = c.runs[run].record->x_scale) scales_.push_back(*scale);
+  }
+
+  // One drawing a measure and quantity; the report's own is the one that is not hidden.
+  std::string html() const {
+    if (curves_.empty()) return "";
+    const bool is_of_x = is_x_sought() || c_.problems[p_].is_learned;
+    const bool has_x = std::ranges::any_of(curves_, [](const MedianCurve& curve) {
+      return std::ranges::any_of(curve.x_error, [](Real error) { return std::isfinite(error); });
+    });
+    std::string html;
+    for (const Vertical& vertical : kVerticals) {
+      const bool is_of_error = &vertical == &kVerticals[1];
+      if (is_of_error && !has_x) continue;
+      // Of a study too large for all measures its own alone.
+      const bool is_large = targets_of(c_).size() < kTargets;
+      for (const Measure by : is_large ? std::vector{c_.yardstick.by} : measures_of(c_)) {
+        Drawing drawing = drawing_of(vertical, by, is_of_error);
+        const bool is_own = (is_of_error == (has_x && is_of_x)) && by == c_.yardstick.by;
+        drawing.attributes = fmt::format(" data-by={} data-vertical={}{}", name_of(by),
+                                         vertical.name, is_own ? "" : " hidden");
+        html += drawing_svg(drawing, tau_of(c_));
+      }
+    }
+    return html;
+  }
+
+ private:
+  bool is_x_sought() const { return c_.problems[p_].aim == Aim::x && !scales_.empty(); }
+
+  // What the medians of the tables are of: a staircase to them.
+  std::vector<std::pair<Real, Real>> medians(std::size_t s, Measure by) const {
+    std::vector<std::pair<Real, Real>> points;
+    for (const std::size_t target : targets_of(c_))
+      if (const Real taken = ladders_.at(p_, s).at(by, target); taken < kNever)
+        points.emplace_back(by == Measure::time ? 1e3 * taken : taken,
+                            std::pow(10.0, -static_cast<Real>(target) / 5));
+    return points;
+  }
+
+  Drawing drawing_of(const Vertical& vertical, Measure by, bool is_of_error) const {
+    const bool is_learned = c_.problems[p_].is_learned, are_stairs = !is_learned && !is_of_error;
+    const std::string_view counted = counted_name(by), unit = unit_name(by);
+    Drawing out{
+        .plot = {.kind = Plot::Kind::lines,
+                 .title = fmt::format("{} on {}", vertical.label, problem_name(c_.problems[p_])),
+                 .x_label =
+                     counted == unit ? std::string(counted) : fmt::format("{}, {}", counted, unit),
+                 .y_label = vertical.label + std::string(are_stairs ? ", best so far" : ""),
+                 .is_log_x = true,
+                 .is_log_y = true},
+        .join = are_stairs ? Join::steps : Join::straight,
+        .has_names = true,
+        .on_demand = on_demand_};
+    Real start = 0;  // the greatest
+    for (std::size_t i = 0; i < ranking_.size(); ++i) {
+      const std::size_t s = ranking_[i];
+      const PlotSeries kept = points_along(curves_[i], vertical, by);
+      if (kept.x.empty()) continue;
+      start = std::max(start, kept.y.front());
+      PlotSeries line =
+          are_stairs
+              ? stairs(kept, is_x_sought() ? std::vector<std::pair<Real, Real>>() : medians(s, by))
+              : kept;
+      line.optimizer = s;
+      line.name = optimizer_name(c_.optimizers[s]);
+      if (are_stairs || on_demand_.contains(s)) line.low.clear(), line.high.clear();
+      out.plot.series.push_back(std::move(line));
+    }
+    if (is_of_error == is_x_sought() && !is_learned)
+      out.tolerance = is_of_error ? median_of(scales_) : 1;
+    out.has_points = !are_stairs;
+    Plot shown = out.plot;
+    std::erase_if(shown.series,
+                  [&](const PlotSeries& line) { return on_demand_.contains(*line.optimizer); });
+    Window window = window_of(shown.series.empty() ? out.plot : shown);
+    const Real most = is_of_error ? kHighest * std::max(start, kLowest) : kHighest;
+    window.y_high = std::max(std::min(window.y_high, most), 2 * window.y_low);
+    out.window = window;
+    return out;
+  }
+
+  const Comparison& c_;
+  const Ladders& ladders_;
+  std::size_t p_;
+  std::vector<std::size_t> ranking_;
+  std::vector<MedianCurve> curves_;
+  std::set<std::size_t> on_demand_;
+  std::vector<Real> scales_;
+};
+
+// --- paths
+
+using Rows = std::vector<std::vector<Real>>;
+
+PlotSeries path_series(const Rows& rows, std::size_t most) {
+  PlotSeries line;
+  for (const std::size_t i : thinned(rows.size(), most)) {
+    const bool is_point = rows[i].size() == 2;
+    line.x.push_back(is_point ? rows[i][0] : NAN);
+    line.y.push_back(is_point ? rows[i][1] : NAN);
+  }
+  return line;
+}
+
+Drawing plane_drawing(const Comparison& c, std::size_t p, const Landscape& landscape,
+                      const char* space, Rows Path::*rows, const std::vector<Real>& goal) {
+  constexpr Real kMostStretch = 12;  // beyond it a valley would be a line
+  const std::vector<Path> all = paths(c, p);
+  const std::size_t points = std::clamp<std::size_t>(8000 / all.size(), 12, 120);
+  const auto& [left, right, low, high] = landscape.window;
+  const Real stretch = std::max((right - left) / (high - low), (high - low) / (right - left));
+  Drawing out{
+      .plot = {.kind = Plot::Kind::lines,
+               .title = fmt::format("Paths in {} on {}", space, problem_name(c.problems[p])),
+               .x_label = space + std::string("₁"),
+               .y_label = space + std::string("₂")},
+      .is_to_scale = stretch <= kMostStretch,
+      .on_demand = all_but(c, shown_at_first(c, ranking(c, p))),
+      .window = Window{left, right, low, high}};
+  for (const Contour& contour : contours(landscape)) {
+    PlotSeries& line = out.ground.emplace_back();
+    for (const Polyline& piece : contour.lines) {
+      for (const Point& point : piece) {
+        line.x.push_back(point.x1);
+        line.y.push_back(point.x2);
+      }
+      line.x.push_back(NAN);
+      line.y.push_back(NAN);
+    }
+  }
+  for (const Path& path : all) {
+    PlotSeries line = path_series(path.*rows, points);
+    line.optimizer = path.index;
+    line.name = optimizer_name(c.optimizers[path.index]);
+    out.plot.series.push_back(std::move(line));
+  }
+  const PlotSeries& first = out.plot.series.front();
+  out.ends.push_back({{}, "start", {first.x.at(0)}, {first.y.at(0)}, {}, {}});
+  if (goal.size() == 2) out.ends.push_back({{}, "goal", {goal[0]}, {goal[1]}, {}, {}});
+  if (!out.is_to_scale)
+    out.plot.caption = fmt::format("Not to scale: one axis is {:.3g} times as long.", stretch);
+  return out;
+}
+
+// Of the paths in x or in y; empty where fewer than two say anything.
+std::string path_reading(const Comparison& c, std::size_t problem, Rows Path::*rows) {
+  std::vector<Path> all = paths(c, problem);
+  const auto length = [rows](const Path& path) { return detour(path.*rows); };
+  std::erase_if(all, [&](const Path& path) { return length(path) == kNever; });
+  if (all.size() < 2) return "";
+  const auto [straight, winding] = std::ranges::minmax(all, {}, length);
+  constexpr Real kStraight = 1.0005;
+  const Real least = length(straight);
+  return fmt::format(
+      "Straightest: {}, {}. Longest way round: {}, {} the direct distance.",
+      shown_spec(straight.optimizer),
+      least < kStraight ? "a straight line" : multiple(least) + " the direct distance",
+      shown_spec(winding.optimizer), multiple(length(winding)));
+}
+
+std::string plane_html(const Drawing& drawing, const char* title, const std::string& reading) {
+  return fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
+                     title, html_text(reading), html_text(drawing.plot.caption),
+                     drawing_svg(drawing));
+}
+
+// --- papers
+
+// The methods that the paper's claims are about, else all or the best of each kind; of a published
+// setting and its tuned twin the published one.
+std::set<std::size_t> lines_of_paper(const Comparison& c, const Figure& figure) {
+  std::vector<std::size_t> all;
+  for (const FigureLine& line : figure.lines)
+    if (figure.of_the_paper.empty() || figure.of_the_paper.contains(line.optimizer))
+      all.push_back(line.optimizer);
+  std::erase_if(all, [&](std::size_t s) {
+    return std::ranges::any_of(all, [&](std::size_t other) {
+      return c.optimizers[s].label == c.optimizers[other].label + ", tuned";
+    });
+  });
+  std::ranges::sort(all);  // by rank
+  if (figure.of_the_paper.empty() && all.size() > kMostLines) return shown_at_first(c, all);
+  all.resize(std::min(all.size(), kMostLines));
+  return {all.begin(), all.end()};
+}
+
+// No axis leaves out the end of a line. The overshoot of a path's first steps would flatten all.
+Window figure_window(const Figure& figure, const Drawing& drawing) {
+  Plot shown = drawing.plot;
+  std::erase_if(shown.series, [&](const PlotSeries& line) {
+    return drawing.on_demand.contains(*line.optimizer);
+  });
+  if (shown.series.empty()) shown = drawing.plot;
+  if (figure.kind == "path") {
+    constexpr Real kDiverged = 1e3;  // times as far as most
+    const auto reach = [](const PlotSeries& line) {
+      return std::max(std::abs(line.x.back()), std::abs(line.y.back()));
+    };
+    std::vector<Real> all;
+    for (const PlotSeries& line : shown.series) all.push_back(reach(line));
+    std::erase_if(shown.series, [&, most = kDiverged * median_of(all)](const PlotSeries& line) {
+      return reach(line) > most;
+    });
+    for (PlotSeries& line : shown.series) {
+      const auto half = static_cast<std::ptrdiff_t>(line.x.size() / 2);
+      line.x.erase(line.x.begin(), line.x.begin() + half);
+      line.y.erase(line.y.begin(), line.y.begin() + half);
+    }
+  }
+  for (PlotSeries& line : shown.series) {
+    if (figure.kind != "scatter") continue;
+    std::vector<Real> sorted = line.x;  // a line of what is sought is as wide as it is high
+    std::ranges::sort(sorted);
+    const Real air = sorted.empty() ? 0 : sorted.back() - sorted.front();
+    for (Real& y : line.y)
+      if (!sorted.empty()) y = std::clamp(y, sorted.front() - air, sorted.back() + air);
+  }
+  return window_of(shown);
+}
+
+Drawing figure_drawing(const Comparison& c, const Figure& figure) {
+  Drawing out{.plot = {.kind = Plot::Kind::lines,
+                       .title = figure.title,
+                       .caption = figure.reading,
+                       .x_label = figure.x_label,
+                       .y_label = figure.y_label,
+                       .is_log_x = figure.is_log_x,
+                       .is_log_y = figure.is_log_y},
+              .join = figure.kind == "scatter" ? Join::none : Join::straight,
+              .has_names = figure.kind != "scatter",
+              .on_demand = all_but(c, lines_of_paper(c, figure))};
+  for (const FigureLine& line : figure.lines)
+    out.plot.series.push_back({line.optimizer, optimizer_name(c.optimizers[line.optimizer]), line.x,
+                               line.y, line.low, line.high});
+  for (const PublishedMark& mark : figure.published)
+    if (!out.on_demand.contains(mark.optimizer))
+      out.plot.published.push_back(
+          {mark.optimizer, mark.name, {mark.x}, {mark.y}, {mark.low}, {mark.high}});
+  out.window = figure_window(figure, out);
+  if (figure.has_diagonal)
+    out.ground.push_back({{},
+                          "",
+                          {out.window->x_low, out.window->x_high},
+                          {out.window->x_low, out.window->x_high},
+                          {},
+                          {}});
+  return out;
+}
+
+// y* has its own scale of greys; all that are x share that of x*, which comes last.
+std::string pictures_html(const std::vector<Picture>& pictures) {
+  std::string html;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const auto [low, high] = std::ranges::minmax((i == 0 ? pictures[0] : pictures.back()).values);
+    std::string bytes;
+    for (const Real value : pictures[i].values)
+      bytes += static_cast<char>(
+          std::lround(high > low ? 255 * std::clamp((value - low) / (high - low), 0.0, 1.0) : 0));
+    html += fmt::format(
+        "<figure>{}<figcaption>{} ({} to {})</figcaption></figure>",
+        canvas_html(bytes, pictures[i].size, pictures[i].size, "grey", pictures[i].title),
+        html_text(pictures[i].title), figure(low), figure(high));
+  }
+  return "<div class=pictures>" + html + "</div>";
+}
+
+std::string problem_attribute(const Comparison& c, const Figure& figure) {
+  const auto at = std::ranges::find_if(c.problems, [&](const ProblemAxis& problem) {
+    return shown_spec(problem.spec) == shown_spec(figure.problem);
+  });
+  return at == c.problems.end() ? "" : fmt::format(" data-p={}", at - c.problems.begin());
+}
+
+std::string figure_html(const Comparison& c, const Figure& figure) {
+  std::string drawn;
+  if (!figure.pictures.empty()) {
+    drawn = pictures_html(figure.pictures);
+  } else {
+    const Drawing drawing = figure_drawing(c, figure);
+    drawn = drawing_svg(drawing) + names_html(drawing);
+  }
+  return fmt::format(
+      "<figure class=\"plot panel{}\"{}><figcaption><b>{}</b> <span class=formula>{}</span><p "
+      "class=reading>{}</p></figcaption>{}</figure>\n",
+      figure.pictures.empty() ? "" : " wide", problem_attribute(c, figure), html_text(figure.title),
+      html_text(figure.problem), html_text(figure.reading), drawn);
+}
+
+}  // namespace
+
+Real tau_of(const Comparison& c) { return c.yardstick.tolerances[kTightest].tau; }
+
+std::vector<std::size_t> first_lines(const Comparison& c, std::size_t p) {
+  const std::set<std::size_t> shown = shown_at_first(c, ranking(c, p));
+  return {shown.begin(), shown.end()};
+}
+
+std::string curves_html(const Comparison& c, const Ladders& ladders, std::size_t p) {
+  return Curves(c, ladders, p).html();
+}
+
+// Paths as the paper draws them: short runs with a point a step, long ones as lines.
+std::string planes_html(const Comparison& c, std::size_t p) {
+  const Sheet* sheet = c.problems[p].sheet;
+  const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
+  if (!has_planes || paths(c, p).empty()) return "";
+  std::string html = "<div class=planes>";
+  if (sheet->landscape_x)
+    html += plane_html(plane_drawing(c, p, *sheet->landscape_x, "x", &Path::x, sheet->truth),
+                       "Paths in x, over the loss.", path_reading(c, p, &Path::x));
+  if (sheet->landscape_y)
+    html += plane_html(plane_drawing(c, p, *sheet->landscape_y, "y", &Path::y, sheet->target),
+                       "The same paths in y.", path_reading(c, p, &Path::y));
+  return html +
+         fmt::format(
+             "</div><p class=legend>Thin lines: equal loss, {}. Paths of the lowest seed; "
+             "points are steps, drawn for runs of few steps. ○ start, ● solution in x, "
+             "target in y.</p>",
+             contour_wording(sheet->landscape_x ? *sheet->landscape_x : *sheet->landscape_y));
+}
+
+std::string figures_html(const Document& document) {
+  std::string html;
+  for (const Figure& figure : document.figures) html += figure_html(document.comparison, figure);
+  return html.empty() ? "<p class=lead>No problem of this report has figures of its own.</p>"
+                      : "<div class=panels>" + html + "</div>";
+}
+
+}  // namespace isoline::reports

@@ -1,0 +1,247 @@
+// What the scripts of the page choose from, as compact JSON: names, standings to every target by
+// every measure, and of each problem the medians of its cells.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+#include <unordered_map>
+
+#include "core/json.h"
+#include "core/threads.h"
+#include "reports/page/kinds.h"
+#include "reports/page/page.h"
+#include "reports/sections/claim_terms.h"
+#include "reports/sections/origins.h"
+#include "reports/sections/words.h"
+
+namespace isoline::reports {
+namespace {
+
+std::string number(Real value) { return std::isfinite(value) ? figure(value) : "null"; }
+
+// "[a,b,c]" of whatever `item` writes.
+template <class Range, class Item>
+std::string list(const Range& range, Item item) {
+  std::string text = "[";
+  for (const auto& one : range) {
+    if (text.size() > 1) text += ',';
+    text += item(one);
+  }
+  return text + "]";
+}
+
+std::string indices(const std::vector<std::size_t>& all) {
+  return list(all, [](std::size_t index) { return std::to_string(index); });
+}
+
+// Medians to targets as they are printed, costs with a digit more: 0 where as the one before.
+std::string medians_text(const std::vector<Real>& medians, Measure by) {
+  std::string last;
+  return list(medians, [&](Real median) {
+    std::string text = by == Measure::time   ? milliseconds(median)
+                       : by == Measure::cost ? fmt::format("{:.5g}", median)
+                                             : fmt::format("{:.12g}", median);
+    return text == last ? "0" : last = text;
+  });
+}
+
+// In the order of measures_of; 0 where they are those of the first.
+std::string medians_json(const Comparison& c, const TargetMedians& medians) {
+  const std::vector<std::size_t> targets = targets_of(c);
+  const auto of = [&](Measure by) {
+    std::vector<Real> taken;
+    for (const std::size_t target : targets)
+      if (const Real median = medians.at(by, target); median < kNever) taken.push_back(median);
+    return taken;
+  };
+  const std::vector<Measure> measures = measures_of(c);
+  return list(measures, [&](Measure by) {
+    if (by != measures[0] && of(by) == of(measures[0])) return std::string("0");
+    return medians_text(of(by), by);
+  });
+}
+
+// [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing]: what
+// the page chooses from. The optimizer alone where the pair makes no sense.
+std::string cell_json(const Comparison& c, const Ladders& ladders, std::size_t p, std::size_t s) {
+  const Cell& cell = c.cell(p, s);
+  if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
+  const TargetMedians& medians = ladders.at(p, s);
+  const std::size_t missing = cell.planned - cell.runs.size();
+  return fmt::format("[{},{},{}{}]", s, indices(medians.reached), medians_json(c, medians),
+                     cell.failed + missing > 0 ? fmt::format(",{},{}", cell.failed, missing) : "");
+}
+
+std::string cells_json(const Comparison& c, const Ladders& ladders, std::size_t p) {
+  std::vector<std::size_t> asked;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (c.cell(p, s).planned > 0) asked.push_back(s);
+  return list(asked, [&](std::size_t s) { return cell_json(c, ladders, p, s); });
+}
+
+// {"optimizer": "3.8e-5, tuned"}, of those whose options a table of rates chose.
+std::string origins_json(const Comparison& c, std::size_t p) {
+  std::string text;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (const std::string origin = origin_text(c, p, s); !origin.empty())
+      text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", s, json_quoted(origin));
+  return text.empty() ? "" : ",\"origins\":{" + text + "}";
+}
+
+// What is learned, at equal work: [optimizer, error in x, its least, its greatest, loss, runs].
+std::string learned_json(const Comparison& c, std::size_t p) {
+  if (!c.problems[p].is_learned) return "";
+  const EqualWork equal = equal_work(c, p);
+  const auto row = [&](std::size_t s) {
+    const AtEqualWork& at = *equal.methods[s];
+    return fmt::format("[{},{},{},{},{},{}]", s, number(at.x_error.median), number(at.x_error.low),
+                       number(at.x_error.high), number(at.loss.median), at.x_error.n);
+  };
+  return fmt::format(",\"learned\":{{\"work\":{},\"rows\":{}}}", number(equal.work),
+                     list(equal.nearest_first(), row));
+}
+
+std::string problem_json(const Comparison& c, const Ladders& ladders, std::size_t p,
+                         const std::optional<FoundFields>& fields) {
+  const ProblemAxis& problem = c.problems[p];
+  return fmt::format(
+             "{{\"spec\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
+             "\"order\":{},\"lines\":{}",
+             json_quoted(problem_name(problem)), json_quoted(problem.name), problem.group(),
+             is_ordered(c, p), cells_json(c, ladders, p), indices(ranking(c, p)),
+             indices(first_lines(c, p))) +
+         origins_json(c, p) + learned_json(c, p) +
+         (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
+}
+
+// {"id": [optimizers, problems]}: what the cells that decide a claim are about.
+std::string claims_about(const Document& document) {
+  const Comparison& c = document.comparison;
+  std::unordered_map<std::string_view, const Run*> by_cell;
+  for (const Run& run : c.runs) by_cell.emplace(run.record->cell, &run);
+  std::string text = "{";
+  for (const Judgement& judgement : document.claims) {
+    std::set<std::size_t> optimizers, problems;
+    for (const std::string& cell : judgement.cells)
+      if (const auto at = by_cell.find(cell); at != by_cell.end()) {
+        optimizers.insert(at->second->optimizer);
+        problems.insert(at->second->problem);
+      }
+    text += fmt::format("{}{}:[{},{}]", text.size() > 1 ? "," : "", json_quoted(judgement.id),
+                        indices({optimizers.begin(), optimizers.end()}),
+                        indices({problems.begin(), problems.end()}));
+  }
+  return text + "}";
+}
+
+// [optimizer, score, solved, best on, × least, runs that get there] of each, one after the other.
+std::string places_json(const std::vector<Ranked>& places) {
+  return list(places, [](const Ranked& place) {
+    const Standing& standing = place.standing;
+    return fmt::format("{},{:.4g},{},{},{},{}", place.optimizer, standing.score, standing.solved,
+                       standing.wins,
+                       standing.typical < kNever ? fmt::format("{:.3g}", standing.typical) : "null",
+                       standing.reached);
+  });
+}
+
+// By measure and target; 0 where they are those of the target before.
+std::string standings_json(const Comparison& c, const Ladders& ladders) {
+  const std::vector<Measure> measures = measures_of(c);
+  const std::vector<std::size_t> targets = targets_of(c);
+  const std::size_t n = targets.size();
+  std::vector<std::string> all(measures.size() * n);
+  share(all.size(), [&](std::size_t i) {
+    all[i] = places_json(ladders.standings(measures[i / n], targets[i % n]));
+  });
+  std::string text = "[";
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_first = i % n == 0;
+    text += i == 0 ? "[" : is_first ? "],[" : ",";
+    text += !is_first && all[i] == all[i - 1] ? "0" : all[i];
+  }
+  return text + "]]";
+}
+
+// What does not change from target to target: [settings, runs, failed, score's interval].
+std::string given_json(const Comparison& c) {
+  const std::vector<Interval> intervals = score_intervals(c);
+  std::size_t s = 0;
+  return list(c.optimizers, [&](const OptimizerAxis& axis) {
+    const Interval& interval = intervals[s++];
+    return fmt::format("[{},{},{},{},{}]", axis.tightest().settings, axis.tightest().runs,
+                       axis.failed, number(interval.low), number(interval.high));
+  });
+}
+
+std::string axes_json(const Comparison& c) {
+  const auto texts = [&](auto text) {
+    return list(c.optimizers, [&](const OptimizerAxis& axis) { return json_quoted(text(axis)); });
+  };
+  return fmt::format(
+      "\"optimizers\":{},\"methods\":{},\"kinds\":{},\"privileges\":{},\"marks\":{},\"asks\":{}",
+      texts([](const OptimizerAxis& axis) { return optimizer_name(axis); }),
+      texts([](const OptimizerAxis& axis) { return axis.method; }),
+      texts([](const OptimizerAxis& axis) { return kind_title(axis.mathematics()); }),
+      texts([](const OptimizerAxis& axis) { return joined(axis.privileges); }), texts(marks_of),
+      texts([](const OptimizerAxis& axis) {
+        return axis.sheet == nullptr ? "" : joined(axis.sheet->oracles);
+      }));
+}
+
+// name, what is counted, its unit, the least that counts.
+std::string measures_json(const Comparison& c) {
+  return list(measures_of(c), [](Measure by) {
+    return fmt::format("{{\"name\":\"{}\",\"counted\":\"{}\",\"unit\":\"{}\",\"least\":{}}}",
+                       name_of(by), counted_name(by), unit_name(by),
+                       by == Measure::time ? "1e-3" : "1");
+  });
+}
+
+}  // namespace
+
+std::vector<std::size_t> targets_of(const Comparison& c) {
+  constexpr std::size_t kMostForAll = 5000;  // cells: some 200 bytes each for all targets
+  std::vector<std::size_t> targets;
+  if (c.problems.size() * c.optimizers.size() > kMostForAll) {
+    for (const Tolerance& tolerance : c.yardstick.tolerances) targets.push_back(tolerance.rung);
+    return targets;
+  }
+  for (std::size_t j = 0; j < kTargets; ++j) targets.push_back(j);
+  return targets;
+}
+
+std::vector<Measure> measures_of(const Comparison& c) {
+  std::vector<Measure> measures = {Measure::work, Measure::cost, Measure::time};
+  if (c.yardstick.by == Measure::iterations) measures.push_back(Measure::iterations);
+  return measures;
+}
+
+std::string json_quoted(const std::string& text) { return json_text(Json(text)); }
+
+std::string page_data(const Document& document, const Ladders& ladders, const AllFields& fields) {
+  const Comparison& c = document.comparison;
+  std::string text = fmt::format(
+      "{{\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
+      "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"claims\":{},"
+      "\"standings\":{},\"problems\":[",
+      name_of(c.yardstick.by), is_all_learned(c), list(kShades, exact_figure), measures_json(c),
+      c.is_any_timed_together,
+      list(c.yardstick.tolerances,
+           [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
+      indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
+      indices(c.order.settings), claims_about(document), standings_json(c, ladders));
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    text += (p > 0 ? "," : "") + problem_json(c, ladders, p, fields[p]);
+  std::string safe;  // no </script and no <!-- can stand in it
+  for (const char letter : text + "]}")
+    if (letter == '<')
+      safe += "\\u003c";
+    else
+      safe += letter;
+  return safe;
+}
+
+}  // namespace isoline::reports
