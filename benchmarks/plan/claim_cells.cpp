@@ -119,47 +119,30 @@ std::vector<Claim> builtin_claims_of(const Catalog& catalog) {
 
 namespace {
 
-std::vector<std::string> words_in(const std::string& id) {
-  std::vector<std::string> words;
-  for (std::size_t at = 0; at <= id.size();) {
-    const std::size_t end = std::min(id.find('-', at), id.size());
-    words.push_back(id.substr(at, end - at));
-    at = end + 1;
-  }
-  return words;
-}
-
-// How many words of the wrong name the known one has too, as they are or nearly.
-std::size_t common_words(const std::string& wrong, const std::string& known) {
-  constexpr std::size_t kShort = 3;  // letters: "in" and "is" are near each other
-  const std::vector<std::string> its = words_in(known);
-  std::size_t count = 0;
-  for (const std::string& word : words_in(wrong))
-    count += std::ranges::find(its, word) != its.end() ||
-             (word.size() > kShort && !nearest_name(word, its).empty());
-  return count;
-}
-
-// There are too many to list: those that were most probably meant, and where all stand.
+// There are too many to list: those that were most probably meant, by the words they share.
 std::string unknown_claim(const std::string& wrong, const std::vector<std::string>& known) {
   constexpr std::size_t kMost = 5;
-  std::vector<std::pair<std::size_t, std::string>> ranked;
-  for (const std::string& name : known)
-    if (const std::size_t common = common_words(wrong, name); common > 0)
-      ranked.emplace_back(common, name);
-  std::ranges::stable_sort(ranked, std::greater(), [](const auto& each) { return each.first; });
-  std::vector<std::string> close;
-  if (const std::string nearest = nearest_name(wrong, known); !nearest.empty())
-    close.push_back(nearest);
-  for (const auto& [common, name] : ranked)
-    if (close.size() < kMost && std::ranges::find(close, name) == close.end())
-      close.push_back(name);
+  std::vector<std::string> words;
+  for (std::size_t at = 0, end; at <= wrong.size(); at = end + 1) {
+    end = std::min(wrong.find('-', at), wrong.size());
+    words.push_back(wrong.substr(at, end - at));
+  }
+  std::vector<std::string> close = known;
+  const std::string nearest = nearest_name(wrong, known);
+  const auto distance = [&](const std::string& name) {
+    return name == nearest ? -std::ssize(words) - 1
+                           : -std::ranges::count_if(words, [&](const std::string& word) {
+                               return ("-" + name + "-").find("-" + word + "-") < name.size() + 2;
+                             });
+  };
+  std::ranges::stable_sort(close, {}, distance);
+  std::erase_if(close, [&](const std::string& name) { return distance(name) == 0; });
+  close.resize(std::min(close.size(), kMost));
   std::string guess;
   for (const std::string& name : close)
     guess += fmt::format("{} '{}'", guess.empty() ? "did you mean" : ",", name);
-  if (!guess.empty()) guess += "? ";
-  return fmt::format("unknown claim '{}'; {}`isoline claims --list --all` lists them", wrong,
-                     guess);
+  return fmt::format("unknown claim '{}'; {}{}`isoline claims --list --all` lists them", wrong,
+                     guess, guess.empty() ? "" : "? ");
 }
 
 }  // namespace

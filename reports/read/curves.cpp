@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "reports/read/reached.h"
@@ -10,39 +11,11 @@
 namespace isoline::reports {
 namespace {
 
-// Where the curve of a run stands at an iteration: the last kept point not after it.
-std::size_t point_at(const Curve& curve, std::int64_t iteration) {
-  const auto after = std::ranges::upper_bound(curve.iteration, iteration);
-  return after == curve.iteration.begin()
-             ? 0
-             : static_cast<std::size_t>(after - curve.iteration.begin()) - 1;
-}
-
 // A run's curve, with what it cost and what is left of its loss at each of its points.
 struct Traced {
   const Curve* curve;
   std::vector<Real> cost, gap;
 };
-
-std::vector<std::int64_t> iterations_of(const std::vector<Traced>& curves, std::size_t points) {
-  std::set<std::int64_t> all;
-  for (const Traced& traced : curves)
-    all.insert(traced.curve->iteration.begin(), traced.curve->iteration.end());
-  const std::vector<std::int64_t> sorted(all.begin(), all.end());
-  std::vector<std::int64_t> kept;
-  for (const std::size_t i : thinned(sorted.size(), points)) kept.push_back(sorted[i]);
-  return kept;
-}
-
-// value(traced, point) of every run.
-template <class Value>
-Spread spread_at(const std::vector<Traced>& curves, const std::vector<std::size_t>& at,
-                 std::size_t without_curve, Value value) {
-  std::vector<Real> values(without_curve, kNever);
-  for (std::size_t i = 0; i < curves.size(); ++i)
-    values.push_back(static_cast<Real>(value(curves[i], at[i])));
-  return spread_of(std::move(values));
-}
 
 // Of a direct problem the best so far, which holds until a better one is evaluated; of a learned
 // one what the network of that iteration is worth.
@@ -53,19 +26,12 @@ std::vector<Real> gaps_of(const Run& run, bool is_learned) {
   return gaps;
 }
 
-void add(const Spread& spread, std::vector<Real>& median, std::vector<Real>& low,
-         std::vector<Real>& high) {
-  median.push_back(spread.median);
-  low.push_back(spread.low);
-  high.push_back(spread.high);
-}
-
-std::vector<Traced> curves_of(const Comparison& comparison, const Cell& cell) {
+std::vector<Traced> curves_of(const Comparison& c, const Cell& cell) {
   std::vector<Traced> curves;
   for (const std::size_t index : cell.runs) {
-    const Run& run = comparison.runs[index];
+    const Run& run = c.runs[index];
     if (run.record->curve.iteration.empty()) continue;
-    const ProblemAxis& problem = comparison.problems[run.problem];
+    const ProblemAxis& problem = c.problems[run.problem];
     curves.push_back({&run.record->curve, problem.prices.curve_costs(*run.record),
                       gaps_of(run, problem.is_learned)});
   }
@@ -89,40 +55,50 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
   return kept;
 }
 
-MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::size_t points) {
-  const std::vector<Traced> curves = curves_of(comparison, cell);
+MedianCurve median_curve(const Comparison& c, const Cell& cell, std::size_t points) {
+  const std::vector<Traced> curves = curves_of(c, cell);
   MedianCurve median;
-  const std::size_t without_curve = cell.runs.size() - curves.size();
   if (curves.empty() || !cell.is_measured()) return median;
-  using At = std::size_t;
-  for (const std::int64_t iteration : iterations_of(curves, points)) {
+  std::set<std::int64_t> all;
+  for (const Traced& one : curves)
+    all.insert(one.curve->iteration.begin(), one.curve->iteration.end());
+  const std::vector<std::int64_t> iterations(all.begin(), all.end());
+  const std::size_t without_curve = cell.runs.size() - curves.size();
+  for (const std::size_t i : thinned(iterations.size(), points)) {
     std::vector<std::size_t> at;
-    for (const Traced& one : curves) at.push_back(point_at(*one.curve, iteration));
-    const auto over_all = [&](std::size_t lost, auto value) {
-      return spread_at(curves, at, lost, value);
+    for (const Traced& one : curves) at.push_back(point_at(one.curve->iteration, iterations[i]));
+    const auto over_runs = [&](std::size_t lost, auto column) {
+      std::vector<Real> values(lost, kNever);
+      for (std::size_t run = 0; run < curves.size(); ++run)
+        values.push_back(static_cast<Real>(column(curves[run])[at[run]]));
+      return spread_of(std::move(values));
     };
-    const auto work = [](const Traced& t, At i) { return t.curve->work[i]; };
-    const auto cost = [](const Traced& t, At i) { return t.cost[i]; };
-    const auto gap = [](const Traced& t, At i) { return t.gap[i]; };
-    const auto seconds = [](const Traced& t, At i) { return t.curve->wall_seconds[i]; };
-    const auto x_error = [](const Traced& t, At i) { return t.curve->x_error[i]; };
-    median.iteration.push_back(static_cast<Real>(iteration));
-    median.work.push_back(over_all(0, work).median);
-    median.cost.push_back(over_all(0, cost).median);
-    median.seconds.push_back(over_all(0, seconds).median);
-    add(over_all(without_curve, gap), median.gap, median.gap_low, median.gap_high);
-    add(over_all(without_curve, x_error), median.x_error, median.x_error_low, median.x_error_high);
+    const auto of_curve = [](auto Curve::*column) {
+      return [column](const Traced& one) -> const auto& { return one.curve->*column; };
+    };
+    const Spread gap = over_runs(without_curve, std::mem_fn(&Traced::gap));
+    const Spread x_error = over_runs(without_curve, of_curve(&Curve::x_error));
+    median.iteration.push_back(static_cast<Real>(iterations[i]));
+    median.work.push_back(over_runs(0, of_curve(&Curve::work)).median);
+    median.cost.push_back(over_runs(0, std::mem_fn(&Traced::cost)).median);
+    median.seconds.push_back(over_runs(0, of_curve(&Curve::wall_seconds)).median);
+    median.gap.push_back(gap.median);
+    median.gap_low.push_back(gap.low);
+    median.gap_high.push_back(gap.high);
+    median.x_error.push_back(x_error.median);
+    median.x_error_low.push_back(x_error.low);
+    median.x_error_high.push_back(x_error.high);
   }
   return median;
 }
 
-std::vector<Path> paths(const Comparison& comparison, std::size_t problem) {
+std::vector<Path> paths(const Comparison& c, std::size_t problem) {
   std::vector<Path> all;
-  for (std::size_t s = 0; s < comparison.optimizers.size(); ++s)
-    for (const std::size_t run : comparison.cell(problem, s).runs) {
-      const auto& trajectory = comparison.runs[run].record->trajectory;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    for (const std::size_t run : c.cell(problem, s).runs) {
+      const auto& trajectory = c.runs[run].record->trajectory;
       if (!trajectory || trajectory->x.empty()) continue;
-      all.push_back({comparison.optimizers[s].label, s, trajectory->x, trajectory->y});
+      all.push_back({c.optimizers[s].label, s, trajectory->x, trajectory->y});
       break;
     }
   return all;

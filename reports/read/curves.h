@@ -1,6 +1,7 @@
 // Learning curves and paths as the page draws them: medians over seeds, thinned.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ MedianCurve median_curve(const Comparison& comparison, const Cell& cell, std::si
 
 // `count` of the indices 0 … size − 1, both ends among them, spaced evenly in the logarithm.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
+
+// The last kept point at or before a place on an axis of a curve, or its first one.
+template <class Value>
+std::size_t point_at(const std::vector<Value>& axis, Value place) {
+  const std::ptrdiff_t passed = std::ranges::upper_bound(axis, place) - axis.begin();
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
+}
 
 // The path of the lowest seed that has one; empty where none has.
 struct Path {

@@ -15,12 +15,6 @@ Real greatest(std::span<const float> values) {
   return most;
 }
 
-Real distance(std::span<const float> a, std::span<const float> b) {
-  Real sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(Real{a[i]} - Real{b[i]}, 2);
-  return std::sqrt(sum);
-}
-
 // The time of the last row of these frames, where their rows are states; 0 elsewhere.
 Real time_of(const Sheet* sheet, const FieldFrames& frames) {
   const bool is_of_sheet =
@@ -34,10 +28,15 @@ std::vector<Real> distances(const FieldFrames& frames, bool is_history) {
   if (!frames.has_truth()) return apart;
   const Index rows = is_history ? 1 : frames.shape[1];
   const auto cells = static_cast<std::size_t>(rows * frames.shape[2]);
-  const std::span<const float> truth = frames.truth().first(cells);
-  const std::vector<float> nothing(cells, 0);
-  for (std::size_t i = 0; i < frames.iterations.size(); ++i)
-    apart.push_back(distance(frames.x(i).first(cells), truth) / distance(nothing, truth));
+  const std::span<const float> truth = frames.truth();
+  for (std::size_t i = 0; i < frames.iterations.size(); ++i) {
+    Real rest = 0, whole = 0;
+    for (std::size_t k = 0; k < cells; ++k) {
+      rest += std::pow(Real{frames.x(i)[k]} - Real{truth[k]}, 2);
+      whole += std::pow(Real{truth[k]}, 2);
+    }
+    apart.push_back(std::sqrt(rest) / std::sqrt(whole));
+  }
   return apart;
 }
 

@@ -15,26 +15,21 @@ bool has_abscissa(const Evidence& evidence) {
   return evidence.kind.ends_with("slope") || evidence.kind == "crossing";
 }
 
-// A figure that is read at one point: what it should be there.
-PlotSeries goal_at(Real x, Real value, const Agreement& band, Real unit) {
-  return {.optimizer = {},
-          .name = "published",
-          .x = {x},
-          .y = {unit * value},
-          .low = {unit * band.low},
-          .high = {unit * band.high}};
-}
+PlotSeries series_of(std::string name) { return {{}, std::move(name), {}, {}, {}, {}}; }
 
-// Where the first of two terms should be, seen from the second: that times the published ratio.
+// Of a figure that is read at one point what it should be there: of a ratio where the first of two
+// terms should be, seen from the second.
 std::vector<PlotSeries> goals_of(const Evidence& evidence) {
-  const EvidenceTerm& first = evidence.terms.at(0);
-  const std::string& kind = evidence.kind;
-  if (evidence.curve != evidence.column) return {};
-  if (kind == "ratio")
-    return {goal_at(first.read_at, evidence.published, evidence.band, evidence.terms.at(1).level)};
-  if (kind == "value" || kind == "greatest")
-    return {goal_at(first.read_at, evidence.published, evidence.band, 1)};
-  return {};  // places and orders are no heights
+  const bool is_ratio = evidence.kind == "ratio";
+  const bool is_height = is_ratio || evidence.kind == "value" || evidence.kind == "greatest";
+  if (evidence.curve != evidence.column || !is_height) return {};  // places are no heights
+  const Real unit = is_ratio ? evidence.terms.at(1).level : 1;
+  return {{.optimizer = {},
+           .name = "published",
+           .x = {evidence.terms.at(0).read_at},
+           .y = {unit * evidence.published},
+           .low = {unit * evidence.band.low},
+           .high = {unit * evidence.band.high}}};
 }
 
 // One line a term; terms that are the same runs read at several places have one.
@@ -61,11 +56,10 @@ Plot curves(const Evidence& evidence) {
       "Medians over seeds with the least and the greatest as a band; a run that has ended keeps its "
       "last figure.";
   if (!plot.published.empty())
-    plot.caption += evidence.kind == "ratio"
-                        ? " The bar stands where the quantity is read: there the first line should "
-                          "be, seen from the second."
-                        : " The bar stands where the quantity is read: what was published, with "
-                          "its error.";
+    plot.caption +=
+        std::string(" The bar stands where the quantity is read: ") +
+        (evidence.kind == "ratio" ? "there the first line should be, seen from the second."
+                                  : "what was published, with its error.");
   return plot;
 }
 
@@ -86,7 +80,7 @@ std::string name_of(const std::vector<const EvidenceTerm*>& terms) {
 
 PlotSeries over_abscissa(const Evidence& evidence, std::size_t first, std::size_t last) {
   const auto terms = sorted(evidence, first, last);
-  PlotSeries line{.optimizer = {}, .name = name_of(terms)};
+  PlotSeries line = series_of(name_of(terms));
   for (const EvidenceTerm* term : terms) {
     const auto [low, high] = std::ranges::minmax(term->runs, {}, &EvidenceRun::figure);
     line.x.push_back(term->at);
@@ -106,7 +100,7 @@ PlotSeries published_slope(const Evidence& evidence, const PlotSeries& line) {
     mean_x += std::log(line.x[i]) / n;
     mean_y += std::log(line.y[i]) / n;
   }
-  PlotSeries out{.optimizer = {}, .name = "published"};
+  PlotSeries out = series_of("published");
   for (const Real x : {std::log(line.x.front()), mean_x, std::log(line.x.back())}) {
     const auto at = [&](Real slope) { return std::exp(mean_y + slope * (x - mean_x)); };
     const Real one = at(evidence.band.low), other = at(evidence.band.high);
@@ -122,7 +116,7 @@ PlotSeries published_slope(const Evidence& evidence, const PlotSeries& line) {
 PlotSeries ratios_over_abscissa(const Evidence& evidence) {
   const std::size_t n = evidence.terms.size();
   const auto over = sorted(evidence, 0, n / 2), under = sorted(evidence, n / 2, n);
-  PlotSeries line{.optimizer = {}, .name = name_of(over) + " / " + name_of(under)};
+  PlotSeries line = series_of(name_of(over) + " / " + name_of(under));
   for (std::size_t i = 0; i < std::min(over.size(), under.size()); ++i) {
     line.x.push_back(over[i]->at);
     line.y.push_back(over[i]->level / under[i]->level);
@@ -177,17 +171,13 @@ bool is_all(const Evidence& evidence, const std::string EvidenceTerm::*part) {
 bool is_logarithmic(const Plot& plot) {
   constexpr Real kWide = 10;
   Real low = kNever, high = 0;
-  for (const PlotSeries& line : plot.series)
-    for (const Real y : line.y) {
-      if (!std::isfinite(y)) continue;
-      low = std::min(low, y);
-      high = std::max(high, y);
-    }
-  for (const PlotSeries& goal : plot.published)
-    for (const Real y : goal.y) {
-      low = std::min(low, y);
-      high = std::max(high, y);
-    }
+  for (const auto* all : {&plot.series, &plot.published})
+    for (const PlotSeries& line : *all)
+      for (const Real y : line.y) {
+        if (!std::isfinite(y)) continue;
+        low = std::min(low, y);
+        high = std::max(high, y);
+      }
   return low > 0 && high > kWide * low;
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include <ranges>
 
 #include "core/json.h"
+#include "reports/read/curves.h"
 #include "reports/read/ranking.h"
 #include "reports/sections/words.h"
 #include "reports/statistics/statistics.h"
@@ -22,6 +22,7 @@ namespace isoline::reports {
 namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
+constexpr std::string_view kSeries = "series: ";
 
 // Running means begin with the first step: before it, what that saw.
 Real value_at(const std::vector<Real>& column, std::size_t index) {
@@ -29,96 +30,78 @@ Real value_at(const std::vector<Real>& column, std::size_t index) {
   return column.at(is_before_any ? 1 : index);
 }
 
-constexpr std::string_view kSeries = "series: ";
-
-const std::vector<Real>* column_of(const Record& record, const std::string& name) {
-  static const std::map<std::string, std::vector<Real> Curve::*> plain = {
-      {"x_error", &Curve::x_error},
-      {"loss", &Curve::loss},
-      {"gradient_norm", &Curve::gradient_norm},
-      {"step_norm", &Curve::step_norm}};
-  const Curve& curve = record.curve;
-  if (const auto found = plain.find(name); found != plain.end()) return &(curve.*found->second);
-  if (name.starts_with(kSeries)) {
-    const auto found = record.series.find(name.substr(kSeries.size()));
-    return found == record.series.end() ? nullptr : &found->second;
-  }
-  const std::size_t digits = name.rfind('_') + 1;
-  std::int64_t length = 0;
-  if (!name.starts_with("batch_") ||
-      std::from_chars(name.data() + digits, name.data() + name.size(), length).ec != std::errc())
-    return nullptr;
-  const auto& windows = name.starts_with("batch_x") ? curve.batch_x_error : curve.batch_loss;
-  const auto window = windows.find(length);
-  return window != windows.end() ? &window->second : nullptr;
+template <class Map, class Key>
+const std::vector<Real>* found_in(const Map& columns, const Key& key) {
+  const auto found = columns.find(key);
+  return found == columns.end() ? nullptr : &found->second;
 }
 
-using Path = std::vector<std::vector<Real>>;
+const std::vector<Real>* column_of(const Record& record, const std::string& name) {
+  const Curve& curve = record.curve;
+  if (name == "x_error") return &curve.x_error;
+  if (name == "loss") return &curve.loss;
+  if (name == "gradient_norm") return &curve.gradient_norm;
+  if (name == "step_norm") return &curve.step_norm;
+  if (name.starts_with(kSeries)) return found_in(record.series, name.substr(kSeries.size()));
+  if (!name.starts_with("batch_")) return nullptr;
+  return found_in(name.starts_with("batch_x") ? curve.batch_x_error : curve.batch_loss,
+                  std::int64_t{std::stoi(name.substr(name.rfind('_') + 1))});
+}
 
-// Distances of coordinates from the printed ones: the largest and the mean.
-struct Deviation {
-  Real largest = 0, mean = 0;
-};
-Deviation deviation(const std::vector<PrintedRow>& rows) {
-  if (rows.empty()) return {kAbsent, kAbsent};
-  Deviation found;
-  Real count = 0;
+using Rows = std::vector<std::vector<Real>>;
+
+// Distances of coordinates from the printed ones: the largest, or the mean.
+Real deviation(const std::vector<PrintedRow>& rows, bool is_mean) {
+  Real largest = 0, sum = 0, count = 0;
   for (const PrintedRow& row : rows)
     for (std::size_t j = 0; j < row.printed.size(); ++j, ++count) {
       const Real distance = std::abs(row.reached.at(j) - row.printed[j]);
-      found.largest = std::max(found.largest, distance);
-      found.mean += distance;
+      largest = std::max(largest, distance);
+      sum += distance;
     }
-  found.mean /= count;
-  return found;
+  if (rows.empty()) return kAbsent;
+  return is_mean ? sum / count : largest;
 }
 
 // How far y leaves the ray through its start: largest relative change of y2 / y1.
-Real bend(const Path& y, std::size_t row) {
+Real bend(const Rows& y, std::size_t row) {
   Real largest = 0;
   for (std::size_t i = 0; i <= row; ++i)
     largest = std::max(largest, std::abs(y[i].at(1) / y[i].at(0) * y[0][0] / y[0][1] - 1));
   return largest;
 }
 
-// Of the first update with the diagonal toward the origin; √2 at most.
-Real alignment(const Path& x) {
-  const Real d1 = x.at(0).at(0) - x.at(1).at(0), d2 = x.at(0).at(1) - x.at(1).at(1);
-  return (d1 + d2) / std::hypot(d1, d2);
-}
-
-// Between the first step in y and the straight way to y* = 0, in degrees.
-Real turn(const Path& y) {
-  const Real d1 = y.at(0).at(0) - y.at(1).at(0), d2 = y.at(0).at(1) - y.at(1).at(1);
-  const Real cross = y[0][0] * d2 - y[0][1] * d1, dot = y[0][0] * d1 + y[0][1] * d2;
-  return std::atan2(std::abs(cross), dot) * 180 / std::numbers::pi;
-}
-
-Real least_coordinate(const Path& x, std::size_t row) {
+Real least_coordinate(const Rows& x, std::size_t row) {
   Real least = kNever;
   for (std::size_t i = 0; i <= row; ++i) least = std::min(least, std::ranges::min(x[i]));
   return least;
 }
 
-// Of the step that led to the row.
-Real step_figure(const std::string& column, const Trajectory& path, std::size_t row) {
-  if (row == 0) return kAbsent;
-  if (column == "alignment") return alignment(path.x);
-  if (column == "turn") return turn(path.y);
-  const Real before = path.x.at(row - 1).at(1), step = std::abs(path.x.at(row).at(1) - before);
-  if (column == "step_2") return step;
-  return column == "relative_step_2" ? step / std::abs(before) : kAbsent;
+// Of the first step: its component along the diagonal toward the origin, √2 at most; or its angle
+// with the straight way to 0, in degrees.
+Real first_step(const Rows& path, bool is_angle) {
+  const std::vector<Real>& from = path.at(0);
+  const Real d1 = from.at(0) - path.at(1).at(0), d2 = from.at(1) - path.at(1).at(1);
+  if (!is_angle) return (d1 + d2) / std::hypot(d1, d2);
+  const Real cross = from[0] * d2 - from[1] * d1, dot = from[0] * d1 + from[1] * d2;
+  return std::atan2(std::abs(cross), dot) * 180 / std::numbers::pi;
 }
 
 Real path_figure(const Record& record, const Place& place) {
   const auto& [x, y] = *record.trajectory;
+  const std::string& column = place.column;
   const std::size_t row = index_at(record.curve, place);
-  if (place.column == "mean_deviation") return deviation(printed_rows(record, place)).mean;
-  if (place.column.ends_with("deviation")) return deviation(printed_rows(record, place)).largest;
-  if (place.column == "bend") return bend(y, row);
-  if (place.column == "least_coordinate") return least_coordinate(x, row);
-  if (place.column == "distance") return std::hypot(x.at(row).at(0), x.at(row).at(1));
-  return step_figure(place.column, *record.trajectory, row);
+  if (column.ends_with("deviation"))
+    return deviation(printed_rows(record, place), column == "mean_deviation");
+  if (column == "bend") return bend(y, row);
+  if (column == "least_coordinate") return least_coordinate(x, row);
+  if (column == "distance") return std::hypot(x.at(row).at(0), x.at(row).at(1));
+  if (row == 0) return kAbsent;  // the others are of the step that led to the row
+  if (column == "alignment") return first_step(x, false);
+  if (column == "turn") return first_step(y, true);
+  const Real before = x.at(row - 1).at(1), step = std::abs(x.at(row).at(1) - before);
+  if (column == "step_2") return step;
+  return column == "relative_step_2" ? step / std::abs(before) : kAbsent;
 }
 
 // How many times slower the logarithm of the error in x falls over the last third of the iterations
@@ -126,8 +109,7 @@ Real path_figure(const Record& record, const Place& place) {
 Real slowdown(const Curve& curve, std::size_t index) {
   const std::int64_t all = curve.iteration[index];
   const auto fall = [&](std::int64_t from, std::int64_t to) {
-    const std::size_t i = index_at(curve, {.column = "", .iteration = from});
-    const std::size_t j = index_at(curve, {.column = "", .iteration = to});
+    const std::size_t i = point_at(curve.iteration, from), j = point_at(curve.iteration, to);
     const auto steps = static_cast<Real>(curve.iteration[j] - curve.iteration[i]);
     return std::log(curve.x_error.at(i) / curve.x_error.at(j)) / steps;
   };
@@ -139,7 +121,7 @@ Real slowdown(const Curve& curve, std::size_t index) {
 }  // namespace
 
 std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
-  const Path& path =
+  const Rows& path =
       place.column == "output_deviation" ? record.trajectory->y : record.trajectory->x;
   const std::size_t row = index_at(record.curve, place), count = place.table.size();
   const std::size_t first = count == 1 ? row : 1;
@@ -154,31 +136,28 @@ std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
 }
 
 std::size_t index_at(const Curve& curve, const Place& place) {
-  const auto last = [](const auto& column, const auto& at) {
-    const std::ptrdiff_t passed = std::ranges::upper_bound(column, at) - column.begin();
-    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
-  };
-  if (place.iteration) return last(curve.iteration, *place.iteration);
-  if (place.seconds) return last(curve.processor_seconds, *place.seconds);
+  if (place.iteration) return point_at(curve.iteration, *place.iteration);
+  if (place.seconds) return point_at(curve.processor_seconds, *place.seconds);
   return curve.iteration.size() - 1;
 }
 
 Real figure_of(const Record& record, const Place& place) {
-  if (place.column == "milliseconds")
+  const Curve& curve = record.curve;
+  const std::string& name = place.column;
+  if (name == "milliseconds")
     return record.summary.iterations == 0
                ? kAbsent
                : 1e3 * record.summary.wall_seconds / static_cast<Real>(record.summary.iterations);
-  if (record.curve.iteration.empty()) return kAbsent;
-  const std::size_t index = index_at(record.curve, place);
-  if (place.column == "loss_peak")
-    return std::ranges::max(record.curve.loss | std::views::take(index + 1));
-  if (place.column == "loss_drop") return record.curve.loss[0] - record.curve.loss[index];
-  if (place.column == "slowdown") return slowdown(record.curve, index);
-  if (const auto* column = column_of(record, place.column)) {
+  if (curve.iteration.empty()) return kAbsent;
+  const std::size_t index = index_at(curve, place);
+  if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));
+  if (name == "loss_drop") return curve.loss[0] - curve.loss[index];
+  if (name == "slowdown") return slowdown(curve, index);
+  if (const auto* column = column_of(record, name)) {
     if (column->empty()) return kAbsent;
     const Real value = value_at(*column, index);
-    const bool is_lost = std::isnan(value) && place.column.find("gradient") == std::string::npos;
-    return is_lost && !place.column.starts_with(kSeries) ? kNever : value;  // it diverged
+    const bool is_lost = std::isnan(value) && name.find("gradient") == std::string::npos;
+    return is_lost && !name.starts_with(kSeries) ? kNever : value;  // it diverged
   }
   return record.trajectory ? path_figure(record, place) : kAbsent;
 }
@@ -275,31 +254,33 @@ std::string success_text(const Comparison& c) {
 using Json = nlohmann::json;
 namespace {
 
-constexpr std::array<const char*, 2> kTermLists = {"terms", "contrast_terms"};
+// visit(alternative) for every way to fill a term, of the claim and of its contrast.
+template <class Visit>
+void each_alternative(const Json& set, Visit visit) {
+  for (const char* list : {"terms", "contrast_terms"})
+    for (const Json& term : set.value(list, Json::array()))
+      for (const Json& alternative : term) visit(alternative);
+}
 
 }  // namespace
 
 std::vector<std::string> cells_of(const Json& set) {
   std::vector<std::string> cells;
-  for (const char* list : kTermLists)
-    for (const Json& term : set.value(list, Json::array()))
-      for (const Json& alternative : term)
-        for (const Json& cell : alternative.at("cells")) cells.push_back(cell);
+  each_alternative(set, [&](const Json& alternative) {
+    for (const Json& cell : alternative.at("cells")) cells.push_back(cell);
+  });
   return cells;
 }
 
 std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
   std::vector<std::string> missing;
-  const auto look = [&](const Json& alternative) {
+  each_alternative(set, [&](const Json& alternative) {
     const auto title = alternative.at("title").get<std::string>();
-    for (const Json& cell : alternative.at("cells")) {
-      const bool is_known = runs.contains(cell.get<std::string>());
-      if (!is_known && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
-    }
-  };
-  for (const char* list : kTermLists)
-    for (const Json& term : set.value(list, Json::array()))
-      for (const Json& alternative : term) look(alternative);
+    const bool is_whole = std::ranges::all_of(alternative.at("cells"), [&](const Json& cell) {
+      return runs.contains(cell.get<std::string>());
+    });
+    if (!is_whole && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
+  });
   return missing;
 }
 

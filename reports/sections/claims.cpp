@@ -62,10 +62,6 @@ std::vector<Reading> readings_of(const Judgement& judgement) {
   return all;
 }
 
-std::string read_text(const EvidenceTerm& term) {
-  return term.iteration ? fmt::format("at iteration {}", *term.iteration) : "at the end";
-}
-
 Table terms_table(const Evidence& evidence, const std::string& id) {
   Table table{.id = "terms-" + id,
               .title = "Figures: " + column_words(evidence.column),
@@ -76,8 +72,9 @@ Table terms_table(const Evidence& evidence, const std::string& id) {
     const EvidenceTerm& term = evidence.terms[i];
     const auto [low, high] = std::ranges::minmax(term.runs, {}, &EvidenceRun::figure);
     table.rows.push_back(
-        {names[i], read_text(term), TableCell(figure(term.level), {{"median", term.level}}),
-         figure(low.figure), figure(high.figure), std::to_string(term.runs.size())});
+        {names[i], term.iteration ? fmt::format("at iteration {}", *term.iteration) : "at the end",
+         TableCell(figure(term.level), {{"median", term.level}}), figure(low.figure),
+         figure(high.figure), std::to_string(term.runs.size())});
   }
   return table;
 }
@@ -119,12 +116,21 @@ Table runs_table(const Evidence& evidence, const std::string& id) {
   return table;
 }
 
-void show(Section& section, const Evidence& evidence, const std::string& id) {
+void show(Section& section, const Evidence& evidence, const std::string& id,
+          const std::string& prefix) {
   if (evidence.terms.empty()) return;
-  for (Plot& plot : claim_plots(evidence, id)) section.plots.push_back(std::move(plot));
-  if (!evidence.printed.empty()) section.tables.push_back(printed_table(evidence, id));
-  section.tables.push_back(terms_table(evidence, id));
-  section.tables.push_back(runs_table(evidence, id));
+  for (Plot& plot : claim_plots(evidence, id)) {
+    plot.title = (prefix.empty() ? "" : prefix + ": ") + plot.title;
+    section.plots.push_back(std::move(plot));
+  }
+  std::vector<Table> tables;
+  if (!evidence.printed.empty()) tables.push_back(printed_table(evidence, id));
+  tables.push_back(terms_table(evidence, id));
+  tables.push_back(runs_table(evidence, id));
+  for (Table& table : tables) {
+    table.title = (prefix.empty() ? "" : prefix + ". ") + table.title;
+    section.tables.push_back(std::move(table));
+  }
 }
 
 }  // namespace
@@ -134,15 +140,9 @@ Section claim_section(const Judgement& judgement) {
                   .title = judgement.sentence,
                   .lead = {},
                   .readings = readings_of(judgement)};
-  show(section, judgement.evidence, judgement.id);
-  if (judgement.contrast) {
-    const std::size_t tables = section.tables.size(), plots = section.plots.size();
-    show(section, judgement.contrast->evidence, judgement.id + "-contrast");
-    for (std::size_t i = tables; i < section.tables.size(); ++i)
-      section.tables[i].title = "Contrast. " + section.tables[i].title;
-    for (std::size_t i = plots; i < section.plots.size(); ++i)
-      section.plots[i].title = "Contrast: " + section.plots[i].title;
-  }
+  show(section, judgement.evidence, judgement.id, "");
+  if (judgement.contrast)
+    show(section, judgement.contrast->evidence, judgement.id + "-contrast", "Contrast");
   section.command = repeat_command(judgement.id, judgement.sets);
   return section;
 }
@@ -176,13 +176,13 @@ std::string_view mark_of(Verdict verdict) {
   return kMarks[static_cast<std::size_t>(verdict)];
 }
 
-std::string remarks_of(const Judgement& judgement) {
-  std::vector<std::string> parts;
-  for (const Reading& note : claim_notes(judgement)) parts.push_back(note.text);
-  return joined(parts, " ");
+std::string seeds_text(const Judgement& judgement) {
+  return judgement.measured ? std::to_string(judgement.measured->n) : kNothing;
 }
 
 std::vector<TableCell> claim_row(const Judgement& judgement) {
+  std::vector<std::string> remarks;
+  for (const Reading& note : claim_notes(judgement)) remarks.push_back(note.text);
   TableCell claim = judgement.sentence;
   claim.note = judgement.quantity;
   claim.remark = judgement.source;
@@ -192,8 +192,8 @@ std::vector<TableCell> claim_row(const Judgement& judgement) {
           judgement.published,
           value_text(judgement),
           over_seeds(judgement),
-          judgement.measured ? std::to_string(judgement.measured->n) : kNothing,
-          remarks_of(judgement)};
+          seeds_text(judgement),
+          joined(remarks, " ")};
 }
 
 }  // namespace
@@ -264,15 +264,14 @@ Section claims_section(const std::vector<Judgement>& judgements) {
       "Partly: all of it is on the published side of a tie, with a third to three times the "
       "published effect. Claims that restate one fact count once, by the weakest.";
   section.readings = {{"", claims_reading(judgements)}};
-  Table table{
+  Table& table = section.tables.emplace_back(Table{
       .id = "claims-table",
       .columns = {"claim", "verdict", "published", "measured", "over seeds", "seeds", "remarks"},
-      .align = "plrrrrp"};
+      .align = "plrrrrp"});
   for (const Judgement& judgement : judgements) {
     table.rows.push_back(claim_row(judgement));
     table.row_topics.push_back({.claim = judgement.id});
   }
-  section.tables.push_back(std::move(table));
   return section;
 }
 
@@ -281,18 +280,14 @@ Section claims_summary(const std::vector<Judgement>& judgements) {
                   .title = "Claims of the papers",
                   .readings = {{"", claims_reading(judgements)}},
                   .otherwise = "No claim was judged."};
-  std::vector<const Judgement*> order;
-  for (const Judgement& judgement : judgements) order.push_back(&judgement);
-  constexpr std::array<int, kVerdictNames.size()> kPlaces = {3, 2, 1, 0, 4, 5};
-  std::ranges::stable_sort(order, {}, [&](const Judgement* judgement) {
-    return kPlaces[static_cast<std::size_t>(judgement->verdict)];
-  });
-  Table table{.columns = {"claim", "verdict", "published", "measured", "seeds"}, .align = "lllll"};
-  for (const Judgement* judgement : order)
-    table.rows.push_back({judgement->id, marked_verdict(*judgement), judgement->published,
-                          value_text(*judgement),
-                          judgement->measured ? std::to_string(judgement->measured->n) : kNothing});
-  section.tables.push_back(std::move(table));
+  Table& table = section.tables.emplace_back(
+      Table{.columns = {"claim", "verdict", "published", "measured", "seeds"}, .align = "lllll"});
+  for (const Verdict verdict : {Verdict::not_reproduced, Verdict::partly, Verdict::consistent,
+                                Verdict::reproduced, Verdict::too_short, Verdict::not_comparable})
+    for (const Judgement& judgement : judgements)
+      if (judgement.verdict == verdict)
+        table.rows.push_back({judgement.id, marked_verdict(judgement), judgement.published,
+                              value_text(judgement), seeds_text(judgement)});
   return section;
 }
 
@@ -300,12 +295,13 @@ Section claims_summary(const std::vector<Judgement>& judgements) {
 
 namespace {
 
-// Of the first line of that method; nothing where the figure has none.
-std::optional<std::size_t> optimizer_of(const Comparison& c, const Figure& figure,
-                                        const std::string& method) {
+// The lines of a method.
+std::vector<std::size_t> optimizers_of(const Comparison& c, const Figure& figure,
+                                       const std::string& method) {
+  std::vector<std::size_t> optimizers;
   for (const FigureLine& line : figure.lines)
-    if (c.optimizers[line.optimizer].method == method) return line.optimizer;
-  return std::nullopt;
+    if (c.optimizers[line.optimizer].method == method) optimizers.push_back(line.optimizer);
+  return optimizers;
 }
 
 // Where a term of a claim stands across a figure; nothing where it is of another problem.
@@ -326,10 +322,10 @@ void add_mark(Figure& figure, const Comparison& c, const Judgement& claim) {
   if (!is_level) return;
   const EvidenceTerm& term = evidence.terms[0];
   const auto x = place_in(figure, term);
-  const auto optimizer = optimizer_of(c, figure, term.method);
-  if (x && optimizer)
+  const std::vector<std::size_t> optimizers = optimizers_of(c, figure, term.method);
+  if (x && !optimizers.empty())
     figure.published.push_back(
-        {.optimizer = *optimizer,
+        {.optimizer = optimizers[0],
          .name = fmt::format("{}, published: {}", term.method, column_words(evidence.column)),
          .x = *x,
          .y = evidence.published,
@@ -340,9 +336,8 @@ void add_mark(Figure& figure, const Comparison& c, const Judgement& claim) {
 void add_methods(Figure& figure, const Comparison& c, const Judgement& claim) {
   for (const EvidenceTerm& term : claim.evidence.terms)
     if (place_in(figure, term) || shown_spec(term.problem) == figure.problem)
-      for (const FigureLine& line : figure.lines)
-        if (c.optimizers[line.optimizer].method == term.method)
-          figure.of_the_paper.insert(line.optimizer);
+      for (const std::size_t optimizer : optimizers_of(c, figure, term.method))
+        figure.of_the_paper.insert(optimizer);
 }
 
 }  // namespace

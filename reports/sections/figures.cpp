@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,6 +17,225 @@
 namespace isoline::reports {
 namespace {
 
+constexpr std::size_t kPoints = 96;   // a line
+constexpr std::size_t kMostRead = 8;  // methods that a sentence names
+
+using Records = std::vector<const Record*>;
+
+Records records_of(const Comparison& c, std::size_t problem, std::size_t optimizer) {
+  Records records;
+  for (const std::size_t run : c.cell(problem, optimizer).runs)
+    if (!c.runs[run].record->curve.iteration.empty()) records.push_back(c.runs[run].record);
+  return records;
+}
+
+void add_point(FigureLine& line, Real x, std::vector<Real> values) {
+  if (values.empty()) return;
+  const Spread y = spread_of(std::move(values));
+  line.x.push_back(x);
+  line.y.push_back(y.median);
+  line.low.push_back(y.low);
+  line.high.push_back(y.high);
+}
+
+// For every optimizer with runs on the problem, what `draw` makes of them; empty lines left out.
+template <class Draw>
+std::vector<FigureLine> lines_of(const Comparison& c, std::size_t problem, Draw draw) {
+  std::vector<FigureLine> lines;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const Records records = records_of(c, problem, s);
+    FigureLine line{.optimizer = s};
+    if (!records.empty()) draw(records, line);
+    if (!line.x.empty()) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string label(const Comparison& c, const FigureLine& line) {
+  return shown_spec(c.optimizers[line.optimizer].brief);
+}
+
+// "At the end sip has 0.0129, adam 0.31 (24×), …": the last values, least first.
+std::string ends_reading(const Comparison& c, std::vector<FigureLine> lines) {
+  std::erase_if(lines, [](const FigureLine& line) { return !std::isfinite(line.y.back()); });
+  std::ranges::sort(lines, {}, [](const FigureLine& line) { return line.y.back(); });
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < std::min(kMostRead, lines.size()); ++i) {
+    const Real end = lines[i].y.back();
+    parts.push_back(fmt::format("{}{} {}", label(c, lines[i]), i == 0 ? " has" : "", figure(end)));
+    if (i > 0) parts.back() += fmt::format(" ({:.3g}×)", end / lines[0].y.back());
+  }
+  return parts.empty() ? "" : fmt::format("At the end {}.", joined(parts));
+}
+
+// "sip 0.5, adam 0.7": what `value` makes of each line.
+template <class Value>
+std::string read_lines(const Comparison& c, const std::vector<FigureLine>& lines, std::size_t most,
+                       Value value) {
+  std::vector<std::string> parts;
+  for (const FigureLine& line : std::span(lines).first(std::min(most, lines.size())))
+    parts.push_back(fmt::format("{} {}", label(c, line), figure(value(line))));
+  return joined(parts);
+}
+
+const std::vector<Real>* series_of(const Record& record, const std::string& name) {
+  const auto found = record.series.find(name);
+  return found == record.series.end() ? nullptr : &found->second;
+}
+
+// The error in x over iterations, or a series by its name. A run that has ended keeps its last
+// value.
+Figure curve_figure(const Comparison& c, std::size_t p, const std::string& name) {
+  const bool is_error = name.empty();
+  Figure out{.x_label = "iterations",
+             .y_label = is_error ? "error in x, on the validation" : name,
+             .is_log_x = true,
+             .is_log_y = is_error};
+  out.lines = lines_of(c, p, [&](const Records& records, FigureLine& line) {
+    const auto& iterations = std::ranges::max(records, {}, [](const Record* record) {
+                               return record->curve.iteration.size();
+                             })->curve.iteration;
+    for (const std::size_t i : thinned(iterations.size(), kPoints)) {
+      std::vector<Real> values;
+      for (const Record* record : records)
+        if (const auto* one = is_error ? &record->curve.x_error : series_of(*record, name);
+            one != nullptr && !one->empty())
+          values.push_back((*one)[std::min(i, one->size() - 1)]);
+      add_point(line, static_cast<Real>(iterations[i]), std::move(values));
+    }
+  });
+  const auto end = [](const FigureLine& line) { return line.y.back(); };
+  out.reading = is_error ? ends_reading(c, out.lines)
+                         : fmt::format("At the end: {}.", read_lines(c, out.lines, kMostRead, end));
+  return out;
+}
+
+Figure path_figure(const Comparison& c, std::size_t p, const std::string& pair) {
+  const std::size_t bar = pair.find('|');
+  Figure out{.x_label = pair.substr(0, bar), .y_label = pair.substr(bar + 1)};
+  out.lines = lines_of(c, p, [&](const Records& records, FigureLine& line) {
+    const auto *x = series_of(*records[0], out.x_label), *y = series_of(*records[0], out.y_label);
+    if (x == nullptr || y == nullptr) return;
+    for (const std::size_t i : thinned(x->size(), kPoints)) {
+      line.x.push_back((*x)[i]);
+      line.y.push_back((*y)[i]);
+    }
+  });
+  out.reading = "Paths of the first seed.";
+  return out;
+}
+
+// take(y*, x*, x) for every number of every sample shown.
+template <class Take>
+void each_error(const Record& record, Take take) {
+  if (!record.exhibit || record.exhibit->is_picture() || record.exhibit->truth.is_empty()) return;
+  const Exhibit& shown = *record.exhibit;
+  for (Index b = 0; b < shown.x.columns(); ++b)
+    for (Index i = 0; i < shown.x.rows() && i < shown.target.rows(); ++i)
+      take(shown.target(i, b), shown.truth(i, b), shown.x(i, b));
+}
+
+Figure scatter_figure(const Comparison& c, std::size_t p) {
+  Figure out{.x_label = "x*", .y_label = "x inferred", .has_diagonal = true};
+  out.lines = lines_of(c, p, [](const Records& records, FigureLine& line) {
+    std::map<Real, Real> sorted;
+    each_error(*records[0], [&](Real, Real truth, Real x) { sorted[truth] = x; });
+    for (const auto& [truth, x] : sorted) {
+      line.x.push_back(truth);
+      line.y.push_back(x);
+    }
+  });
+  const auto gap = [](const FigureLine& line) {
+    std::vector<Real> gaps;
+    for (std::size_t i = 0; i < line.x.size(); ++i) gaps.push_back(std::abs(line.y[i] - line.x[i]));
+    return median_of(std::move(gaps));
+  };
+  out.reading = fmt::format("Median |x − x*| over the samples drawn here, of the first seed: {}.",
+                            read_lines(c, out.lines, out.lines.size(), gap));
+  return out;
+}
+
+Figure decades_figure(const Comparison& c, std::size_t p) {
+  Figure out{.x_label = "y*", .y_label = "|x − x*|, median", .is_log_x = true, .is_log_y = true};
+  out.lines = lines_of(c, p, [](const Records& records, FigureLine& line) {
+    std::map<int, std::vector<Real>> decades;
+    for (const Record* record : records)
+      each_error(*record, [&](Real target, Real truth, Real x) {
+        if (target > 0)
+          decades[static_cast<int>(std::floor(std::log10(target)))].push_back(std::abs(x - truth));
+      });
+    constexpr std::size_t kFewest = 5;  // samples that a median says something of
+    for (auto& [decade, gaps] : decades)
+      if (gaps.size() >= kFewest) add_point(line, std::pow(10.0, decade + 0.5), std::move(gaps));
+  });
+  if (!out.lines.empty())
+    out.reading =
+        "Each point is a decade of y*, the last one up to 1. " + ends_reading(c, out.lines);
+  return out;
+}
+
+// What was observed of a sample, what each method inferred, and what was to be found.
+Figure picture_figure(const Comparison& c, std::size_t p) {
+  Figure out;
+  FieldFrames last;
+  const auto add = [&](std::string title, std::span<const float> field) {
+    out.pictures.push_back({std::move(title), last.shape[1], {field.begin(), field.end()}});
+  };
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    for (const std::size_t run : c.cell(p, s).runs) {
+      std::optional<FieldFrames> shown = c.study->fields_of(*c.runs[run].record);
+      if (!shown || !shown->has_truth() || shown->shape[1] != shown->shape[2]) continue;
+      last = std::move(*shown);
+      if (out.pictures.empty()) add("y*", last.target());
+      add(shown_spec(c.optimizers[s].label), last.x(last.iterations.size() - 1));
+      break;
+    }
+  if (out.pictures.empty()) return out;
+  add("x*", last.truth());
+  out.reading =
+      "The first sample of the validation, as inferred after the last iteration of the first seed. "
+      "The x share the grey scale of x*.";
+  return out;
+}
+
+// Of one problem; empty where no run has what is asked for.
+Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
+  if (panel.kind == "curve" || panel.kind == "series") return curve_figure(c, p, panel.quantity);
+  if (panel.kind == "scatter") return scatter_figure(c, p);
+  if (panel.kind == "decades") return decades_figure(c, p);
+  if (panel.kind == "path") return path_figure(c, p, panel.quantity);
+  return picture_figure(c, p);
+}
+
+using Sweep = std::vector<std::pair<Real, std::size_t>>;  // value of the option, problem
+
+Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel) {
+  Figure out{.x_label = panel.over,
+             .y_label = panel.divided_by.empty()
+                            ? "error in x, on the validation"
+                            : fmt::format("error in x / {}, on the validation", panel.divided_by),
+             .is_log_y = true,
+             .is_relative = !panel.divided_by.empty()};
+  for (const auto& [value, problem] : sweep)
+    out.places.emplace_back(problem_name(c.problems[problem]), value);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    FigureLine line{.optimizer = s};
+    for (const auto& [value, problem] : sweep) {
+      std::vector<Real> errors;
+      for (const Record* record : records_of(c, problem, s)) {
+        const OptionValues& options = record->request.problem.options;
+        errors.push_back(record->summary.x_error /
+                         (out.is_relative ? options.number(panel.divided_by, std::nan("")) : 1));
+      }
+      add_point(line, value, std::move(errors));
+    }
+    if (!line.x.empty()) out.lines.push_back(std::move(line));
+  }
+  out.reading = fmt::format("From {0} = {1} to {0} = {2}. {3}", panel.over, figure(sweep[0].first),
+                            figure(sweep.back().first), ends_reading(c, out.lines));
+  return out;
+}
+
 const Component& component_of(const Comparison& c, std::size_t problem) {
   static const Component none;
   for (const Cell& cell : c.cells[problem])
@@ -25,18 +243,18 @@ const Component& component_of(const Comparison& c, std::size_t problem) {
   return none;
 }
 
-bool is_wanted(const Component& problem, const Panel& panel) {
-  return problem.is_learned && std::ranges::all_of(panel.where, [&](const auto& wanted) {
-           return problem.options.number(wanted.first, std::nan("")) == wanted.second;
-         });
-}
-
 // The problems of one name whose options a panel wants.
 std::vector<std::size_t> wanted_problems(const Comparison& c, const std::string& name,
                                          const Panel& panel) {
   std::vector<std::size_t> problems;
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    if (c.problems[p].name == name && is_wanted(component_of(c, p), panel)) problems.push_back(p);
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    const Component& problem = component_of(c, p);
+    if (c.problems[p].name == name && problem.is_learned &&
+        std::ranges::all_of(panel.where, [&](const auto& wanted) {
+          return problem.options.number(wanted.first, std::nan("")) == wanted.second;
+        }))
+      problems.push_back(p);
+  }
   return problems;
 }
 
@@ -62,34 +280,29 @@ std::vector<Sweep> sweeps_over(const Comparison& c, const std::vector<std::size_
   return sweeps;
 }
 
-void add(std::vector<Figure>& all, Figure figure, const std::string& problem, const Panel& panel) {
-  if (figure.lines.empty() && figure.pictures.empty()) return;
-  figure.problem = problem;
-  figure.title = panel.title;
-  figure.kind = panel.kind;
-  all.push_back(std::move(figure));
-}
-
-void add_panel(const Comparison& c, const std::string& name, const Panel& panel,
-               std::vector<Figure>& all) {
-  const std::vector<std::size_t> problems = wanted_problems(c, name, panel);
-  if (panel.kind == "sweep") {
-    for (const Sweep& sweep : sweeps_over(c, problems, panel.over))
-      add(all, sweep_figure(c, sweep, panel), name, panel);
-    return;
-  }
-  for (const std::size_t p : problems)
-    add(all, problem_figure(c, p, panel), problem_name(c.problems[p]), panel);
-}
-
 }  // namespace
 
 std::vector<Figure> figures(const Comparison& c) {
   std::vector<Figure> all;
   std::set<std::string> known;
-  for (const ProblemAxis& problem : c.problems)
-    if (problem.sheet != nullptr && known.insert(problem.name).second)
-      for (const Panel& panel : problem.sheet->panels) add_panel(c, problem.name, panel, all);
+  const auto add = [&](Figure figure, const std::string& problem, const Panel& panel) {
+    if (figure.lines.empty() && figure.pictures.empty()) return;
+    std::tie(figure.problem, figure.title, figure.kind) =
+        std::tie(problem, panel.title, panel.kind);
+    all.push_back(std::move(figure));
+  };
+  for (const ProblemAxis& problem : c.problems) {
+    if (problem.sheet == nullptr || !known.insert(problem.name).second) continue;
+    for (const Panel& panel : problem.sheet->panels) {
+      const std::vector<std::size_t> wanted = wanted_problems(c, problem.name, panel);
+      if (panel.kind == "sweep")
+        for (const Sweep& sweep : sweeps_over(c, wanted, panel.over))
+          add(sweep_figure(c, sweep, panel), problem.name, panel);
+      else
+        for (const std::size_t p : wanted)
+          add(problem_figure(c, p, panel), problem_name(c.problems[p]), panel);
+    }
+  }
   return all;
 }
 
@@ -112,12 +325,6 @@ Extent extent_of(const Plot& plot, std::vector<Real> PlotSeries::*values, bool i
     for (const PlotSeries& line : *all)
       for (const Real value : line.*values)
         if (value > 0 || !is_logarithmic) extent.take(value);
-  return extent;
-}
-
-Extent extent_of_x(const Plot& plot) {
-  Extent extent = extent_of(plot, &PlotSeries::x, plot.is_log_x);
-  if (!(extent.high > extent.low)) extent = {0, std::max(1.0, 2 * extent.low)};
   return extent;
 }
 
@@ -149,267 +356,13 @@ Extent extent_of_y(const Plot& plot) {
 }  // namespace
 
 Window window_of(const Plot& plot) {
-  const Extent x = extent_of_x(plot), y = extent_of_y(plot);
+  Extent x = extent_of(plot, &PlotSeries::x, plot.is_log_x);
+  if (!(x.high > x.low)) x = {0, std::max(1.0, 2 * x.low)};
+  const Extent y = extent_of_y(plot);
   bool has_start = false;  // iteration 0 is drawn left of the first
   for (const PlotSeries& line : plot.series)
     has_start = has_start || (plot.is_log_x && !line.x.empty() && line.x.front() <= 0);
   return {has_start ? x.low / 2 : x.low, x.high, y.low, y.high};
-}
-
-// The kinds of panels: medians over seeds with their range, samples and pictures of the first seed.
-
-namespace {
-
-constexpr std::size_t kPoints = 96;  // a line
-
-struct Range {
-  Real median, low, high;
-};
-
-Range range_of(std::vector<Real> values) {
-  const auto [low, high] = std::ranges::minmax(values);
-  return {median_of(std::move(values)), low, high};
-}
-
-void push(FigureLine& line, Real x, const Range& range) {
-  line.x.push_back(x);
-  line.y.push_back(range.median);
-  line.low.push_back(range.low);
-  line.high.push_back(range.high);
-}
-
-std::vector<const Record*> records_of(const Comparison& c, std::size_t problem,
-                                      std::size_t optimizer) {
-  std::vector<const Record*> records;
-  for (const std::size_t run : c.cell(problem, optimizer).runs)
-    if (!c.runs[run].record->curve.iteration.empty()) records.push_back(c.runs[run].record);
-  return records;
-}
-
-// A column of each run's curve over iterations; a run that has ended keeps its last value.
-using Column = std::function<const std::vector<Real>*(const Record&)>;
-
-FigureLine line_over_iterations(const std::vector<const Record*>& records, const Column& column) {
-  FigureLine line;
-  const auto longest = std::ranges::max(
-      records, {}, [](const Record* record) { return record->curve.iteration.size(); });
-  const auto& iterations = longest->curve.iteration;
-  for (const std::size_t i : thinned(iterations.size(), kPoints)) {
-    std::vector<Real> values;
-    for (const Record* record : records)
-      if (const auto* one = column(*record); one != nullptr && !one->empty())
-        values.push_back((*one)[std::min(i, one->size() - 1)]);
-    if (!values.empty()) push(line, static_cast<Real>(iterations[i]), range_of(std::move(values)));
-  }
-  return line;
-}
-
-// For every optimizer with runs on the problem, what `draw` makes of them; empty lines left out.
-template <class Draw>
-std::vector<FigureLine> lines_of(const Comparison& c, std::size_t problem, Draw draw) {
-  std::vector<FigureLine> lines;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const auto records = records_of(c, problem, s);
-    if (records.empty()) continue;
-    FigureLine line = draw(records);
-    line.optimizer = s;
-    if (!line.x.empty()) lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
-std::string label(const Comparison& c, const FigureLine& line) {
-  return shown_spec(c.optimizers[line.optimizer].brief);
-}
-
-// "At the end sip has 0.0129, adam 0.31 (24×), …": the last values, least first.
-std::string ends_reading(const Comparison& c, std::vector<FigureLine> lines) {
-  std::erase_if(lines, [](const FigureLine& line) { return !std::isfinite(line.y.back()); });
-  std::ranges::sort(lines, {}, [](const FigureLine& line) { return line.y.back(); });
-  constexpr std::size_t kMost = 8;
-  std::vector<std::string> parts;
-  for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i) {
-    const Real end = lines[i].y.back(), factor = end / lines[0].y.back();
-    parts.push_back(i == 0
-                        ? fmt::format("{} has {}", label(c, lines[i]), figure(end))
-                        : fmt::format("{} {} ({:.3g}×)", label(c, lines[i]), figure(end), factor));
-  }
-  return parts.empty() ? "" : fmt::format("At the end {}.", joined(parts));
-}
-
-Figure curve_figure(const Comparison& c, std::size_t p) {
-  Figure out{.x_label = "iterations",
-             .y_label = "error in x, on the validation",
-             .is_log_x = true,
-             .is_log_y = true};
-  out.lines = lines_of(c, p, [](const auto& records) {
-    return line_over_iterations(records, [](const Record& r) { return &r.curve.x_error; });
-  });
-  out.reading = ends_reading(c, out.lines);
-  return out;
-}
-
-const std::vector<Real>* series_of(const Record& record, const std::string& name) {
-  const auto found = record.series.find(name);
-  return found == record.series.end() ? nullptr : &found->second;
-}
-
-Figure series_figure(const Comparison& c, std::size_t p, const std::string& name) {
-  Figure out{.x_label = "iterations", .y_label = name, .is_log_x = true};
-  out.lines = lines_of(c, p, [&](const auto& records) {
-    return line_over_iterations(records, [&](const Record& r) { return series_of(r, name); });
-  });
-  std::vector<std::string> ends;
-  for (const FigureLine& line : out.lines)
-    ends.push_back(fmt::format("{} {}", label(c, line), figure(line.y.back())));
-  constexpr std::size_t kMost = 8;
-  ends.resize(std::min(kMost, ends.size()));
-  out.reading = fmt::format("At the end: {}.", joined(ends));
-  return out;
-}
-
-Figure path_figure(const Comparison& c, std::size_t p, const std::string& pair) {
-  const std::size_t bar = pair.find('|');
-  Figure out{.x_label = pair.substr(0, bar), .y_label = pair.substr(bar + 1)};
-  out.lines = lines_of(c, p, [&](const auto& records) {
-    FigureLine line;
-    const auto *x = series_of(*records[0], out.x_label), *y = series_of(*records[0], out.y_label);
-    if (x == nullptr || y == nullptr) return line;
-    for (const std::size_t i : thinned(x->size(), kPoints)) {
-      line.x.push_back((*x)[i]);
-      line.y.push_back((*y)[i]);
-    }
-    return line;
-  });
-  out.reading = "Paths of the first seed.";
-  return out;
-}
-
-// take(y*, x*, x) for every number of every sample shown.
-template <class Take>
-void each_error(const Record& record, Take take) {
-  if (!record.exhibit || record.exhibit->is_picture() || record.exhibit->truth.is_empty()) return;
-  const Exhibit& shown = *record.exhibit;
-  for (Index b = 0; b < shown.x.columns(); ++b)
-    for (Index i = 0; i < shown.x.rows() && i < shown.target.rows(); ++i)
-      take(shown.target(i, b), shown.truth(i, b), shown.x(i, b));
-}
-
-Figure scatter_figure(const Comparison& c, std::size_t p) {
-  Figure out{.x_label = "x*", .y_label = "x inferred", .has_diagonal = true};
-  std::vector<std::string> errors;
-  out.lines = lines_of(c, p, [](const auto& records) {
-    std::map<Real, Real> sorted;
-    each_error(*records[0], [&](Real, Real truth, Real x) { sorted[truth] = x; });
-    FigureLine line;
-    for (const auto& [truth, x] : sorted) {
-      line.x.push_back(truth);
-      line.y.push_back(x);
-    }
-    return line;
-  });
-  for (const FigureLine& line : out.lines) {
-    std::vector<Real> gaps;
-    for (std::size_t i = 0; i < line.x.size(); ++i) gaps.push_back(std::abs(line.y[i] - line.x[i]));
-    errors.push_back(fmt::format("{} {}", label(c, line), figure(median_of(std::move(gaps)))));
-  }
-  out.reading = fmt::format("Median |x − x*| over the samples drawn here, of the first seed: {}.",
-                            joined(errors));
-  return out;
-}
-
-Figure decades_figure(const Comparison& c, std::size_t p) {
-  Figure out{.x_label = "y*", .y_label = "|x − x*|, median", .is_log_x = true, .is_log_y = true};
-  out.lines = lines_of(c, p, [](const auto& records) {
-    std::map<int, std::vector<Real>> decades;
-    for (const Record* record : records)
-      each_error(*record, [&](Real target, Real truth, Real x) {
-        if (target > 0)
-          decades[static_cast<int>(std::floor(std::log10(target)))].push_back(std::abs(x - truth));
-      });
-    FigureLine line;
-    constexpr std::size_t kFewest = 5;  // samples that a median says something of
-    for (auto& [decade, gaps] : decades)
-      if (gaps.size() >= kFewest) push(line, std::pow(10.0, decade + 0.5), range_of(gaps));
-    return line;
-  });
-  if (!out.lines.empty())
-    out.reading =
-        "Each point is a decade of y*, the last one up to 1. " + ends_reading(c, out.lines);
-  return out;
-}
-
-}  // namespace
-
-Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel) {
-  Figure out{.x_label = panel.over,
-             .y_label = panel.divided_by.empty()
-                            ? "error in x, on the validation"
-                            : fmt::format("error in x / {}, on the validation", panel.divided_by),
-             .is_log_y = true,
-             .is_relative = !panel.divided_by.empty()};
-  for (const auto& [value, problem] : sweep)
-    out.places.emplace_back(problem_name(c.problems[problem]), value);
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    FigureLine line{.optimizer = s};
-    for (const auto& [value, problem] : sweep) {
-      std::vector<Real> errors;
-      for (const Record* record : records_of(c, problem, s)) {
-        const OptionValues& options = record->request.problem.options;
-        const Real scale =
-            panel.divided_by.empty() ? 1 : options.number(panel.divided_by, std::nan(""));
-        errors.push_back(record->summary.x_error / scale);
-      }
-      if (!errors.empty()) push(line, value, range_of(std::move(errors)));
-    }
-    if (!line.x.empty()) out.lines.push_back(std::move(line));
-  }
-  out.reading = fmt::format("From {0} = {1} to {0} = {2}. {3}", panel.over, figure(sweep[0].first),
-                            figure(sweep.back().first), ends_reading(c, out.lines));
-  return out;
-}
-
-Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
-  if (panel.kind == "curve") return curve_figure(c, p);
-  if (panel.kind == "scatter") return scatter_figure(c, p);
-  if (panel.kind == "decades") return decades_figure(c, p);
-  if (panel.kind == "series") return series_figure(c, p, panel.quantity);
-  if (panel.kind == "path") return path_figure(c, p, panel.quantity);
-  return picture_figure(c, p);
-}
-
-// Pictures of a sample: what was observed, what each method inferred, and what was to be found.
-
-namespace {
-
-Picture picture_of(std::string title, std::span<const float> field, Index N) {
-  return {std::move(title), N, {field.begin(), field.end()}};
-}
-
-}  // namespace
-
-Figure picture_figure(const Comparison& c, std::size_t p) {
-  Figure out;
-  std::vector<Picture> inferred;
-  FieldFrames last;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    for (const std::size_t run : c.cell(p, s).runs) {
-      const Record* record = c.runs[run].record;
-      std::optional<FieldFrames> shown = c.study->fields_of(*record);
-      if (!shown || !shown->has_truth() || shown->shape[1] != shown->shape[2]) continue;
-      const std::span<const float> x = shown->x(shown->iterations.size() - 1);
-      inferred.push_back(picture_of(shown_spec(c.optimizers[s].label), x, shown->shape[1]));
-      last = std::move(*shown);
-      break;
-    }
-  if (inferred.empty()) return out;
-  out.pictures.push_back(picture_of("y*", last.target(), last.shape[1]));
-  for (Picture& picture : inferred) out.pictures.push_back(std::move(picture));
-  out.pictures.push_back(picture_of("x*", last.truth(), last.shape[1]));
-  out.reading =
-      "The first sample of the validation, as inferred after the last iteration of the first seed. "
-      "The x share the grey scale of x*.";
-  return out;
 }
 
 }  // namespace isoline::reports

@@ -35,13 +35,11 @@ std::string values_text(const Request& request) {
 const TunedRate* rate_of(const Comparison& c, std::size_t p, std::size_t s) {
   const Request* request = request_of(c, p, s);
   if (request == nullptr || request->rates.empty()) return nullptr;
-  const auto& rates = c.study->rates;
-  const auto is_its = [&](const TunedRate& rate) {
-    return rate.problem == request->problem.spec && rate.optimizer == request->optimizer.name &&
-           rate.file == request->rates;
-  };
-  const auto at = std::ranges::find_if(rates, is_its);
-  return at == rates.end() ? nullptr : &*at;
+  for (const TunedRate& rate : c.study->rates)
+    if (rate.problem == request->problem.spec && rate.optimizer == request->optimizer.name &&
+        rate.file == request->rates)
+      return &rate;
+  return nullptr;
 }
 
 Origin origin_of(const Comparison& c, std::size_t p, std::size_t s) {
@@ -70,17 +68,14 @@ std::string setting_text(const Comparison& c, std::size_t p, std::size_t s) {
 
 namespace {
 
-constexpr std::size_t kMostBuilds = 8;
-
-// What is told of a build, in order; equal ones are told once.
-using Lines = std::vector<std::string>;
-const std::vector<std::string> kTerms = {"version",      "commit",    "compiler", "build",
-                                         "instructions", "processor", "system",   "libraries"};
+// What is reported of a build, in order; equal ones once.
+constexpr std::array<const char*, 8> kTerms = {
+    "version", "commit", "compiler", "build", "instructions", "processor", "system", "libraries"};
+using Lines = std::array<std::string, kTerms.size()>;
 
 Lines lines_of(const Build& build) {
   std::vector<std::string> libraries;
-  for (const auto& [name, version] : build.libraries)
-    libraries.push_back(fmt::format("{} {}", name, version));
+  for (const auto& [name, version] : build.libraries) libraries.push_back(name + " " + version);
   const bool is_changed = build.is_dirty.value_or(false) && !build.commit.empty();
   return {build.version,
           build.commit + (is_changed ? " with uncommitted changes" : ""),
@@ -92,35 +87,17 @@ Lines lines_of(const Build& build) {
           joined(libraries)};
 }
 
-struct Origins {
-  std::set<Lines> builds;
-  std::set<std::string> commands;
-};
-
-Origins origins_of(const Comparison& c) {
-  Origins all;
-  std::set<const Build*> seen;  // one in memory for records of one build
-  for (const Run& run : c.runs) {
-    const Provenance& provenance = run.record->provenance;
-    const bool is_new = seen.insert(provenance.build.get()).second;
-    if (is_new && all.builds.size() < kMostBuilds) all.builds.insert(lines_of(*provenance.build));
-    if (all.commands.size() < kMostBuilds) all.commands.insert(provenance.run.command);
-  }
-  all.commands.erase("");
-  return all;
-}
-
 // A column a build, so that what differs stands side by side.
 Table builds_table(const std::set<Lines>& builds) {
   Table table{.id = "builds", .columns = {""}, .align = "l" + std::string(builds.size(), 'p')};
   for (std::size_t i = 0; i < builds.size(); ++i)
     table.columns.push_back(builds.size() == 1 ? "build" : fmt::format("build {}", i + 1));
-  for (std::size_t line = 0; line < kTerms.size(); ++line) {
-    std::vector<TableCell> row = {kTerms[line]};
-    for (const Lines& build : builds) row.emplace_back(build[line]);
-    const bool is_told = std::ranges::any_of(
-        row | std::views::drop(1), [](const TableCell& cell) { return !cell.text.empty(); });
-    if (is_told) table.rows.push_back(std::move(row));
+  for (std::size_t term = 0; term < kTerms.size(); ++term) {
+    std::vector<TableCell> row = {kTerms[term]};
+    for (const Lines& build : builds) row.emplace_back(build[term]);
+    const auto is_known = [](const TableCell& cell) { return !cell.text.empty(); };
+    if (std::ranges::any_of(row | std::views::drop(1), is_known))
+      table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -128,12 +105,21 @@ Table builds_table(const std::set<Lines>& builds) {
 }  // namespace
 
 Section builds_section(const Comparison& c) {
+  constexpr std::size_t kMost = 8;  // builds, and commands
   Section section{.id = "provenance", .title = "Provenance"};
   if (c.runs.empty()) return section;
-  const Origins origins = origins_of(c);
-  section.tables.push_back(builds_table(origins.builds));
-  for (const std::string& command : origins.commands)
-    section.readings.push_back({"Asked for by", command});
+  std::set<Lines> builds;
+  std::set<std::string> commands;
+  std::set<const Build*> seen;  // one in memory for records of one build
+  for (const Run& run : c.runs) {
+    const Provenance& provenance = run.record->provenance;
+    if (seen.insert(provenance.build.get()).second && builds.size() < kMost)
+      builds.insert(lines_of(*provenance.build));
+    if (commands.size() < kMost) commands.insert(provenance.run.command);
+  }
+  commands.erase("");
+  section.tables.push_back(builds_table(builds));
+  for (const std::string& command : commands) section.readings.push_back({"Asked for by", command});
   section.readings.push_back({"One cell again", rerun_command(c.runs[0].record->request)});
   section.readings.push_back(
       {"The command of every other cell",

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
@@ -148,23 +148,28 @@ Section properties_section(const Audits& all) {
 
 namespace {
 
-using Test = std::function<bool(const AuditedOptimizer&)>;
-
 constexpr Real kSame = 0.02;  // how near to a whole exponent is that exponent
 
-std::vector<std::string> names_where(const Audits& all, const Test& test) {
+template <class Test>
+std::vector<std::string> names_where(const Audits& all, Test test) {
   std::vector<std::string> names;
   for (const AuditedOptimizer& audited : all)
     if (audited.reason.empty() && test(audited)) names.push_back(audited.name);
   return names;
 }
 
-std::string listed(const std::vector<std::string>& names) {
+template <class Test>
+std::string listed_where(const Audits& all, Test test) {
+  const std::vector<std::string> names = names_where(all, test);
   return names.empty() ? "none" : joined(names);
 }
 
-bool has_exponent(const PowerLaw& law, Real exponent) {
-  return law.holds() && std::abs(law.exponent - exponent) <= kSame;
+// Whose first step goes with this exponent of what is scaled.
+std::string listed_with(const Audits& all, Scaled scaled, Real exponent) {
+  return listed_where(all, [=](const AuditedOptimizer& audited) {
+    const PowerLaw& law = audited.law(scaled).step;
+    return law.holds() && std::abs(law.exponent - exponent) <= kSame;
+  });
 }
 
 // The factor of the inverse Hessian: a slope has none, but where L is curved and x rescaled by s,
@@ -186,11 +191,6 @@ std::string hessian_sentence(const Audits& all) {
 
 // The chapter's L = αx, where the figures and the chapter need not say the same.
 std::string slope_sentence(const Audits& all) {
-  const auto with = [&](Real exponent) {
-    return listed(names_where(all, [=](const AuditedOptimizer& audited) {
-      return has_exponent(audited.law(Scaled::slope).step, exponent);
-    }));
-  };
   return fmt::format(
       "Of the slope L = αx the book’s chapter states that gradient descent steps by α and changes "
       "L by α², that the inverse Hessian of Newton’s method brings a factor 1/α², and that the "
@@ -199,30 +199,26 @@ std::string slope_sentence(const Audits& all) {
       "gradient have −1 contradicts it only in words: to L alone, whose Hessian is zero, Newton’s "
       "method has no step, while methods over residuals and inverses are told here y = αx and a "
       "target one below, and 1/α is the step that reaches it.{}",
-      with(1), with(0), with(-1), hessian_sentence(all));
+      listed_with(all, Scaled::slope, 1), listed_with(all, Scaled::slope, 0),
+      listed_with(all, Scaled::slope, -1), hessian_sentence(all));
 }
 
 std::string scaling_sentence(const Audits& all) {
-  const auto sound = names_where(all, [](const AuditedOptimizer& audited) {
-    return has_exponent(audited.law(Scaled::input).step, -1);
-  });
-  const auto wrong = names_where(all, [](const AuditedOptimizer& audited) {
-    return has_exponent(audited.law(Scaled::input).step, 1);
-  });
-  const auto none = names_where(all, [](const AuditedOptimizer& audited) {
+  const auto has_none = [](const AuditedOptimizer& audited) {
     const PowerLaw& law = audited.law(Scaled::input).step;
     return law.has_values() && !law.holds();
-  });
+  };
   return fmt::format(
       "Write x in a unit s times as large and its numbers shrink by 1/s: a step should do the "
       "same, exponent −1, and does for {}; it grows by s instead for {}, so that what needs a "
       "large change gets a small one; no power law at all: {}. {}",
-      listed(sound), listed(wrong), listed(none), slope_sentence(all));
+      listed_with(all, Scaled::input, -1), listed_with(all, Scaled::input, 1),
+      listed_where(all, has_none), slope_sentence(all));
 }
 
 std::string invariance_sentence(const Audits& all) {
   const auto kept = [&](std::size_t first, std::size_t last) {
-    return names_where(all, [=](const AuditedOptimizer& audited) {
+    return listed_where(all, [=](const AuditedOptimizer& audited) {
       for (std::size_t i = first; i < last; ++i)
         if (!(audited.deviations[i] <= kInvariantDeviation)) return false;
       return true;
@@ -231,30 +227,27 @@ std::string invariance_sentence(const Audits& all) {
   return fmt::format(
       "The whole path is the same in other units of x, component by component, for {}; under every "
       "affine change of x for {}; under every affine change of y for {}.",
-      listed(kept(0, 1)), listed(kept(0, 3)), listed(kept(3, 6)));
+      kept(0, 1), kept(0, 3), kept(3, 6));
 }
 
 std::string convergence_sentence(const Audits& all) {
   constexpr Real kQuadratic = 1.7;  // rounding leaves few points to fit
-  const auto at_once = names_where(all, [](const AuditedOptimizer& audited) {
+  const auto is_at_once = [](const AuditedOptimizer& audited) {
     return audited.regular.is_exact && audited.regular.steps == 1;
-  });
-  const auto quadratic = names_where(all, [](const AuditedOptimizer& audited) {
+  };
+  const auto is_quadratic = [](const AuditedOptimizer& audited) {
     return audited.regular.residual <= kMostOrderResidual && audited.regular.order >= kQuadratic;
-  });
-  const auto left =
-      names_where(all, [](const AuditedOptimizer& audited) { return audited.singular.is_exact; });
+  };
+  const auto arrives = [](const AuditedOptimizer& audited) { return audited.singular.is_exact; };
   return fmt::format(
       "Near a solution the number of right digits doubles each step (order 2) for {}; one step "
       "is enough for {}; others gain digits at a steady rate (order 1) or none. Where the Jacobian "
       "is singular at the solution, it is still reached to rounding by {}.",
-      listed(quadratic), listed(at_once), listed(left));
+      listed_where(all, is_quadratic), listed_where(all, is_at_once), listed_where(all, arrives));
 }
 
 std::string composition_sentence(const Audits& all) {
   constexpr Real kSmallest = 0.05;  // degrees: what prints as 0.0
-  const auto faithful = names_where(
-      all, [](const AuditedOptimizer& audited) { return audited.linear_angle < kSmallest; });
   const AuditedOptimizer* worst = nullptr;
   for (const AuditedOptimizer& audited : all)
     if (audited.reason.empty() && audited.linear_angle >= kSmallest &&
@@ -264,40 +257,40 @@ std::string composition_sentence(const Audits& all) {
       "In a composition of stages, what a step changes in an intermediate quantity should be the "
       "step that the method would take there. Through a linear stage it is, for {}; the largest "
       "angle between the two is that of {}.",
-      listed(faithful),
+      listed_where(all, [](const AuditedOptimizer& one) { return one.linear_angle < kSmallest; }),
       worst == nullptr ? "none" : fmt::format("{}, {:.0f}°", worst->name, worst->linear_angle));
 }
 
 std::string oracle_sentence(const Audits& all) {
   const auto asks = [&](const char* oracle) {
-    return names_where(
+    return listed_where(
         all, [=](const AuditedOptimizer& audited) { return audited.counted.contains(oracle); });
   };
-  const auto losses = names_where(all, [](const AuditedOptimizer& audited) {
+  const auto needs_loss_alone = [](const AuditedOptimizer& audited) {
     return audited.counted.size() == 1 && audited.counted.contains("forward");
-  });
+  };
   return fmt::format(
       "As counted, {} asked for the loss alone, {} for a Jacobian, {} for a Hessian, {} for an "
       "inverse of the physics, {} for the true x, which is what one is looking for.",
-      listed(losses), listed(asks("jacobian")), listed(asks("hessian")), listed(asks("inverse")),
-      listed(asks("truth")));
+      listed_where(all, needs_loss_alone), asks("jacobian"), asks("hessian"), asks("inverse"),
+      asks("truth"));
 }
 
 std::string declaration_sentence(const Audits& all) {
   std::string text, unmeasured;
-  for (const AuditedOptimizer& audited : all)
+  for (const AuditedOptimizer& audited : all) {
     if (!audited.reason.empty())
       unmeasured += fmt::format(" Not measured: {}, {}.", audited.name, audited.reason);
-  for (const AuditedOptimizer& audited : all)
     for (const std::string& flag : audited.flags)
       text += fmt::format("{}{} {}", text.empty() ? "" : "; ", audited.name, flag);
+  }
   const std::vector<std::string> teachers =
       names_where(all, [](const AuditedOptimizer& audited) { return !audited.network.empty(); });
   if (!teachers.empty())
     unmeasured += fmt::format(
         " {} train a network: the loss and y are scaled, the path is that of the weights, and "
         "changes of x, order and angle do not apply, since no step is made in x.",
-        listed(teachers));
+        joined(teachers));
   if (text.empty()) text = "Every optimizer measured behaves as it declares";
   return text + "." + unmeasured;
 }
@@ -314,91 +307,66 @@ std::vector<Reading> property_readings(const Audits& all) {
 
 namespace {
 
-Real decade(Real value) {  // 1e-16 is as small as rounding lets be told
-  return std::isnan(value) ? value : std::log10(std::max(value, 1e-16));
-}
-
-Plot plot_of(const Audits& all, const char* id, const char* title, std::array<Real, 2> window) {
-  Plot plot{.kind = Plot::Kind::dots,
-            .id = id,
-            .title = title,
-            .reading = "",
-            .caption = "",
-            .x_label = "",
-            .y_label = "",
-            .is_folded = true,
-            .window = window};
+// A series each name: value(its number, optimizer).
+template <class Names, class Value>
+Plot dots_plot(const Audits& all, const char* id, const char* title, std::array<Real, 2> window,
+               const Names& names, Value value) {
+  Plot plot{
+      .kind = Plot::Kind::dots, .id = id, .title = title, .is_folded = true, .window = window};
   for (const AuditedOptimizer& audited : all)
     plot.rows.push_back({audited.name, {.method = audited.name}});
-  return plot;
-}
-
-template <class Value>
-void add_series(Plot& plot, const Audits& all, std::string_view name, Value value) {
-  PlotSeries series{std::nullopt, std::string(name), {}, {}, {}, {}};
-  for (std::size_t row = 0; row < all.size(); ++row) {
-    const Real measured = all[row].reason.empty() ? value(all[row]) : kUnknown;
-    if (std::isnan(measured)) continue;
-    series.x.push_back(measured);
-    series.y.push_back(Real(row));
+  for (std::size_t i = 0; i < std::size(names); ++i) {
+    PlotSeries& series =
+        plot.series.emplace_back(PlotSeries{std::nullopt, std::string(names[i]), {}, {}, {}, {}});
+    for (std::size_t row = 0; row < all.size(); ++row) {
+      const Real measured = all[row].reason.empty() ? value(i, all[row]) : kUnknown;
+      if (std::isnan(measured)) continue;
+      series.x.push_back(measured);
+      series.y.push_back(Real(row));
+    }
   }
-  plot.series.push_back(std::move(series));
-}
-
-Plot exponents_plot(const Audits& all) {
-  Plot plot =
-      plot_of(all, "plot-exponents", "Exponent of the first step, by what is scaled", {-1, 2});
-  for (std::size_t i = 0; i < kScalingNames.size(); ++i)
-    add_series(plot, all, kScalingNames[i], [i](const AuditedOptimizer& audited) {
-      const PowerLaw& law = audited.scalings[i].step;
-      return law.holds() ? law.exponent : kUnknown;
-    });
   return plot;
 }
 
-Plot deviations_plot(const Audits& all) {
-  Plot plot = plot_of(all, "plot-deviations",
-                      "Deviation of the path, decades: −16 is rounding, 0 another path", {-16, 0});
-  for (std::size_t i = 0; i < kChangeNames.size(); ++i)
-    add_series(plot, all, kChangeNames[i],
-               [i](const AuditedOptimizer& audited) { return decade(audited.deviations[i]); });
-  return plot;
-}
-
-Plot orders_plot(const Audits& all) {
-  const auto order = [](const Approach& approach) {
-    return approach.residual <= kMostOrderResidual ? approach.order : kUnknown;
-  };
-  Plot plot = plot_of(all, "plot-orders", "Order of convergence", {0, 2.5});
-  add_series(plot, all, "J regular", [&](const auto& audited) { return order(audited.regular); });
-  add_series(plot, all, "J singular", [&](const auto& audited) { return order(audited.singular); });
-  return plot;
-}
-
-Plot angles_plot(const Audits& all) {
-  Plot plot = plot_of(all, "plot-angles",
-                      "Angle between the change that was asked and that made, degrees", {0, 90});
-  add_series(plot, all, "linear stage", [](const auto& audited) { return audited.linear_angle; });
-  add_series(plot, all, "curved stage", [](const auto& audited) { return audited.curved_angle; });
-  return plot;
-}
-
-Plot oracles_plot(const Audits& all) {
-  Plot plot = plot_of(all, "plot-oracles", "Oracle calls an iteration, as counted", {0, 4});
-  for (const char* oracle : {"forward", "pullback", "jacobian", "hessian", "inverse", "truth"})
-    add_series(plot, all, oracle, [oracle](const AuditedOptimizer& audited) {
-      const auto at = audited.counted.find(oracle);
-      if (at == audited.counted.end() || audited.iterations == 0) return kUnknown;
-      return static_cast<Real>(at->second) / static_cast<Real>(audited.iterations);
-    });
-  return plot;
-}
+constexpr std::array kOracles = {"forward", "pullback", "jacobian", "hessian", "inverse", "truth"};
 
 }  // namespace
 
 std::vector<Plot> property_plots(const Audits& all) {
-  return {exponents_plot(all), deviations_plot(all), orders_plot(all), angles_plot(all),
-          oracles_plot(all)};
+  using Audited = const AuditedOptimizer&;
+  const auto exponent = [](std::size_t i, Audited audited) {
+    const PowerLaw& law = audited.scalings[i].step;
+    return law.holds() ? law.exponent : kUnknown;
+  };
+  const auto deviation = [](std::size_t i, Audited audited) {
+    constexpr Real kLeast = 1e-16;  // as small as rounding lets be told
+    const Real value = audited.deviations[i];
+    return std::isnan(value) ? value : std::log10(std::max(value, kLeast));
+  };
+  const auto order = [](std::size_t i, Audited audited) {
+    const Approach& approach = i == 0 ? audited.regular : audited.singular;
+    return approach.residual <= kMostOrderResidual ? approach.order : kUnknown;
+  };
+  const auto angle = [](std::size_t i, Audited audited) {
+    return i == 0 ? audited.linear_angle : audited.curved_angle;
+  };
+  const auto calls = [](std::size_t i, Audited audited) {
+    const auto at = audited.counted.find(kOracles[i]);
+    if (at == audited.counted.end() || audited.iterations == 0) return kUnknown;
+    return static_cast<Real>(at->second) / static_cast<Real>(audited.iterations);
+  };
+  return {dots_plot(all, "plot-exponents", "Exponent of the first step, by what is scaled", {-1, 2},
+                    kScalingNames, exponent),
+          dots_plot(all, "plot-deviations",
+                    "Deviation of the path, decades: −16 is rounding, 0 another path", {-16, 0},
+                    kChangeNames, deviation),
+          dots_plot(all, "plot-orders", "Order of convergence", {0, 2.5},
+                    std::array{"J regular", "J singular"}, order),
+          dots_plot(all, "plot-angles",
+                    "Angle between the change that was asked and that made, degrees", {0, 90},
+                    std::array{"linear stage", "curved stage"}, angle),
+          dots_plot(all, "plot-oracles", "Oracle calls an iteration, as counted", {0, 4}, kOracles,
+                    calls)};
 }
 
 }  // namespace isoline::reports

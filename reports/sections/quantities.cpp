@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <set>
 
 #include "core/json.h"
 #include "reports/sections/claim_terms.h"
@@ -44,21 +43,13 @@ Real crossing(const std::vector<Real>& m, const std::vector<Real>& at) {
   return kNever;
 }
 
-// Kendall's τ: pairs in the same order, less those in the opposite one, over all pairs.
-Real kendall(const Real* first, const Real* second, std::size_t n) {
-  const auto sign = [](Real d) { return d > 0 ? 1 : d < 0 ? -1 : 0; };
-  Real with = 0, pairs = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 1; j < n; ++j, ++pairs)
-      with += sign(first[i] - first[j]) * sign(second[i] - second[j]);
-  return with / pairs;
-}
-
-// With the order of the terms.
+// Kendall's τ with the order of the terms: pairs in it, less those in the opposite one, over all.
 Real order(const std::vector<Real>& m) {
-  std::vector<Real> places(m.size());
-  std::iota(places.begin(), places.end(), 0);
-  return kendall(m.data(), places.data(), m.size());
+  Real with = 0, pairs = 0;
+  for (std::size_t i = 0; i < m.size(); ++i)
+    for (std::size_t j = i + 1; j < m.size(); ++j, ++pairs)
+      with += m[i] < m[j] ? 1 : m[i] > m[j] ? -1 : 0;
+  return with / pairs;
 }
 
 // The first half of the terms over the second.
@@ -67,12 +58,6 @@ std::vector<Real> ratios(const std::vector<Real>& m) {
   std::vector<Real> all;
   for (std::size_t i = 0; i < half; ++i) all.push_back(m[i] / m[half + i]);
   return all;
-}
-
-// Of the first half of the terms with the second.
-Real agreement(const std::vector<Real>& m) {
-  const std::size_t half = m.size() / 2;
-  return kendall(m.data(), m.data() + half, half);
 }
 
 // Of the first, from 1; those equal to it share the places that they take.
@@ -137,7 +122,6 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
   if (kind == "order") return order(medians);
   if (kind == "ratio_slope") return slope(ratios(medians), at);
   if (kind == "trend") return order(ratios(medians));
-  if (kind == "agreement") return agreement(medians);
   if (kind == "greatest") return std::ranges::max(medians);
   if (kind == "position") return position(medians);
   return first;
@@ -145,9 +129,7 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
 
 std::optional<Real> neutral_of(const std::string& kind) {
   if (kind == "ratio") return 1;
-  static const std::set<std::string> signed_kinds = {"slope", "ratio_slope", "order", "trend",
-                                                     "agreement"};
-  if (signed_kinds.contains(kind)) return 0;
+  if (kind == "order" || kind == "trend" || kind.ends_with("slope")) return 0;
   return std::nullopt;
 }
 

@@ -18,7 +18,7 @@ namespace isoline::reports {
 // log m over log at, crossing (where the first half of the terms passes from below the second half
 // to above it, in `at`), position (of the first, from 1; a tie counts half), order
 // (Kendall's τ with that of the terms). Of the first half of the terms over the second: ratio_slope
-// and trend, the slope and the order of these ratios; agreement, Kendall's τ of the two halves.
+// and trend, the slope and the order of these ratios.
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at);
 

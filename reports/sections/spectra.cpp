@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "reports/read/sweeps.h"
 #include "reports/sections/evidence.h"
@@ -19,26 +20,28 @@ constexpr Real kVisible = 1e-6;  // of the largest, the usual cut-off
 // The run of the least seed that kept spectra.
 struct Seen {
   std::size_t optimizer;
-  const Record* record;
+  std::string name;
+  const Spectrum* spectrum;
 
-  const std::vector<Real>& first() const { return record->spectrum->sigma.front(); }
-  const std::vector<Real>& last() const { return record->spectrum->sigma.back(); }
+  const std::vector<Real>& first() const { return spectrum->sigma.front(); }
+  const std::vector<Real>& last() const { return spectrum->sigma.back(); }
 };
 
-bool has_spectrum(const Record& record) {
-  return record.spectrum && !record.spectrum->sigma.empty() &&
-         !record.spectrum->sigma.front().empty();
+bool is_drawable(const std::vector<Real>& sigma) {
+  return std::ranges::any_of(sigma, [](Real one) { return one > 0 && std::isfinite(one); });
 }
 
 // The best first.
 std::vector<Seen> seen_on(const Comparison& c, std::size_t problem) {
   std::vector<Seen> all;
   for (const std::size_t s : ranking(c, problem))
-    for (const std::size_t run : c.cell(problem, s).runs)
-      if (has_spectrum(*c.runs[run].record)) {
-        all.push_back({s, c.runs[run].record});
-        break;
-      }
+    for (const std::size_t run : c.cell(problem, s).runs) {
+      const auto& spectrum = c.runs[run].record->spectrum;
+      if (!spectrum || spectrum->sigma.empty() || spectrum->sigma.front().empty()) continue;
+      if (is_drawable(spectrum->sigma.front()) && is_drawable(spectrum->sigma.back()))
+        all.push_back({s, optimizer_text(c, s), &*spectrum});
+      break;
+    }
   return all;
 }
 
@@ -60,20 +63,7 @@ PlotSeries values(std::string name, const std::vector<Real>& sigma) {
   return line;
 }
 
-// Lines over both logarithms, still without any.
-Plot empty_plot(const Comparison& c, std::size_t p, const std::string& id,
-                const std::string& title) {
-  return {.kind = Plot::Kind::lines,
-          .id = fmt::format("plot-{}-{}", id, p),
-          .title = fmt::format("{} on {}", title, problem_name(c.problems[p])),
-          .reading = "",
-          .caption = "",
-          .is_log_x = true,
-          .is_log_y = true};
-}
-
-Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
-  Plot plot = empty_plot(c, p, "spectrum", "Singular values");
+Plot values_plot(Plot plot, const std::vector<Seen>& seen) {
   plot.caption =
       "Of J = ∂y/∂θ over the batch of a step, all samples stacked and y unscaled, in the Euclidean "
       "norms of y and θ; the largest first, at the start and where each method ended; one run "
@@ -81,39 +71,34 @@ Plot values_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& se
   plot.x_label = "number of the singular value";
   plot.y_label = "σ";
   plot.series.push_back(values("at the start", seen[0].first()));
-  for (std::size_t i = 0; i < std::min(seen.size(), kMostRivals); ++i)
-    plot.series.push_back(
-        values(fmt::format("{}, iteration {}", optimizer_text(c, seen[i].optimizer),
-                           seen[i].record->spectrum->iterations.back()),
-               seen[i].last()));
-  plot.reading =
-      fmt::format("At the start {} of {} lie above 1e-6 of the largest; where {} ended, {}.",
-                  visible(seen[0].first()), seen[0].first().size(),
-                  optimizer_text(c, seen[0].optimizer), visible(seen[0].last()));
+  for (const Seen& one : std::span(seen).first(std::min(seen.size(), kMostRivals)))
+    plot.series.push_back(values(
+        fmt::format("{}, iteration {}", one.name, one.spectrum->iterations.back()), one.last()));
+  plot.reading = fmt::format(
+      "At the start {} of {} lie above 1e-6 of the largest; where {} ended, {}.",
+      visible(seen[0].first()), seen[0].first().size(), seen[0].name, visible(seen[0].last()));
   return plot;
 }
 
-Plot conditions_plot(const Comparison& c, std::size_t p, const std::vector<Seen>& seen) {
-  Plot plot = empty_plot(c, p, "conditioning", "Condition number");
+Plot conditions_plot(Plot plot, const std::vector<Seen>& seen) {
   plot.caption =
       "In the spectral norm: the largest singular value of J over the smallest, along the same "
       "runs; a gap where the smallest is 0.";
   plot.x_label = "1 + iteration";
   plot.y_label = "σ₁ / σᵣ";
-  for (std::size_t i = 0; i < std::min(seen.size(), kMostRivals); ++i) {
-    const Spectrum& spectrum = *seen[i].record->spectrum;
-    PlotSeries line{.optimizer = seen[i].optimizer, .name = optimizer_text(c, seen[i].optimizer)};
-    for (std::size_t k = 0; k < spectrum.sigma.size(); ++k) {
-      line.x.push_back(1 + Real(spectrum.iterations[k]));
-      line.y.push_back(condition(spectrum.sigma[k]));
+  for (const Seen& one : std::span(seen).first(std::min(seen.size(), kMostRivals))) {
+    PlotSeries& line =
+        plot.series.emplace_back(PlotSeries{one.optimizer, one.name, {}, {}, {}, {}});
+    for (std::size_t k = 0; k < one.spectrum->sigma.size(); ++k) {
+      line.x.push_back(1 + Real(one.spectrum->iterations[k]));
+      line.y.push_back(condition(one.spectrum->sigma[k]));
     }
-    plot.series.push_back(std::move(line));
   }
   const Real first = condition(seen[0].first()), last = condition(seen[0].last());
   plot.reading = std::isnan(first) || std::isnan(last)
                      ? "The smallest singular value is 0 at the start or at the end."
                      : fmt::format("From {} at the start to {} where {} ended.", figure(first),
-                                   figure(last), optimizer_text(c, seen[0].optimizer));
+                                   figure(last), seen[0].name);
   return plot;
 }
 
@@ -126,26 +111,20 @@ Table spectra_table(const Comparison& c, std::size_t p, const std::vector<Seen>&
                   "The largest and the smallest singular value of J over the batch of a "
                   "step, their ratio, and how many lie above 1e-6 of the largest.",
               .columns = {"optimizer", "iteration", "σ₁", "σᵣ", "σ₁ / σᵣ", "above 1e-6"}};
-  const auto add = [&](const Seen& one, const std::vector<Real>& sigma, std::int64_t iteration) {
-    const Real ratio = condition(sigma);
-    table.rows.push_back({optimizer_text(c, one.optimizer),
-                          std::to_string(iteration),
-                          {figure(sigma.front()), {{"largest", sigma.front()}}},
-                          {figure(sigma.back()), {{"smallest", sigma.back()}}},
-                          {std::isnan(ratio) ? "inf" : figure(ratio), {{"condition", ratio}}},
-                          fmt::format("{} of {}", visible(sigma), sigma.size())});
-    table.row_topics.push_back({.optimizer = one.optimizer, .problem = p});
-  };
-  for (const Seen& one : seen) {
-    add(one, one.first(), one.record->spectrum->iterations.front());
-    add(one, one.last(), one.record->spectrum->iterations.back());
-  }
+  for (const Seen& one : seen)
+    for (const bool is_last : {false, true}) {
+      const std::vector<Real>& sigma = is_last ? one.last() : one.first();
+      const auto& iterations = one.spectrum->iterations;
+      const Real ratio = condition(sigma);
+      table.rows.push_back({one.name,
+                            std::to_string(is_last ? iterations.back() : iterations.front()),
+                            {figure(sigma.front()), {{"largest", sigma.front()}}},
+                            {figure(sigma.back()), {{"smallest", sigma.back()}}},
+                            {std::isnan(ratio) ? "inf" : figure(ratio), {{"condition", ratio}}},
+                            fmt::format("{} of {}", visible(sigma), sigma.size())});
+      table.row_topics.push_back({.optimizer = one.optimizer, .problem = p});
+    }
   return table;
-}
-
-bool is_drawable(const Seen& seen) {
-  const auto is_seen = [](Real sigma) { return sigma > 0 && std::isfinite(sigma); };
-  return std::ranges::any_of(seen.first(), is_seen) && std::ranges::any_of(seen.last(), is_seen);
 }
 
 }  // namespace
@@ -156,11 +135,17 @@ Section spectra_section(const Comparison& c) {
                   .lead = "What a method over the spectrum of J sees, and what steps make of it.",
                   .otherwise = "No run kept singular values: isoline run --spectrum keeps them."};
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    std::vector<Seen> seen = seen_on(c, p);
-    std::erase_if(seen, [](const Seen& one) { return !is_drawable(one); });
+    const std::vector<Seen> seen = seen_on(c, p);
     if (seen.empty()) continue;
-    section.plots.push_back(values_plot(c, p, seen));
-    section.plots.push_back(conditions_plot(c, p, seen));
+    const auto plot = [&](const char* id, const char* title) {
+      return Plot{.kind = Plot::Kind::lines,
+                  .id = fmt::format("plot-{}-{}", id, p),
+                  .title = fmt::format("{} on {}", title, problem_name(c.problems[p])),
+                  .is_log_x = true,
+                  .is_log_y = true};
+    };
+    section.plots.push_back(values_plot(plot("spectrum", "Singular values"), seen));
+    section.plots.push_back(conditions_plot(plot("conditioning", "Condition number"), seen));
     section.tables.push_back(spectra_table(c, p, seen));
   }
   return section;
@@ -172,12 +157,16 @@ namespace {
 
 constexpr std::size_t kMostGrids = 12;
 
-bool is_of_x(const Comparison& c, const SweepGrid& grid) {
-  for (const auto& row : grid.runs)
-    for (const auto& cell : row)
-      if (!cell.empty()) return c.runs[cell[0]].aim == Aim::x;
-  return false;
-}
+// Medians over seeds, [row][column]; nothing where nothing was planned.
+struct Medians {
+  std::vector<std::vector<std::optional<Spread>>> of;
+  Real least = kNever;
+  std::size_t row = 0, column = 0;  // where the least stands
+  std::size_t measured = 0, near = 0;
+  std::size_t fewest = 0, most = 0;  // seeds
+  bool is_of_x = false;              // errors in x, else losses
+  std::string best;                  // its optimizer and problem
+};
 
 // At the end of a run; infinite where it failed or is not finite.
 Real end_of(const Run& run, bool is_of_x) {
@@ -186,31 +175,23 @@ Real end_of(const Run& run, bool is_of_x) {
   return is_failure(run.record->status) || !std::isfinite(value) ? kNever : value;
 }
 
-// Medians over seeds, [row][column]; nothing where nothing was planned.
-struct Medians {
-  std::vector<std::vector<std::optional<Spread>>> of;
-  Real least = kNever;
-  std::size_t row = 0, column = 0;  // where the least stands
-  std::size_t measured = 0, near = 0;
-};
-
 Medians medians_of(const Comparison& c, const SweepGrid& grid) {
-  Medians all;
-  const bool is_x = is_of_x(c, grid);
+  Medians all{.fewest = c.runs.size()};
   for (std::size_t r = 0; r < grid.rows.size(); ++r) {
     all.of.emplace_back(grid.columns.size());
     for (std::size_t k = 0; k < grid.columns.size(); ++k) {
-      if (grid.runs[r][k].empty()) continue;
+      const std::vector<std::size_t>& runs = grid.runs[r][k];
+      if (runs.empty()) continue;
+      if (all.measured++ == 0) all.is_of_x = c.runs[runs[0]].aim == Aim::x;
+      all.fewest = std::min(all.fewest, runs.size());
+      all.most = std::max(all.most, runs.size());
       std::vector<Real> ends;
-      for (const std::size_t run : grid.runs[r][k]) ends.push_back(end_of(c.runs[run], is_x));
-      const Spread spread = spread_of(ends);
-      all.of[r][k] = spread;
-      ++all.measured;
-      if (spread.median < all.least) {
-        all.least = spread.median;
-        all.row = r;
-        all.column = k;
-      }
+      for (const std::size_t run : runs) ends.push_back(end_of(c.runs[run], all.is_of_x));
+      const Spread& spread = all.of[r][k].emplace(spread_of(std::move(ends)));
+      if (!(spread.median < all.least)) continue;
+      const Request& request = c.runs[runs[0]].record->request;
+      std::tie(all.least, all.row, all.column) = std::tuple{spread.median, r, k};
+      all.best = shown_spec(request.optimizer.spec) + " on " + shown_spec(request.problem.spec);
     }
   }
   for (const auto& row : all.of)
@@ -228,26 +209,16 @@ std::string reading_of(const SweepGrid& grid, const Medians& medians) {
 }
 
 // An option of all of its runs that is not swept stands in the spec of the best.
-std::string caption_of(const Comparison& c, const SweepGrid& grid, const Medians& medians) {
-  std::size_t fewest = c.runs.size(), most = 0;
-  for (const auto& row : grid.runs)
-    for (const auto& cell : row) {
-      if (cell.empty()) continue;
-      fewest = std::min(fewest, cell.size());
-      most = std::max(most, cell.size());
-    }
-  const std::string seeds = fewest == most ? counted(most, "seed")
-                                           : fmt::format("{} to {}", fewest, counted(most, "seed"));
-  const std::string length = grid.samples > 0 ? fmt::format("{} samples each", grid.samples)
-                                              : fmt::format("{} iterations each", grid.iterations);
-  std::string text = fmt::format(
-      "{} at the end, median over {}, {}. The stronger the colour, the nearer to the least, in "
-      "factors of two; ✗: not finite, or failed.",
-      is_of_x(c, grid) ? "Error in x" : "Loss", seeds, length);
-  if (medians.least == kNever) return text;
-  const Request& best = c.runs[grid.runs[medians.row][medians.column][0]].record->request;
-  return text + fmt::format(" The best: {} on {}.", shown_spec(best.optimizer.spec),
-                            shown_spec(best.problem.spec));
+std::string caption_of(const SweepGrid& grid, const Medians& medians) {
+  return fmt::format(
+      "{} at the end, median over {}{}, {} each. The stronger the colour, the nearer to the least, "
+      "in factors of two; ✗: not finite, or failed.{}",
+      medians.is_of_x ? "Error in x" : "Loss",
+      medians.fewest == medians.most ? "" : fmt::format("{} to ", medians.fewest),
+      counted(medians.most, "seed"),
+      grid.samples > 0 ? fmt::format("{} samples", grid.samples)
+                       : fmt::format("{} iterations", grid.iterations),
+      medians.best.empty() ? "" : fmt::format(" The best: {}.", medians.best));
 }
 
 TableCell cell_of(const std::optional<Spread>& spread, Real least) {
@@ -265,13 +236,13 @@ Table heat_map(const Comparison& c, const SweepGrid& grid, std::size_t number) {
               .title = fmt::format("{} on {}: {} × {}", grid.optimizer, grid.problem, grid.row,
                                    grid.column),
               .reading = reading_of(grid, medians),
-              .caption = caption_of(c, grid, medians),
+              .caption = caption_of(grid, medians),
               .columns = {fmt::format("{} / {}", grid.row, grid.column)}};
   for (const Real value : grid.columns) table.columns.push_back(figure(value));
   for (std::size_t r = 0; r < grid.rows.size(); ++r) {
-    std::vector<TableCell> row = {figure(grid.rows[r])};
+    std::vector<TableCell>& row = table.rows.emplace_back();
+    row.push_back(figure(grid.rows[r]));
     for (const auto& cell : medians.of[r]) row.push_back(cell_of(cell, medians.least));
-    table.rows.push_back(std::move(row));
   }
   return table;
 }

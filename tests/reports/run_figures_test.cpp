@@ -88,13 +88,6 @@ TEST(Quantities, OfTwoHalvesAreMadeOfTheirRatios) {
   EXPECT_EQ(quantity_of("trend", {5, 5, 5, 5, 5, 5}, at), 0);
 }
 
-TEST(Quantities, AgreementIsThatOfTwoRankings) {
-  const std::vector<Real> at(6, 1);
-  EXPECT_EQ(quantity_of("agreement", {1, 2, 3, 10, 20, 30}, at), 1);
-  EXPECT_EQ(quantity_of("agreement", {1, 2, 3, 30, 20, 10}, at), -1);
-  EXPECT_EQ(quantity_of("agreement", {1, 1, 1, 30, 20, 10}, at), 0);
-}
-
 TEST(Quantities, AShareCountsSeedsOfTheAlternativeThatSpeaksForTheMethod) {
   const Term term{.figures = {{0, 1, 7, 0}, {7, 7, 7, 0}}, .at = 1};
   EXPECT_EQ(measure("share", {term}, "test").value, 0.5);
@@ -104,10 +97,10 @@ TEST(Quantities, AShareCountsSeedsOfTheAlternativeThatSpeaksForTheMethod) {
 }
 
 TEST(Quantities, SignedOnesAreTiedAtZeroAndRatiosAtOne) {
-  for (const char* kind : {"slope", "ratio_slope", "order", "trend", "agreement"})
+  for (const char* kind : {"slope", "ratio_slope", "order", "trend"})
     EXPECT_EQ(neutral_of(kind), 0) << kind;
   EXPECT_EQ(neutral_of("ratio"), 1);
-  for (const char* kind : {"value", "least", "greatest", "share"})
+  for (const char* kind : {"value", "greatest", "share"})
     EXPECT_FALSE(neutral_of(kind).has_value()) << kind;
 }
 
