@@ -15,8 +15,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,8 +140,8 @@ std::set<Status> statuses_of(const std::vector<std::string>& names) {
 std::string preview_text(const PreviewCounts& counts, int jobs) {
   const std::optional<double> seconds = counts.seconds();
   return fmt::format(
-      "{}: {} cached, {} inapplicable, {} to run{}", counted(counts.cells, "cell"), counts.cached,
-      counts.inapplicable, counts.missing,
+      "{}: {} cached, {} inapplicable, {} to run{}", reports::counted(counts.cells, "cell"),
+      counts.cached, counts.inapplicable, counts.missing,
       seconds ? fmt::format(", about {} with {} at a time", duration_text(*seconds / jobs), jobs)
               : ", and no earlier run tells how long that takes");
 }
@@ -153,7 +151,7 @@ void print_counts(const Preview& shown, int jobs) {
   if (shown.likened > 0)
     say(stdout,
         fmt::format("{} of problems not probed: taken to be like others of the same problem\n",
-                    counted(shown.likened, "setting")));
+                    reports::counted(shown.likened, "setting")));
 }
 
 Preview preview_of(const PlannedRun& all, const RunArguments& given,

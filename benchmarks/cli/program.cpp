@@ -9,7 +9,6 @@
 
 #include "benchmarks/cli/command_line.h"
 #include "benchmarks/plan/build_parts.h"
-#include "benchmarks/plan/plugins.h"
 #include "benchmarks/run/isolate.h"
 #include "core/errors.h"
 #include "core/records/provenance.h"

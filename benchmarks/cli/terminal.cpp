@@ -14,17 +14,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::compare_optimizers;
-using reports::counted;
-using reports::Document;
-using reports::document_of;
-using reports::judge;
-using reports::Judgement;
-using reports::rerun_arguments;
-using reports::Study;
-using reports::terminal_table;
-using reports::write_report;
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,8 +35,8 @@ std::string core_pattern() {
 // The next steps after a crash: its record and the parts of it that say most, the command that
 // repeats it in one process, under a debugger or for a core file, and where the core file would be.
 std::string debugging_advice(const Crash& crash, const fs::path& folder) {
-  const std::string command =
-      fmt::format("{} run {} --in-process", program_path(), rerun_arguments(crash.request));
+  const std::string command = fmt::format("{} run {} --in-process", program_path(),
+                                          reports::rerun_arguments(crash.request));
   return fmt::format(
       "to debug {}:\n"
       "  record      {}: \"message\" says how it ended, \"output\" what it wrote last\n"
@@ -88,18 +77,18 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
   if (!outcome.missing.empty())
     say(stderr, fmt::format("{} of {} vanished during the run, the first that of {}; the same "
                             "command runs what is missing\n",
-                            counted(outcome.missing.size(), "record"), outcome.planned,
+                            reports::counted(outcome.missing.size(), "record"), outcome.planned,
                             outcome.missing.front()));
   if (outcome.reused_from_other_builds > 0)
     say(stderr,
         fmt::format("{} of {} reused were run by another build\n", outcome.reused_from_other_builds,
-                    counted(std::size_t(outcome.reused), "cell")));
+                    reports::counted(std::size_t(outcome.reused), "cell")));
   if (quiet) return;
   std::string counts;
   for (const auto& [status, count] : outcome.statuses)
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name_of(status));
   say(stdout, fmt::format("{}: {} run, {} reused ({}) in {}\n",
-                          counted(std::size_t(outcome.planned), "cell"), outcome.run,
+                          reports::counted(std::size_t(outcome.planned), "cell"), outcome.run,
                           outcome.reused, counts, duration_text(outcome.seconds)));
 }
 
@@ -110,27 +99,29 @@ int exit_code_of(const Outcome& outcome) {
   }
   if (outcome.interrupted > 0) {
     say(stderr, fmt::format("{} killed from outside; the same command runs what is missing\n",
-                            counted(std::size_t(outcome.interrupted), "cell")));
+                            reports::counted(std::size_t(outcome.interrupted), "cell")));
     return kInterrupted;
   }
   const bool is_whole = outcome.missing.empty();
   return is_whole && outcome.failures.empty() && outcome.conflicts.empty() ? kGood : kWorse;
 }
 
-std::vector<Judgement> judged(const std::vector<Claim>& claims, const std::vector<Record>& runs) {
-  return judge(json_of(claims), runs);
+std::vector<reports::Judgement> judged(const std::vector<Claim>& claims,
+                                       const std::vector<Record>& runs) {
+  return reports::judge(json_of(claims), runs);
 }
 
-void write_and_print(const Study& study, const std::filesystem::path& out, Session& session,
-                     const Reporting& how) {
-  std::vector<Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
-  std::erase_if(claims, [](const Judgement& judgement) { return !judgement.is_covered; });
-  Document document = document_of(compare_optimizers(study, how.yardstick), std::move(claims));
+void write_and_print(const reports::Study& study, const std::filesystem::path& out,
+                     Session& session, const Reporting& how) {
+  std::vector<reports::Judgement> claims = judged(builtin_claims_of(session.catalog()), study.runs);
+  std::erase_if(claims, [](const reports::Judgement& judgement) { return !judgement.is_covered; });
+  reports::Document document =
+      reports::document_of(reports::compare_optimizers(study, how.yardstick), std::move(claims));
   document.out = out.string();
-  write_report(document, out);
+  reports::write_report(document, out);
   if (!how.is_quiet)
-    say(stdout,
-        fmt::format("{}\nreport: {}\n", terminal_table(document), (out / "index.html").string()));
+    say(stdout, fmt::format("{}\nreport: {}\n", reports::terminal_table(document),
+                            (out / "index.html").string()));
 }
 
 }  // namespace isoline::benchmarks

@@ -8,6 +8,7 @@
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/rates.h"
 #include "core/digest.h"
+#include "core/foreign/plugin_library.h"
 #include "core/learning_options.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
@@ -79,6 +80,17 @@ Catalog builtin_catalog() {
   problems::register_problems(catalog.problems);
   optimizers::register_optimizers(catalog.optimizers);
   return catalog;
+}
+
+void add_plugin(Catalog& catalog, const std::string& path) {
+  for (const PluginComponent& component : load_plugin(path)) try {
+      if (component.is_optimizer)
+        optimizers::add_plugin_method(catalog.optimizers, component);
+      else
+        problems::add_plugin_physics(catalog.problems, component);
+    } catch (const UsageError& error) {
+      throw UsageError(path + ": " + error.what());
+    }
 }
 
 Component complete_problem(const Catalog& catalog, const std::string& name,

@@ -32,6 +32,10 @@ struct Catalog {
 
 Catalog builtin_catalog();  // everything in problems/ and optimizers/
 
+// Adds what a shared library brings. UsageError, which names the path, where it is no plugin or a
+// name is taken.
+void add_plugin(Catalog& catalog, const std::string& path);
+
 // A component as a request names it, its options complete.
 Component complete_problem(const Catalog& catalog, const std::string& name,
                            const OptionValues& options);

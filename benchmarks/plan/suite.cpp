@@ -53,38 +53,45 @@ MatrixBlock block_from(const Json& json) {
           .rates = json.value("rates", "")};
 }
 
-bool is_excepted(const std::string& name, const std::vector<std::string>& excepted) {
-  return std::ranges::find(excepted, name) != excepted.end();
-}
+bool is_selector(const std::string& text) { return text == "*" || text.starts_with('@'); }
 
-std::vector<Spec> chosen_problems(const Catalog& catalog, const MatrixBlock& block,
-                                  std::uint64_t most) {
-  std::vector<Spec> specs;
-  for (const std::string& text : block.problems) {
-    if (text != "*") {
-      for (Spec& spec : parse_specs(text, most)) specs.push_back(std::move(spec));
+bool is_selected(const ProblemEntry&, const std::string& selector) { return selector == "*"; }
+
+// What a block names, with the names that a selector stands for in its place.
+template <class Registered>
+std::vector<std::string> named_specs(const Registered& registry,
+                                     const std::vector<std::string>& texts,
+                                     const std::vector<std::string>& excepted) {
+  std::vector<std::string> specs;
+  for (const std::string& text : texts) {
+    if (!is_selector(text)) {
+      specs.push_back(text);
       continue;
     }
-    for (const auto& [name, entry] : catalog.problems)
-      if (entry.in_all && !is_excepted(name, block.except_problems)) specs.push_back({name, {}});
+    for (const auto& [name, entry] : registry)
+      if (entry.in_all && is_selected(entry, text) &&
+          std::ranges::find(excepted, name) == excepted.end())
+        specs.push_back(name);
   }
   return specs;
 }
 
-std::vector<Spec> chosen_optimizers(const Catalog& catalog, const MatrixBlock& block,
-                                    std::uint64_t most) {
+std::vector<std::string> problem_specs(const Catalog& catalog, const MatrixBlock& block) {
+  return named_specs(catalog.problems, block.problems, block.except_problems);
+}
+
+std::vector<std::string> optimizer_specs(const Catalog& catalog, const MatrixBlock& block) {
+  for (const std::string& text : block.optimizers)
+    require(!is_selector(text) ||
+                !named_specs(catalog.optimizers, {text}, block.except_optimizers).empty(),
+            [&] { return fmt::format("'{}' selects no optimizer", text); });
+  return named_specs(catalog.optimizers, block.optimizers, block.except_optimizers);
+}
+
+std::vector<Spec> parsed_specs(const std::vector<std::string>& texts, std::uint64_t most) {
   std::vector<Spec> specs;
-  for (const std::string& text : block.optimizers) {
-    if (text != "*" && !text.starts_with('@')) {
-      for (Spec& spec : parse_specs(text, most)) specs.push_back(std::move(spec));
-      continue;
-    }
-    const std::size_t before = specs.size();
-    for (const auto& [name, entry] : catalog.optimizers)
-      if (entry.in_all && is_selected(entry, text) && !is_excepted(name, block.except_optimizers))
-        specs.push_back({name, {}});
-    require(specs.size() > before, [&] { return fmt::format("'{}' selects no optimizer", text); });
-  }
+  for (const std::string& text : texts)
+    for (Spec& spec : parse_specs(text, most)) specs.push_back(std::move(spec));
   return specs;
 }
 
@@ -117,9 +124,9 @@ class Expansion {
       : catalog_(catalog), rates_(rates), most_settings_(most_settings) {}
 
   void add(const MatrixBlock& block) {
-    const std::vector<Spec> specs = chosen_optimizers(catalog_, block, most_settings_);
+    const std::vector<Spec> specs = parsed_specs(optimizer_specs(catalog_, block), most_settings_);
     RatedOptimizers optimizers(catalog_, block, rates_);
-    for (const Spec& problem_spec : chosen_problems(catalog_, block, most_settings_)) {
+    for (const Spec& problem_spec : parsed_specs(problem_specs(catalog_, block), most_settings_)) {
       const Component problem = complete_problem(catalog_, problem_spec);
       std::map<std::string, const Rates::Row*> rows;
       for (const Spec& spec : specs) {
@@ -207,8 +214,6 @@ std::string_view cost_class(const OptimizerEntry& entry) {
   return is_limited ? "factorizing" : "matrix-free";
 }
 
-bool is_selector(const std::string& name) { return name == "*" || name.starts_with('@'); }
-
 // A spec with its options as its component would have them.
 struct Wanted {
   std::string name;
@@ -276,12 +281,12 @@ namespace {
 // Components with the settings of each.
 class Settings {
  public:
-  void add(std::string name, std::uint64_t settings) {
-    all_.push_back({std::move(name), settings});
-    total_ = sum_of(total_, settings);
-  }
-  void add_each(const std::string& text) {
-    for (SweepSize& size : sweep_sizes(text)) add(std::move(size.name), size.settings);
+  explicit Settings(const std::vector<std::string>& specs) {
+    for (const std::string& text : specs)
+      for (SweepSize& size : sweep_sizes(text)) {
+        total_ = sum_of(total_, size.settings);
+        all_.push_back(std::move(size));
+      }
   }
   std::uint64_t total() const { return total_; }
 
@@ -299,40 +304,9 @@ class Settings {
   std::uint64_t total_ = 0;
 };
 
-bool is_excepted(const std::vector<std::string>& excepted, const std::string& name) {
-  return std::ranges::find(excepted, name) != excepted.end();
-}
-
-Settings problems_of(const Catalog& catalog, const MatrixBlock& block) {
-  Settings settings;
-  for (const std::string& text : block.problems) {
-    if (text != "*") {
-      settings.add_each(text);
-      continue;
-    }
-    for (const auto& [name, entry] : catalog.problems)
-      if (entry.in_all && !is_excepted(block.except_problems, name)) settings.add(name, 1);
-  }
-  return settings;
-}
-
-Settings optimizers_of(const Catalog& catalog, const MatrixBlock& block) {
-  Settings settings;
-  for (const std::string& text : block.optimizers) {
-    if (text != "*" && !text.starts_with('@')) {
-      settings.add_each(text);
-      continue;
-    }
-    for (const auto& [name, entry] : catalog.optimizers)
-      if (entry.in_all && is_selected(entry, text) && !is_excepted(block.except_optimizers, name))
-        settings.add(name, 1);
-  }
-  return settings;
-}
-
 PlanSize size_of(const Catalog& catalog, const MatrixBlock& block) {
-  const Settings problems = problems_of(catalog, block);
-  const Settings optimizers = optimizers_of(catalog, block);
+  const Settings problems(problem_specs(catalog, block));
+  const Settings optimizers(optimizer_specs(catalog, block));
   PlanSize size{
       .cells = product_of(block.seeds.size(), product_of(problems.total(), optimizers.total())),
       .largest = ""};

@@ -4,10 +4,12 @@
 #include <sstream>
 
 #include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/rates.h"
 #include "benchmarks/run/execute.h"
 #include "core/digest.h"
 #include "core/frames.h"
 #include "core/ladder.h"
+#include "core/records/integrity.h"
 #include "core/records/provenance.h"
 #include "core/text.h"
 
@@ -215,6 +217,9 @@ Record record_of(const Request& request, const Trace& trace) {
   add_verdicts(trace, record);
   record.counts = trace.last.counts;
   record.prices = trace.prices;
+  const std::optional<Real> best = BestLosses::builtin().find(request.problem, request.seed);
+  record.is_best_known = best && best == record.minimum;
+  record.criterion = digest_of(criterion_of(record));
   record.summary = summary_of(trace);
   record.curve = curve_of(trace);
   if (record.minimum) record.hits = hits_of(trace);

@@ -11,12 +11,6 @@
 #include "reports/report.h"
 
 namespace isoline::benchmarks {
-
-using reports::kAllRows;
-using reports::kFewRows;
-using reports::properties_section;
-using reports::terminal_section;
-
 namespace {
 
 struct AuditArguments {
@@ -43,8 +37,9 @@ int run(const AuditArguments& given, Session& session) {
     write_audit(all, std::filesystem::path(given.out) / "audit.json");
   }
   say(stdout, given.as_json ? audit_text(all)
-                            : terminal_section(properties_section(all),
-                                               given.lists_all ? kAllRows : kFewRows));
+                            : reports::terminal_section(
+                                  reports::properties_section(all),
+                                  given.lists_all ? reports::kAllRows : reports::kFewRows));
   const bool has_flags = std::ranges::any_of(
       all, [](const AuditedOptimizer& audited) { return !audited.flags.empty(); });
   return has_flags ? kWorse : kGood;

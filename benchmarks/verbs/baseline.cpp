@@ -15,12 +15,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::baseline_json;
-using reports::counted;
-using reports::read_study;
-using reports::Study;
-
 namespace {
 
 struct BaselineArguments {
@@ -39,12 +33,12 @@ void declare(VerbArguments& verb, BaselineArguments& given) {
 }
 
 // Studies of the same cells from perturbed starts, one a perturbation; fewer where interrupted.
-std::vector<Study> perturbed_studies(const BaselineArguments& given, Session& session,
-                                     const Study& study) {
+std::vector<reports::Study> perturbed_studies(const BaselineArguments& given, Session& session,
+                                              const reports::Study& study) {
   const RunOptions options{.jobs = given.jobs > 0 ? given.jobs : one_a_core(),
                            .progress = Progress::style_of(STDERR_FILENO),
                            .command = session.command()};
-  std::vector<Study> perturbed;
+  std::vector<reports::Study> perturbed;
   for (int number = 1; number <= given.perturbations; ++number) {
     auto records = perturbed_records(session.catalog(), study.runs, number, options);
     if (!records) break;
@@ -54,15 +48,15 @@ std::vector<Study> perturbed_studies(const BaselineArguments& given, Session& se
 }
 
 int run(const BaselineArguments& given, Session& session) {
-  Study study = read_study({given.folders.begin(), given.folders.end()});
+  reports::Study study = reports::read_study({given.folders.begin(), given.folders.end()});
   std::erase_if(study.runs, [](const Record& run) { return run.imported.has_value(); });
   require(!study.runs.empty(), "there are no records to remember");
-  const std::vector<Study> perturbed = perturbed_studies(given, session, study);
+  const std::vector<reports::Study> perturbed = perturbed_studies(given, session, study);
   if (perturbed.size() < static_cast<std::size_t>(given.perturbations)) {
     say(stderr, "interrupted; no baseline was written\n");
     return kInterrupted;
   }
-  const std::string text = baseline_json(study, perturbed);
+  const std::string text = reports::baseline_json(study, perturbed);
   if (given.out.empty()) {
     say(stdout, text);
     return kGood;
@@ -70,7 +64,7 @@ int run(const BaselineArguments& given, Session& session) {
   const std::filesystem::path folder = std::filesystem::path(given.out).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
   write_text(given.out, text);
-  say(stdout, fmt::format("{}: {}\n", given.out, counted(study.runs.size(), "cell")));
+  say(stdout, fmt::format("{}: {}\n", given.out, reports::counted(study.runs.size(), "cell")));
   return kGood;
 }
 

@@ -16,7 +16,6 @@ namespace isoline::benchmarks {
 
 using problems::examine;
 using problems::Finding;
-using reports::counted;
 namespace {
 
 struct CheckArguments {
@@ -95,7 +94,7 @@ int run(const CheckArguments& given, Session& session) {
   if (given.as_json)
     say(stdout, fmt::format("{}\n", json_text(all, 2)));
   else
-    say(stdout, fmt::format("{}, {} failed\n", counted(total, "check"), failed));
+    say(stdout, fmt::format("{}, {} failed\n", reports::counted(total, "check"), failed));
   return failed > 0 ? kWorse : kGood;
 }
 

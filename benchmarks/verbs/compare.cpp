@@ -8,23 +8,13 @@
 #include "reports/compare/gate.h"
 
 namespace isoline::benchmarks {
-
-using reports::compare_results;
-using reports::gate_json;
-using reports::gate_markdown;
-using reports::gate_terminal;
-using reports::GateOptions;
-using reports::GateResult;
-using reports::kMostTimed;
-using reports::read_allowed;
-
 namespace {
 
 struct CompareArguments {
   std::string before, after;
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
   std::vector<std::string> timed;
-  std::string allowed;  // a list of cells that NEW may lack
+  std::string allowed;  // a list of cells that NEW may lack, or may judge otherwise
   bool is_common_only = false, as_markdown = false, as_json = false, lists_all = false;
 };
 
@@ -38,8 +28,10 @@ void declare(VerbArguments& verb, CompareArguments& given) {
       .between_commas();
   verb.real("--noise", given.noise, between(0, 10),
             "Least band of noise of times, relative (default: 0.1)");
-  verb.text("--allow", given.allowed,
-            "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
+  verb.text(
+      "--allow", given.allowed,
+      "File that lists cells which NEW may lack, or may judge by another criterion of success "
+      "(isoline.allowed/1), with reasons");
   verb.flag("--common", given.is_common_only, "Let NEW lack any cell of BASE");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
   const Argument json = verb.flag("--json", given.as_json, "Print JSON");
@@ -47,19 +39,19 @@ void declare(VerbArguments& verb, CompareArguments& given) {
 }
 
 int run(const CompareArguments& given, Session&) {
-  require(given.timed.size() <= kMostTimed, [&] {
-    return fmt::format("--time-cells takes at most {} cells, got {}", kMostTimed,
+  require(given.timed.size() <= reports::kMostTimed, [&] {
+    return fmt::format("--time-cells takes at most {} cells, got {}", reports::kMostTimed,
                        given.timed.size());
   });
-  GateOptions options{.timed = given.timed, .is_common_only = given.is_common_only};
+  reports::GateOptions options{.timed = given.timed, .is_common_only = given.is_common_only};
   if (given.tolerance >= 0) options.tolerance = given.tolerance;
   if (given.noise >= 0) options.least_noise = given.noise;
-  if (!given.allowed.empty()) options.allowed = read_allowed(given.allowed);
+  if (!given.allowed.empty()) options.allowed = reports::read_allowed(given.allowed);
   options.listener = progress_on_terminal("reading records");
-  const GateResult result = compare_results(given.before, given.after, options);
-  say(stdout, given.as_json       ? gate_json(result)
-              : given.as_markdown ? gate_markdown(result)
-                                  : gate_terminal(result, given.lists_all));
+  const reports::GateResult result = reports::compare_results(given.before, given.after, options);
+  say(stdout, given.as_json       ? reports::gate_json(result)
+              : given.as_markdown ? reports::gate_markdown(result)
+                                  : reports::gate_terminal(result, given.lists_all));
   const bool is_fault = result.exit_code == kWorse || result.exit_code == kNotComparable;
   if (is_fault && (given.as_json || given.as_markdown))
     say(stderr, fmt::format("{}\n", result.verdict));  // the terminal's text begins with it
@@ -79,9 +71,10 @@ void register_compare(VerbRegistry& registry) {
            "  isoline compare results/old results/new --markdown     for the summary of a job",
        .notes =
            "Exit codes: 0 no worse and no better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
-           "4 not comparable: a clock ended a cell, its record is in doubt, or it is of another build\n"
-           "and --tolerance is not given. Cells are paired by what was asked of them, with seed and\n"
-           "budget, so that a changed default is compared, and named.\n"
+           "4 not comparable: a clock ended a cell, its record contradicts itself, success is judged by\n"
+           "another f_L, scale, floor, aim or cost, or it is of another build and --tolerance is not\n"
+           "given. Cells are paired by what was asked of them, with seed and budget, so that a changed\n"
+           "default is compared, and named.\n"
            "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
            "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise that\n"
            "the repetitions show. Without --time-cells the 20 slowest such cells of BASE are judged."},

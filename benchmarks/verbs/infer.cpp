@@ -10,9 +10,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
-
 namespace {
 
 struct InferArguments {
@@ -48,8 +45,9 @@ std::string inferred(const InferArguments& given, const Catalog& catalog) {
   const NumberArray output = infer(problem, network, input, given.input);
   write_numbers(given.output, output);
   return fmt::format("{}: {} inferred by {} trained on {} for {}", given.output,
-                     counted(std::size_t(output.shape[0]), "sample"), network.optimizer.spec,
-                     network.problem.spec, counted(std::size_t(network.iterations), "iteration"));
+                     reports::counted(std::size_t(output.shape[0]), "sample"),
+                     network.optimizer.spec, network.problem.spec,
+                     reports::counted(std::size_t(network.iterations), "iteration"));
 }
 
 // How the process that infers tells its parent whose fault it was.

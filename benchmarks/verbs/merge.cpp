@@ -9,9 +9,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
-
 namespace {
 
 struct MergeArguments {
@@ -42,7 +39,7 @@ int run(const MergeArguments& given, Session&) {
     return kWorse;
   }
   say(stdout, fmt::format("{} in {}: {} with timings of several folders, {} left out\n",
-                          counted(std::size_t(outcome.records), "record"), given.out,
+                          reports::counted(std::size_t(outcome.records), "record"), given.out,
                           outcome.united, outcome.unreadable.size()));
   return outcome.unreadable.empty() ? kGood : kWorse;
 }

@@ -1,14 +1,18 @@
-// isoline replay RECORD...: runs the cell of a record again and holds the two to each other.
+// isoline replay RECORD...: runs the cells of records again and compares each two bit for bit.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <random>
 
+#include "benchmarks/cli/command_line.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/same_result.h"
+#include "core/draws.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text.h"
@@ -20,11 +24,18 @@ namespace fs = std::filesystem;
 
 struct ReplayArguments {
   std::vector<std::string> records;
+  std::string sample;             // "1%", "20"; empty: all that are named
+  std::uint64_t seed = 0;         // of the sample; 0: drawn
   std::int64_t memory_bytes = 0;  // 0: as the runner has it
 };
 
 void declare(VerbArguments& verb, ReplayArguments& given) {
-  verb.texts("RECORD", given.records, "Records of `isoline run`: files in runs/").required();
+  verb.texts("RECORD", given.records,
+             "Records of `isoline run`: files in runs/; with --sample result folders")
+      .required();
+  verb.text("--sample", given.sample,
+            "Replay so many records of result folders, drawn at random: 1%, or 20");
+  verb.seed("--seed", given.seed, "Seed of the sample; 0: another one each time, which is printed");
   verb.memory("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)");
   verb.plugins();
 }
@@ -80,7 +91,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   require(!fs::is_directory(path), [&] {
     return fmt::format("{} is a folder: name records, such as those in its runs/", path);
   });
-  const Record record = read_record(path);
+  const Record record = read_unchecked_record(path);
   const std::string title = fmt::format("{}: {}", path, title_of(record.request));
   Request request;
   try {
@@ -107,9 +118,37 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
   return found.difference.empty() ? kGood : kWorse;
 }
 
+// How many of so many: "1%" of them, one at least, or the number itself.
+std::size_t sample_size(const std::string& asked, std::size_t all) {
+  const bool is_share = asked.ends_with('%');
+  const double number =
+      read_real("--sample", is_share ? asked.substr(0, asked.size() - 1) : asked, above(0));
+  const double wanted = is_share ? std::ceil(number / 100 * double(all)) : std::floor(number);
+  return std::min(all, static_cast<std::size_t>(std::max(wanted, 1.0)));
+}
+
+// Records of the folders, without any twice, in the order drawn.
+std::vector<std::string> sampled_records(const ReplayArguments& given) {
+  std::vector<std::string> records;
+  for (const fs::path folder : given.records)
+    for (const std::string& name : names_in(folder / "runs"))
+      if (name.ends_with(".json")) records.push_back((folder / "runs" / name).string());
+  require(!records.empty(), "--sample takes result folders, and there is no record in these");
+  std::ranges::sort(records);
+  const std::uint64_t seed = given.seed != 0 ? given.seed : std::random_device()();
+  const std::size_t count = sample_size(given.sample, records.size());
+  Draws random(seed, "replay", "sample");
+  for (std::size_t i = 0; i < count; ++i)
+    std::swap(records[i],
+              records[i + static_cast<std::size_t>(random.uniform(0, double(records.size() - i)))]);
+  say(stdout, fmt::format("{} of {} records, drawn with --seed {}\n", count, records.size(), seed));
+  records.resize(count);
+  return records;
+}
+
 int run(const ReplayArguments& given, Session& session) {
   int worst = kGood;
-  for (const std::string& path : given.records) {
+  for (const std::string& path : given.sample.empty() ? given.records : sampled_records(given)) {
     const int code = replay(path, given, session);
     if (code == kInterrupted) {
       say(stderr, "interrupted\n");
@@ -126,8 +165,9 @@ void register_replay(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "replay",
        .help_position = 60,
-       .summary = "Run the cell of a record again, and check the two for equality bit for bit",
-       .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json",
+       .summary = "Run the cells of records again, and check each two for equality bit for bit",
+       .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json\n"
+                   "  isoline replay results/quick --sample 1%",
        .notes =
            "The cell is run in a process of its own, with the problem, options, seed, budget and threads of\n"
            "the record, and written nowhere. A record that a clock or a kill ended is compared up to the last\n"

@@ -16,11 +16,7 @@
 
 namespace isoline::benchmarks {
 
-using reports::counted;
-
 namespace fs = std::filesystem;
-using reports::read_study;
-using reports::Study;
 namespace {
 
 struct ReportArguments {
@@ -71,12 +67,13 @@ std::string format_names() {
 }
 
 int run(const ReportArguments& given, Session& session) {
-  const Study study = read_study(given.folders, progress_on_terminal("reading records"));
+  const reports::Study study =
+      reports::read_study(given.folders, progress_on_terminal("reading records"));
   require(!study.runs.empty(), [&] {
     const std::string damaged =
-        study.unreadable.empty()
-            ? ""
-            : fmt::format(", and {} that cannot be read", counted(study.unreadable.size(), "file"));
+        study.unreadable.empty() ? ""
+                                 : fmt::format(", and {} that cannot be read",
+                                               reports::counted(study.unreadable.size(), "file"));
     return fmt::format("no records in {}{}: `isoline run --out FOLDER` writes them",
                        fmt::join(given.folders, ", "), damaged);
   });

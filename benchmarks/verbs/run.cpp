@@ -9,7 +9,6 @@
 #include "benchmarks/cli/planned_run.h"
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
-#include "benchmarks/run/certificate.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/shard/census.h"
@@ -17,9 +16,6 @@
 #include "core/text.h"
 
 namespace isoline::benchmarks {
-
-using reports::read_study;
-using reports::Study;
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,14 +25,11 @@ std::string fate_of(const PreviewedCell& cell) {
   return cell.why_inapplicable.empty() ? "run" : "inapplicable: " + cell.why_inapplicable;
 }
 
-void print_plan(const PlannedRun& all, const RunOptions& options, const RunArguments& given,
-                Session& session) {
+void print_plan(const PlannedRun& all, int jobs, const RunArguments& given, Session& session) {
   constexpr std::size_t kMost = 20;
-  const Preview shown = preview(
-      session.catalog(), all.requests, {all.folder}, EarlierTimes(record_outlines({all.folder})),
-      {.force = options.force, .reuse = options.reuse, .retry = options.retry});
+  const Preview shown = preview_of(all, given, {}, {all.folder}, session);
   const std::vector<PreviewedCell>& cells = shown.cells;
-  print_counts(shown, options.jobs);
+  print_counts(shown, jobs);
   say(stdout, fmt::format("result folder: {}\n", all.folder.string()));
   const std::size_t listed = given.lists_all ? cells.size() : std::min(kMost, cells.size());
   for (std::size_t i = 0; i < listed; ++i) {
@@ -58,7 +51,7 @@ void keep_shard(const Shard& shard, PlannedRun& all) {
 }
 
 // The properties at default options of all optimizers that ever ran in this folder.
-std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const Study& study) {
+std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const reports::Study& study) {
   std::set<std::string> names;
   for (const Record& record : study.runs)
     if (const std::string& name = record.request.optimizer.name;
@@ -68,7 +61,7 @@ std::vector<AuditedOptimizer> audit_of(const Catalog& catalog, const Study& stud
 }
 
 void report_on(const fs::path& out, bool quiet, Session& session) {
-  Study study = read_study({out});
+  reports::Study study = reports::read_study({out});
   if (study.runs.empty()) return;  // interrupted before the first record
   study.audits = audit_of(session.catalog(), study);
   write_audit(study.audits, out / "audit.json");
@@ -110,8 +103,7 @@ int run(const RunArguments& given, Session& session) {
   if (given.memory_bytes > 0) options.limits.memory_bytes = given.memory_bytes;
   if (!given.quiet) options.progress = Progress::style_of(STDERR_FILENO);
   if (given.is_dry) {
-    require_sound(catalog, all.requests);
-    print_plan(all, options, given, session);
+    print_plan(all, options.jobs, given, session);
     return kGood;
   }
   if (given.in_process) return run_here(catalog, all.requests);

@@ -12,8 +12,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
 namespace {
 
 struct StatusArguments {
@@ -43,8 +41,8 @@ std::string census_json(const Census& census, std::int64_t now) {
 
 std::string census_text(const Census& census, std::int64_t now) {
   std::string text = fmt::format("{}: {} done, {} of them failed, {} running, {} left\n",
-                                 counted(census.planned, "cell"), census.done, census.failed,
-                                 census.running, census.left);
+                                 reports::counted(census.planned, "cell"), census.done,
+                                 census.failed, census.running, census.left);
   if (census.done == census.planned) return text;
   if (census.left_seconds)
     text += fmt::format("predicted of what is not done: {}, one at a time\n",

@@ -20,8 +20,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
 namespace {
 
 namespace fs = std::filesystem;
@@ -158,7 +156,7 @@ int submit(const Submission& submission) {
   const std::string folder = submission.folder.string();
   say(stdout,
       fmt::format("submitted: job {} ({}), then job {}, which merges and reports into {}\n", array,
-                  counted(submission.shards, "task"), merge, submission.merged.string()));
+                  reports::counted(submission.shards, "task"), merge, submission.merged.string()));
   say(stdout, fmt::format("`isoline status {}` tells how far they are\n", folder));
   return kGood;
 }
@@ -210,8 +208,8 @@ int run(const SubmitArguments& given, Session& session) {
     return std::isfinite(each) ? " of about " + duration_text(each) : "";
   };
   say(stderr,
-      fmt::format("{}{}: {}{}{}\n", counted(all.requests.size(), "cell"), about(seconds),
-                  counted(shards, "task"), about(seconds / static_cast<double>(shards)),
+      fmt::format("{}{}: {}{}{}\n", reports::counted(all.requests.size(), "cell"), about(seconds),
+                  reports::counted(shards, "task"), about(seconds / static_cast<double>(shards)),
                   std::isfinite(seconds) ? "" : "; no earlier run tells how long they take"));
   if (given.is_agreed) return submit(submission);
   say(stdout,

@@ -20,8 +20,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
 namespace {
 
 struct TrainArguments {
@@ -148,8 +146,8 @@ int run(const TrainArguments& given, Session& session) {
   }
   say(stdout, fmt::format("{}: {} by {}, {}, validation loss {:.4g}, error in x {:.4g}\n",
                           given.out, request.problem.spec, request.optimizer.spec,
-                          counted(std::size_t(trace.last.iteration), "iteration"), trace.last.loss,
-                          trace.last.x_error));
+                          reports::counted(std::size_t(trace.last.iteration), "iteration"),
+                          trace.last.loss, trace.last.x_error));
   return kGood;
 }
 

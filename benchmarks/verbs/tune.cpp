@@ -23,14 +23,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
-using reports::figure;
-using reports::Plot;
-using reports::reached_figure;
-using reports::Section;
-using reports::Table;
-
 namespace {
 
 struct TuneArguments {
@@ -166,7 +158,7 @@ std::vector<std::string> tied_values(const TunedOption& tuned) {
   std::vector<std::string> ties;
   for (std::size_t i = 0; i < tuned.values.size(); ++i)
     if (i != tuned.best && tuned.scores[i] == tuned.scores[tuned.best])
-      ties.push_back(figure(tuned.values[i]));
+      ties.push_back(reports::figure(tuned.values[i]));
   return ties;
 }
 
@@ -185,10 +177,10 @@ std::vector<reports::TableCell> tuning_row(const TunedOption& tuned) {
   return {tuned.problem,
           tuned.optimizer,
           tuned.option,
-          figure(tuned.values[tuned.best]),
+          reports::figure(tuned.values[tuned.best]),
           bars(tuned),
-          reached_figure(best.work),
-          reached_figure(best.left),
+          reports::reached_figure(best.work),
+          reports::reached_figure(best.left),
           remark};
 }
 
@@ -200,18 +192,18 @@ std::string tuning_summary(const TuningResult& result) {
   }
   std::string text =
       fmt::format("{} tuned: {} with the best at the edge of the grid, {} with a tie",
-                  counted(result.tuned.size(), "pair"), edges, ties);
+                  reports::counted(result.tuned.size(), "pair"), edges, ties);
   if (result.inapplicable > 0) text += fmt::format("; {} not applicable", result.inapplicable);
-  return text + fmt::format(". {} in {}.", counted(std::size_t(result.outcome.run), "run"),
+  return text + fmt::format(". {} in {}.", reports::counted(std::size_t(result.outcome.run), "run"),
                             duration_text(result.outcome.seconds));
 }
 
 // By what decides: the work where any value reaches the target, else what is left.
-Plot tuning_plot(const TunedOption& tuned) {
+reports::Plot tuning_plot(const TunedOption& tuned) {
   const bool is_reached = std::ranges::any_of(
       tuned.scores, [](const TuningScore& score) { return std::isfinite(score.work); });
-  Plot plot{
-      .kind = Plot::Kind::lines,
+  reports::Plot plot{
+      .kind = reports::Plot::Kind::lines,
       .x_label = tuned.option,
       .y_label = is_reached ? "median work to the target" : "median of what is left at the end",
       .is_log_x = true,
@@ -230,11 +222,13 @@ Plot tuning_plot(const TunedOption& tuned) {
 // at most unless all are wanted, with a plot of its scores in a few characters; for a single pair a
 // larger plot.
 std::string tuning_text(const TuningResult& result, bool lists_all) {
-  Section section{.id = "tuning", .title = "Tuning", .otherwise = "No pair could be tuned."};
+  reports::Section section{
+      .id = "tuning", .title = "Tuning", .otherwise = "No pair could be tuned."};
   section.readings = {{"", tuning_summary(result)}};
-  Table table{.columns = {"problem", "optimizer", "option", "best", "grid", "work", "left", ""},
-              .align = "lllrlrrl",
-              .names = 2};
+  reports::Table table{
+      .columns = {"problem", "optimizer", "option", "best", "grid", "work", "left", ""},
+      .align = "lllrlrrl",
+      .names = 2};
   table.caption =
       "Grid: a bar a value from the lowest to the highest, the best highest, · failed. Work: median "
       "to the target, ✗ not reached; left: median of the loss, or of the error in x, at the end.";

@@ -16,6 +16,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
+#include "core/records/integrity.h"
 #include "core/records/record.h"
 #include "core/records/schema.h"
 #include "core/text.h"
@@ -23,8 +24,6 @@
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
-
-using reports::counted;
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,7 +90,11 @@ Examined examined(const std::string& path) {
     const Json outline = outline_of(text, path);
     if (claim_of(outline) == kRunSchema) {
       Examined found = examined_document(outline, path);
-      if (found.violations.empty()) return found;
+      if (found.identity) {
+        for (std::string& broken : broken_invariants(record_from_text(text, path)))
+          found.violations.push_back(std::move(broken));
+        return found;
+      }
     }
     return examined_document(parse_json(text, path), path);
   } catch (const std::exception& error) {
@@ -176,7 +179,7 @@ int run(const ValidateArguments& given, Session&) {
   for (const auto& [file, violations] : wrong)
     for (const std::string& violation : violations)
       say(stdout, fmt::format("{}: {}\n", file, violation));
-  say(stdout, fmt::format("{}, {} wrong\n", counted(files.size(), "file"), wrong.size()));
+  say(stdout, fmt::format("{}, {} wrong\n", reports::counted(files.size(), "file"), wrong.size()));
   return wrong.empty() ? kGood : kWorse;
 }
 

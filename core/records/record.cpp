@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/ladder.h"
+#include "core/records/integrity.h"
 #include "core/records/plan.h"
 #include "core/records/record_fields.h"
 
@@ -73,8 +74,15 @@ Record record_from_text(const std::string& text, const std::string& origin) {
   }
 }
 
-Record read_record(const std::string& path) {
+Record read_unchecked_record(const std::string& path) {
   return record_from_text(read_text(path, kMostRecordBytes), path);
+}
+
+Record read_record(const std::string& path) {
+  Record record = read_unchecked_record(path);
+  const std::vector<std::string> broken = broken_invariants(record);
+  require(broken.empty(), [&] { return "it contradicts itself: " + broken.front(); });
+  return record;
 }
 
 Json run_schema() {

@@ -88,12 +88,14 @@ struct Record {
   std::string claimed;          // what the method said of its own success
   Aim aim = Aim::loss;          // what its user wants: headlines count that
   std::optional<Real> minimum;  // f_L: declared, else the best known
+  bool is_best_known = false;   // f_L is the best loss known, which a run may better
   std::optional<Real> scale;    // s = min(f₀ − f_L, the problem's scale)
   std::map<std::string, std::optional<bool>> verified;  // by τ: f − f_L ≤ τ s at the returned point
   // Of errors in x, where a solution is known: ‖x*‖, and what its data cannot better.
   std::optional<Real> x_scale;
   Real x_floor = 0;
   std::map<std::string, std::optional<bool>> found;  // by τ: error in x ≤ max(τ‖x*‖, 1.1 x_floor)
+  std::string criterion;  // digest of what success is measured by (integrity.h); older: none
   OracleCounts counts{};
   OracleCounts prices{};
   Summary summary;
@@ -118,7 +120,10 @@ Json to_json(const Record& record);
 // UsageError where it is no such record, or its columns differ in length; the origin is named where
 // it is no JSON.
 Record record_from_text(const std::string& text, const std::string& origin);
+// UsageError, which names it, also where the record breaks an invariant (integrity.h).
 Record read_record(const std::string& path);
+// The invariants are not checked: for comparisons and repetitions, which name what is broken.
+Record read_unchecked_record(const std::string& path);
 
 Json run_schema();  // what benchmarks/schemas/run.json holds
 

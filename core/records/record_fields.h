@@ -188,11 +188,16 @@ void fields(Like<Record> auto& record, auto& field) {
   field("claimed", record.claimed);
   field.forgiven("aim", record.aim);
   field("minimum", record.minimum);
+  field.optional("best_known", record.is_best_known,
+                 R"({"description": "The minimum is the best loss known, and none is declared"})");
   field.forgiven("scale", record.scale, R"({"description": "Older records lack it: f₀ − f_L"})");
   field("verified", record.verified, kTolerancesLaw);
   field.forgiven("x_scale", record.x_scale);
   field.forgiven("x_floor", record.x_floor);
   field.forgiven("found", record.found, kTolerancesLaw);
+  field.optional("criterion", record.criterion,
+                 R"({"pattern": "^[0-9a-f]{16}$",
+                     "description": "Digest of f_L, scale, x_scale, x_floor, aim and prices"})");
   field("counts", record.counts);
   field("prices", record.prices);
   field("summary", record.summary);

@@ -20,7 +20,8 @@ namespace {
 constexpr std::pair<const char*, Quantity> kSingle[] = {{"loss", Quantity::loss},
                                                         {"best_loss", Quantity::best_loss},
                                                         {"path", Quantity::path},
-                                                        {"x_error", Quantity::x_error}};
+                                                        {"x_error", Quantity::x_error},
+                                                        {"unverified", Quantity::unverified}};
 constexpr std::pair<const char*, Quantity> kByTolerance[] = {{"work", Quantity::work},
                                                              {"found", Quantity::work_to_x}};
 
@@ -40,13 +41,33 @@ class Rows {
 };
 
 struct Tables {
-  Rows given, terms, parts;
+  Rows given, terms, parts, criteria;
 };
 
 Json given_json(const Given& given) {
   Json json = {{"name", given.name}, {"spec", given.spec}, {"options", to_json(*given.options)}};
   if (given.asked != given.spec) json["asked"] = given.asked;
   return json;
+}
+
+Json criterion_json(const Criterion& of) {
+  Json json = {
+      {"x_floor", json_number(of.x_floor)}, {"aim", name_of(of.aim)}, {"prices", of.prices}};
+  for (const auto& [name, value] :
+       {std::pair("minimum", &of.minimum), {"scale", &of.scale}, {"x_scale", &of.x_scale}})
+    if (*value) json[name] = json_number(**value);
+  return json;
+}
+
+Criterion criterion_from_json(const Json& json) {
+  Criterion of{.x_floor = real_of(json.at("x_floor")),
+               .aim = aim_of(json.at("aim").get<std::string>()).value_or(Aim::loss)};
+  for (const auto& [name, value] :
+       {std::pair("minimum", &of.minimum), {"scale", &of.scale}, {"x_scale", &of.x_scale}})
+    if (json.contains(name)) *value = real_of(json.at(name));
+  const auto prices = json.at("prices").get<std::vector<std::int64_t>>();
+  std::copy_n(prices.begin(), std::min(prices.size(), kOracles), of.prices.begin());
+  return of;
 }
 
 bool is_kept(const ComparedFigure& each) {
@@ -89,7 +110,8 @@ Json cell_json(const ComparedCell& cell, const std::vector<ComparedCell>& others
                {"build", cell.build}};
   for (const auto& [name, digest] : *cell.parts)
     json["parts"].push_back(tables.parts.place(Json{name, digest}));
-  if (cell.aim != Aim::loss) json["aim"] = name_of(cell.aim);
+  json["criterion"] = tables.criteria.place(criterion_json(*cell.criterion));
+  if (!cell.privileges.empty()) json["privileges"] = cell.privileges;
   if (cell.is_cut) json["nondeterministic"] = true;
   if (!cell.trace.empty()) json["trace"] = cell.trace;
   if (!cell.rest.empty()) json["rest"] = cell.rest;
@@ -153,7 +175,12 @@ ComparedCell cell_from_json(const Json& json, const Json& file) {
     parts[part.at(0).get<std::string>()] = part.at(1).get<std::string>();
   }
   cell.parts = shared_parts(parts);
-  cell.aim = aim_of(json.value("aim", std::string("loss"))).value_or(Aim::loss);
+  cell.aim = aim_of(json.value("aim", std::string("loss"))).value_or(Aim::loss);  // older files
+  if (json.contains("criterion")) {
+    cell.criterion = criterion_from_json(row("criteria", json.at("criterion")));
+    cell.aim = cell.criterion->aim;
+    cell.privileges = json.value("privileges", std::vector<std::string>());
+  }
   cell.is_cut = json.value("nondeterministic", false);
   cell.trace = json.value("trace", std::string());
   cell.rest = json.value("rest", std::string());
@@ -174,9 +201,9 @@ std::string baseline_json(const Study& study, const std::vector<Study>& perturbe
     lines.push_back(json_text(cell_json(cell, others[cell.key], tables)));
   return fmt::format(
       "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n\"given\": {},\n"
-      "\"terms\": {},\n\"parts\": {},\n\"cells\": [\n{}\n]}}\n",
+      "\"terms\": {},\n\"parts\": {},\n\"criteria\": {},\n\"cells\": [\n{}\n]}}\n",
       kBaselineSchema, json_text(Json(study.plan.suites)), perturbed.size(), tables.given.text(),
-      tables.terms.text(), tables.parts.text(), fmt::join(lines, ",\n"));
+      tables.terms.text(), tables.parts.text(), tables.criteria.text(), fmt::join(lines, ",\n"));
 }
 
 std::vector<ComparedCell> baseline_from_json(const Json& json) {

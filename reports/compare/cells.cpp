@@ -72,6 +72,12 @@ std::vector<ComparedFigure> figures_of(const Record& record) {
                      .rung = rung,
                      .value = work_until(record.curve, record.curve.x_error,
                                          x_goal(tau, *record.x_scale, record.x_floor))});
+  const auto misses = [](const auto& verdicts) {
+    return std::ranges::count_if(verdicts, [](const auto& one) { return one.second == false; });
+  };
+  if (!record.verified.empty())
+    all.push_back({.quantity = Quantity::unverified,
+                   .value = Real(misses(record.verified) + misses(record.found))});
   for (std::size_t j = 0; record.hits && j < record.hits->target.size(); ++j)
     all.push_back({.quantity = Quantity::work,
                    .rung = j,
@@ -123,13 +129,17 @@ ComparedCell cell_of(const Record& record) {
                     .status = record.status,
                     .build = record.build,
                     .parts = shared_parts(record.build_parts),
-                    .aim = record.aim};
+                    .aim = record.aim,
+                    .criterion = criterion_of(record),
+                    .privileges = record.privileges};
   cell.title = title_of(cell);
   cell.is_cut = record.is_nondeterministic || record.status == Status::timeout ||
                 record.status == Status::interrupted;
   cell.processor = record.provenance.build->processor;
   if (const std::string key = cell_digest(request); key != record.cell)
     cell.doubt = fmt::format("its cell is not the digest of its request, {}", key);
+  else if (const auto broken = broken_invariants(record); !broken.empty())
+    cell.doubt = broken.front();
   if (record.status == Status::inapplicable) return cell;
   add_seconds(cell, record.repeat_wall_seconds);
   add_digests(cell, record);
@@ -149,6 +159,8 @@ std::string figure_name(const ComparedFigure& each) {
       return "error in x";
     case Quantity::path:
       return "mean loss of the path";
+    case Quantity::unverified:
+      return "targets that the last point misses";
     case Quantity::work:
       return "work to " + figure(rung(each.rung));
     case Quantity::work_to_x:
@@ -213,7 +225,7 @@ FolderCells read_cells(const std::string& folder, const Listener& listener) {
   std::vector<ComparedCell> cells(files.size());
   const auto read = [&](std::size_t i) {
     try {
-      const Record record = read_record(files[i]);
+      const Record record = read_unchecked_record(files[i]);
       cells[i] = cell_of(record);
       marks[i] = mark_of(record);
     } catch (const std::exception&) {
@@ -222,7 +234,7 @@ FolderCells read_cells(const std::string& folder, const Listener& listener) {
   };
   share(files.size(), read, listener);
   const Newest newest = newest_of(marks, [&](std::size_t i, std::size_t j) {
-    return are_at_odds(read_record(files[i]), read_record(files[j]));
+    return are_at_odds(read_unchecked_record(files[i]), read_unchecked_record(files[j]));
   });
   const auto lost = std::ranges::count(marks, "", &RunMark::cell);
   FolderCells found{.cells = {},

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/options.h"
+#include "core/records/integrity.h"
 #include "core/records/record.h"
 #include "core/status.h"
 #include "core/threads.h"
@@ -20,7 +21,7 @@
 
 namespace isoline::reports {
 
-enum class Quantity { loss, best_loss, x_error, path, work, work_to_x };
+enum class Quantity { loss, best_loss, x_error, path, work, work_to_x, unverified };
 
 // Share of a problem's scale below which values are as good as solved.
 inline constexpr Real kSmallestShare = 1e-6;
@@ -59,6 +60,8 @@ struct ComparedCell {
   std::string build;
   std::shared_ptr<const BuildParts> parts;  // digests of its build's parts; none: unknown
   Aim aim = Aim::loss;
+  std::optional<Criterion> criterion;   // of success; an older baseline does not hold it
+  std::vector<std::string> privileges;  // known where the criterion is
   std::vector<ComparedFigure> figures;
   std::string trace, rest;  // digests of its path and of what else is deterministic
   std::vector<std::pair<std::string_view, std::uint64_t>> members;  // digests of that, by name

@@ -68,6 +68,28 @@ void visit_common_figures(const ComparedCell& a, const ComparedCell& b, Visit vi
       visit(*at->second, finite_or_never(at->second->value), finite_or_never(each.value));
 }
 
+bool has_quantity(const ComparedCell& cell, Quantity quantity) {
+  return std::ranges::find(cell.figures, quantity, &ComparedFigure::quantity) != cell.figures.end();
+}
+
+std::string privileges_text(const ComparedCell& cell) {
+  return cell.privileges.empty() ? "none" : joined(cell.privileges);
+}
+
+// Those that no size has. A status that broke off explains what is lacking.
+std::vector<Difference> differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
+  std::vector<Difference> found;
+  for (const auto& [quantity, what] :
+       {std::pair(Quantity::x_error, "error in x"), {Quantity::work, "work to the targets"}})
+    if (has_quantity(a, quantity) && !has_quantity(b, quantity) && a.status == b.status)
+      found.push_back(difference_in(a, Change::worse, what, "known", "gone"));
+  if (!a.criterion || !b.criterion || a.privileges == b.privileges) return found;
+  const Change change = a.privileges.size() < b.privileges.size() ? Change::worse : Change::better;
+  found.push_back(
+      difference_in(a, change, "extra information", privileges_text(a), privileges_text(b)));
+  return found;
+}
+
 }  // namespace
 
 Difference difference_in(const ComparedCell& cell, Change change, const std::string& what,
@@ -90,6 +112,30 @@ Difference difference_in(const ComparedCell& cell, Change change, const std::str
 Difference status_difference(const ComparedCell& a, const ComparedCell& b) {
   return difference_in(a, change_from(badness_of(a.status), badness_of(b.status)), "status",
                        std::string(name_of(a.status)), std::string(name_of(b.status)));
+}
+
+std::string criterion_change_text(const ComparedCell& before, const ComparedCell& after,
+                                  const std::optional<Real>& tolerance) {
+  if (!before.criterion || !after.criterion) return "";
+  const Criterion &a = *before.criterion, &b = *after.criterion;
+  std::vector<std::string> changes;
+  const auto add = [&](const char* name, const std::optional<Real>& old,
+                       const std::optional<Real>& now, Real scale) {
+    if (old == now || (old && now && agree(*old, *now, scale, tolerance))) return;
+    const auto text = [](const auto& value) { return value ? exact_figure(*value) : "unknown"; };
+    changes.push_back(fmt::format("{} {} → {}", name, text(old), text(now)));
+  };
+  const Real x_scale = a.x_scale.value_or(0);
+  add("f_L", a.minimum, b.minimum, a.scale.value_or(0));
+  add("scale", a.scale, b.scale, 0);
+  add("norm of x*", a.x_scale, b.x_scale, 0);
+  add("floor of the error in x", a.x_floor, b.x_floor, x_scale);
+  if (a.aim != b.aim) changes.push_back(fmt::format("aim {} → {}", name_of(a.aim), name_of(b.aim)));
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (a.prices[kind] != b.prices[kind])
+      changes.push_back(
+          fmt::format("price of {} {} → {}", kOracleNames[kind], a.prices[kind], b.prices[kind]));
+  return joined(changes);
 }
 
 Real movement(const ComparedCell& a, const ComparedCell& b) {
@@ -116,7 +162,7 @@ std::vector<Difference> figure_differences(const ComparedCell& a, const Compared
     ++more;
     if (std::abs(difference.relative) > std::abs(kept.relative)) kept = std::move(difference);
   });
-  std::vector<Difference> out;
+  std::vector<Difference> out = differences_of_kind(a, b);
   for (auto& [kind, kept] : largest) {
     auto& [difference, more] = kept;
     if (more > 0) difference.note = fmt::format("and {} more of its kind", more);

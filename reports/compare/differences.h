@@ -28,12 +28,18 @@ Difference status_difference(const ComparedCell& before, const ComparedCell& aft
 // the other is not, or where their status differs.
 Real movement(const ComparedCell& before, const ComparedCell& after);
 
-// The largest difference of each quantity and direction. Without a tolerance figures agree if they
+// The largest difference of each quantity and direction, what NEW lacks of what BASE has, and the
+// extra information that one of them was given. Without a tolerance figures agree if they
 // are the same number; with one if they differ by no more than rounding, 1e-16 of the problem's
 // scale, and that share of the first, or of 1e-6 of the scale where that is more: what is smaller
 // solves the problem to the strictest target of the tables.
 std::vector<Difference> figure_differences(const ComparedCell& before, const ComparedCell& after,
                                            const std::optional<Real>& tolerance);
+
+// "f_L 0 → 1e-3, aim x → loss": what of the criteria differs, by more than the tolerance where
+// there is one; empty where nothing does, or where one side does not hold it.
+std::string criterion_change_text(const ComparedCell& before, const ComparedCell& after,
+                                  const std::optional<Real>& tolerance);
 
 // Results that hang on the last bit of their start: rounding, and so another processor or library,
 // moves them as it likes. What of them can still be judged is how they end and what they reach.

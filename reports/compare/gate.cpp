@@ -89,7 +89,7 @@ class Gate {
     for (const auto& [a, b] : pairs.both)
       a->key == b->key || a->terms == b->terms ? compare(*a, *b) : part(*a, *b);
     for (const ComparedCell* cell : pairs.only_before)
-      if (!is_allowed(*cell)) lack(*cell), lacking_.push_back(cell);
+      if (!is_allowed(*cell, false)) lack(*cell), lacking_.push_back(cell);
     for (const ComparedCell* cell : pairs.only_after) result_.only_after.push_back(cell->title);
     result_.lack = lack_text(lacking_, before);
     name_what_changed();
@@ -106,7 +106,10 @@ class Gate {
     for (const std::string& text : changed_parts(a, b)) group_of(parts_, text).add(b);
     for (const std::string& text : changed_options(a, b)) group_of(settings_, text).add(b);
     offer_times(a, b);
-    const std::string reason = why_incomparable(a, b, options_);
+    std::string reason = why_incomparable(a, b, options_);
+    const std::string criterion = criterion_change_text(a, b, options_.tolerance);
+    if (!criterion.empty() && a.doubt.empty() && b.doubt.empty() && !is_allowed(a, true))
+      reason = "success is judged by another criterion: " + criterion;
     if (reason.empty()) return judge(a, b);
     const bool tells_status = a.is_cut || b.is_cut ? badness_of(a.status) != badness_of(b.status)
                                                    : is_lost(a) != is_lost(b);
@@ -142,8 +145,8 @@ class Gate {
     keep(std::move(found), a, b);
   }
 
-  bool is_allowed(const ComparedCell& cell) {
-    const auto entry = entry_for(options_.allowed, cell);
+  bool is_allowed(const ComparedCell& cell, bool is_of_criterion) {
+    const auto entry = entry_for(options_.allowed, cell, is_of_criterion);
     if (entry == options_.allowed.end()) return false;
     result_.allowed.push_back({cell.title, entry->reason});
     is_used_[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
@@ -155,23 +158,25 @@ class Gate {
   // Another budget is another question: NEW lacks the cell of BASE, and has one of its own.
   void part(const ComparedCell& a, const ComparedCell& b) {
     result_.only_after.push_back(b.title);
-    if (is_allowed(a)) return;
+    if (is_allowed(a, false)) return;
     lack(a);
     group_of(result_.other_terms, change_of_terms(a, b)).add(a);
   }
 
   void name_what_changed() {
-    for (const auto& [groups, texts] :
-         {std::pair(&parts_, &result_.builds), {&settings_, &result_.settings}}) {
+    for (std::vector<CauseGroup>* groups : {&parts_, &settings_})
       std::ranges::sort(*groups, {}, &CauseGroup::cause);
-      for (const CauseGroup& group : *groups)
-        texts->push_back(fmt::format("{} ({})", group.cause, group.cells_text()));
-    }
+    for (const CauseGroup& group : parts_)
+      result_.builds.push_back(fmt::format("{} ({})", group.cause, group.cells_text()));
+    for (const CauseGroup& group : settings_)  // which name their component
+      result_.settings.push_back(
+          fmt::format("{} ({})", group.cause, counted(group.cells.size(), "cell")));
     for (std::size_t i = 0; i < is_used_.size(); ++i)
       if (!is_used_[i])
         result_.remarks.push_back(fmt::format(
-            "the list of allowed cells names {} × {}, which NEW does not lack: remove the entry",
-            options_.allowed[i].problem, options_.allowed[i].optimizer));
+            "the list of allowed cells names {} × {}, which NEW does not {}: remove the entry",
+            options_.allowed[i].problem, options_.allowed[i].optimizer,
+            options_.allowed[i].is_of_criterion ? "judge otherwise" : "lack"));
   }
 
   void offer_times(const ComparedCell& a, const ComparedCell& b) {

@@ -27,7 +27,7 @@ struct GateOptions {
   std::optional<Real> tolerance;  // relative; without it figures must agree bit for bit
   Real least_noise = kLeastNoise;
   std::vector<std::string> timed;  // beginnings of the keys of cells whose times are judged
-  AllowedList allowed;             // cells that NEW may lack
+  AllowedList allowed;             // cells that NEW may lack, or may judge by another criterion
   bool is_common_only = false;     // it may lack any
   Listener listener;               // of the records read
 };
@@ -66,7 +66,7 @@ struct GateResult {
   std::vector<std::string> only_before, only_after;  // titles; the allowed ones are not among them
   std::vector<CauseGroup> other_terms;  // of them, asked with another budget: "iterations 20 → 30"
   std::string lack;                     // which optimizers NEW lacks cells of
-  std::vector<ReasonedCell> allowed;    // only in BASE
+  std::vector<ReasonedCell> allowed;    // only in BASE, or judged otherwise
   std::vector<ReasonedCell> incomparable;
   std::vector<std::string> remarks;
   std::string verdict;  // one sentence, which names the cause

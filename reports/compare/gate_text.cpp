@@ -141,8 +141,7 @@ Section gate_section(const GateResult& result, bool lists_all) {
               return {terms.cause, terms.cells_text()};
             });
   add_table(section, "Only in BASE", {"cell"}, "", result.only_before, line);
-  add_table(section, "Only in BASE, as allowed", {"cell", "reason"}, "ll", result.allowed,
-            reasoned);
+  add_table(section, "Allowed", {"cell", "reason"}, "ll", result.allowed, reasoned);
   add_table(section, "Not comparable", {"cell", "reason"}, "ll", result.incomparable, reasoned);
   add_table(section, "Only in NEW", {"cell"}, "", result.only_after, line);
   return section;

@@ -44,7 +44,8 @@ AllowedList allowed_from_json(const Json& json) {
               "an entry of the allowed cells names neither a problem nor an optimizer");
       list.push_back({.problem = cells.value("problem", std::string("*")),
                       .optimizer = cells.value("optimizer", std::string("*")),
-                      .reason = cells.at("reason").get<std::string>()});
+                      .reason = cells.at("reason").get<std::string>(),
+                      .is_of_criterion = cells.value("allows", std::string()) == "criterion"});
       require(!list.back().reason.empty(), "an entry of the allowed cells gives no reason");
     }
     return list;
@@ -57,9 +58,11 @@ AllowedList read_allowed(const std::filesystem::path& file) {
   return allowed_from_json(read_json(file));
 }
 
-AllowedList::const_iterator entry_for(const AllowedList& list, const ComparedCell& cell) {
+AllowedList::const_iterator entry_for(const AllowedList& list, const ComparedCell& cell,
+                                      bool is_of_criterion) {
   return std::ranges::find_if(list, [&](const AllowedCells& cells) {
-    return names(cells.problem, cell.problem) && names(cells.optimizer, cell.optimizer);
+    return cells.is_of_criterion == is_of_criterion && names(cells.problem, cell.problem) &&
+           names(cells.optimizer, cell.optimizer);
   });
 }
 

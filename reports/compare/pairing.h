@@ -18,14 +18,17 @@ inline constexpr const char* kAllowedSchema = "isoline.allowed/1";
 // Patterns hold for a name, or for a specification as asked or as given; '*' stands for any text.
 struct AllowedCells {
   std::string problem = "*", optimizer = "*", reason;
+  bool is_of_criterion =
+      false;  // NEW may judge success by another criterion; else it may lack them
 };
 using AllowedList = std::vector<AllowedCells>;
 
 AllowedList allowed_from_json(const Json& json);  // UsageError where it is no such list
 AllowedList read_allowed(const std::filesystem::path& file);
 
-// The first entry that names the cell; the list's end where none does.
-AllowedList::const_iterator entry_for(const AllowedList& list, const ComparedCell& cell);
+// The first entry of its kind that names the cell; the list's end where none does.
+AllowedList::const_iterator entry_for(const AllowedList& list, const ComparedCell& cell,
+                                      bool is_of_criterion);
 
 bool matches(const std::string& pattern, const std::string& text);
 

@@ -8,6 +8,7 @@
 #include "core/records/record.h"
 #include "core/status.h"
 #include "tests/cli/shell.h"
+#include "tests/reports/true_record.h"
 
 namespace isoline::benchmarks {
 namespace {
@@ -72,17 +73,17 @@ TEST_F(PlantedFault, NoneLetsTheSameResultsPass) {
 TEST_F(PlantedFault, InADefaultFailsTheGate) {
   change_records("adam", [](Record& record) {
     record.request.optimizer.options.set("epsilon", 1e-2);  // from 1e-8
-    record.summary.loss *= 1.5;
+    end_at(record, 1.5 * record.summary.loss);
     record.build_parts["optimizer"] = "0123456789abcdef";
     record.build = "fedcba9876543210";
   });
   expect_fault(kWorse,
                "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam, most in ");
-  EXPECT_TRUE(contains(gate().out, "another source of the optimizers adam: 2 cells"));
+  EXPECT_TRUE(contains(gate().out, "another source of the optimizer (2 cells of adam on "));
 }
 
 TEST_F(PlantedFault, InAFormulaFailsTheGate) {
-  change_records("gd", [](Record& record) { record.summary.loss *= 1 + 1e-5; });
+  change_records("gd", [](Record& record) { end_at(record, record.summary.loss * (1 + 1e-5)); });
   expect_fault(kWorse, "worse: 2 cells of gd, most in ");
 }
 
@@ -103,7 +104,7 @@ TEST_F(PlantedFault, ACellThatAClockCutFailsTheGate) {
 }
 
 TEST_F(PlantedFault, BetterResultsPass) {
-  change_records("gd", [](Record& record) { record.summary.loss *= 0.5; });
+  change_records("gd", [](Record& record) { end_at(record, record.summary.loss * 0.5); });
   const Finished result = gate();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(contains(result.out, "Comparison: better, nothing worse")) << result.out;
@@ -112,11 +113,11 @@ TEST_F(PlantedFault, BetterResultsPass) {
 TEST_F(PlantedFault, InARecordIsFoundByValidate) {
   const fs::path file = fs::directory_iterator(runs)->path();
   Record record = read_record(file);
-  record.summary.loss *= 2;
+  end_at(record, 2 * record.summary.loss);
   write_text(runs / "copy.json", to_json(record).dump());
   const Finished twice = shell("./isoline validate new");
   EXPECT_EQ(twice.exit_code, 2) << twice.out;
-  EXPECT_TRUE(contains(twice.out, "is of the same cell and build and differs at /summary/loss"))
+  EXPECT_TRUE(contains(twice.out, "is of the same cell and build and differs at /curve/loss/"))
       << twice.out;
   fs::remove(runs / "copy.json");
   EXPECT_EQ(shell("./isoline validate new").exit_code, 0);

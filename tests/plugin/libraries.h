@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "benchmarks/plan/plugins.h"
+#include "benchmarks/plan/catalog.h"
 #include "tests/benchmarks/matrix.h"
 
 namespace isoline::benchmarks {

@@ -94,7 +94,8 @@ Record record_of(const PlainRun& run) {
                     .loss = has_curve ? record.curve.loss.back() : NAN,
                     .best_loss = has_curve ? record.curve.loss.back() : NAN,
                     .start_x_error = 1,
-                    .x_error = has_curve ? record.curve.x_error.back() : NAN};
+                    .x_error = has_curve ? record.curve.x_error.back() : NAN,
+                    .gradient_norm = has_curve ? record.curve.gradient_norm.back() : NAN};
   record.provenance = Provenance(Build{.commit = "abc"});
   record.provenance.run.started = run.started;
   return record;

@@ -1,5 +1,4 @@
-// Two result folders of which one was edited: what the gate is tried on. Edits keep a record true
-// to itself: its summary is the last point of its curve, and its hits lie on it.
+// Two result folders of which one was edited: what the gate is tried on.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
 #include "tests/reports/fixture.h"
+#include "tests/reports/true_record.h"
 
 namespace isoline::reports {
 
@@ -25,24 +25,8 @@ inline bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// The last loss, with the best of all and the targets that it reaches.
-inline void end_at(Record& record, Real loss) {
-  record.summary.loss = record.curve.loss.back() = loss;
-  if (!(loss < record.summary.best_loss)) return;
-  record.summary.best_loss = loss;
-  if (!record.hits) return;
-  Hits& hits = *record.hits;
-  for (std::size_t j = 0; j < hits.target.size(); ++j)
-    if (hits.iteration[j] < 0 && loss <= hits.target[j]) {
-      hits.iteration[j] = record.summary.iterations;
-      hits.work[j] = hits.forwards[j] = record.summary.work;
-    }
-}
 inline Edit loss_times(Real factor) {
   return [factor](Record& record) { end_at(record, record.summary.loss * factor); };
-}
-inline void end_in_x_at(Record& record, Real x_error) {
-  record.summary.x_error = record.curve.x_error.back() = x_error;
 }
 inline void take_five_percent_more_work(Record& record) {
   for (std::vector<std::int64_t>* works :

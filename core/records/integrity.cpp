@@ -1,0 +1,234 @@
+// The invariants of a record, each with the sentence that names what breaks it.
+#include "core/records/integrity.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/digest.h"
+#include "core/ladder.h"
+
+namespace isoline {
+namespace {
+
+using Works = std::vector<std::int64_t>;
+
+// Sums and products in another order; a target is compared with the same formula that set it.
+constexpr Real kRounding = 1e-12;
+// Of a loss that single precision computed below its declared minimum, as a share of its scale.
+constexpr Real kBelowMinimum = 1e-6;
+
+bool are_same(Real a, Real b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+std::string number_text(const std::optional<Real>& value) {
+  return value ? fmt::format("{}", *value) : "unknown";
+}
+
+class Invariants {
+ public:
+  explicit Invariants(const Record& record)
+      : record_(record), curve_(record.curve), summary_(record.summary) {
+    const bool is_own = !record.imported && record.status != Status::inapplicable;
+    const bool broke_off = is_failure(record.status) || record.status == Status::interrupted;
+    check_criterion();
+    check_signs();
+    if (!is_own) return;
+    check_order();
+    if (!broke_off) check_ends();
+    check_prices();
+    check_losses();
+    if (record.hits && record.minimum && record.scale) check_hits(*record.hits);
+    if (!broke_off) check_verdicts();
+  }
+
+  std::vector<std::string> broken() && { return std::move(broken_); }
+
+ private:
+  void hold(bool holds, std::string sentence) {
+    if (!holds) broken_.push_back(std::move(sentence));
+  }
+
+  void check_criterion() {
+    hold(record_.criterion.empty() || record_.criterion == digest_of(criterion_of(record_)),
+         "its criterion is not the digest of its f_L, scale, x_scale, x_floor, aim and prices");
+  }
+
+  void check_signs() {
+    const auto is_negative = [](Real value) { return value < 0; };  // not-a-number is allowed
+    for (const auto& [name, works] :
+         {std::pair("iterations", &curve_.iteration), {"work", &curve_.work}})
+      hold(std::ranges::none_of(*works, is_negative), fmt::format("its {} are negative", name));
+    for (const std::vector<Real>* times :
+         {&curve_.wall_seconds, &curve_.processor_seconds, &record_.repeat_wall_seconds})
+      hold(std::ranges::none_of(*times, is_negative), "its times are negative");
+    hold(summary_.work >= 0 && summary_.iterations >= 0 && !is_negative(summary_.wall_seconds),
+         "its summary has negative work, iterations or time");
+  }
+
+  void check_order() {
+    hold(std::ranges::adjacent_find(curve_.iteration, std::greater_equal()) ==
+             curve_.iteration.end(),
+         "the iterations of its curve do not ascend");
+    hold(std::ranges::is_sorted(curve_.work), "the work of its curve descends");
+  }
+
+  // The summary is the first and the last point of the curve. Of one point both are it.
+  void check_ends() {
+    if (curve_.iteration.empty()) return;
+    const struct {
+      const char* name;
+      Real summary, curve;
+    } ends[] = {
+        {"iterations", Real(summary_.iterations), Real(curve_.iteration.back())},
+        {"work", Real(summary_.work), Real(curve_.work.back())},
+        {"loss", summary_.loss, curve_.loss.back()},
+        {"error in x", summary_.x_error, curve_.x_error.back()},
+        {"gradient norm", summary_.gradient_norm, curve_.gradient_norm.back()},
+        {"loss at the start", summary_.start_loss, curve_.loss.front()},
+        {"error in x at the start", summary_.start_x_error, curve_.x_error.front()},
+    };
+    const std::size_t count = curve_.iteration.size() > 1 ? std::size(ends) : std::size(ends) - 2;
+    for (std::size_t i = 0; i < count; ++i)
+      hold(are_same(ends[i].summary, ends[i].curve),
+           fmt::format("its {} is {} in the summary and {} in the curve", ends[i].name,
+                       ends[i].summary, ends[i].curve));
+    for (std::size_t kind = 0; kind < kOracles; ++kind) {
+      const auto column = curve_.counts.find(std::string(kOracleNames[kind]));
+      if (column != curve_.counts.end())
+        hold(column->second.back() == record_.counts[kind],
+             fmt::format("its calls of {} are {}, and {} at the end of the curve", column->first,
+                         record_.counts[kind], column->second.back()));
+    }
+  }
+
+  bool is_priced() const { return std::ranges::any_of(record_.prices, std::identity()); }
+
+  // The work of counts by oracle, in the place i of each column.
+  std::int64_t priced_work(const std::map<std::string, Works>& counts, std::size_t i) const {
+    std::int64_t work = 0;
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      if (const auto column = counts.find(std::string(kOracleNames[kind])); column != counts.end())
+        work += column->second[i] * record_.prices[kind];
+    return work;
+  }
+
+  void check_prices() {
+    if (!is_priced()) return;
+    std::int64_t total = 0;
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      total += record_.counts[kind] * record_.prices[kind];
+    hold(total == summary_.work,
+         fmt::format("its work is {}, its counts times its prices {}", summary_.work, total));
+    const auto check = [&](const char* whose, const std::map<std::string, Works>& counts,
+                           const Works& works) {
+      if (counts.empty()) return;
+      for (std::size_t i = 0; i < works.size(); ++i)
+        if (works[i] >= 0 && priced_work(counts, i) != works[i])
+          return hold(false,
+                      fmt::format("the work of its {} is not its counts times its prices", whose));
+    };
+    check("curve", curve_.counts, curve_.work);
+    if (record_.hits) check("hits", record_.hits->counts, record_.hits->work);
+  }
+
+  Real size() const {
+    return std::max(std::abs(record_.minimum.value_or(0)), std::abs(record_.scale.value_or(0)));
+  }
+
+  void check_losses() {
+    for (const Real loss : curve_.loss)
+      if (std::isfinite(loss) && !(summary_.best_loss <= loss))
+        return hold(false, fmt::format("its best loss is {}, and one of its curve is {}",
+                                       summary_.best_loss, loss));
+    // Older records do not say whether f_L is declared, or the best loss known.
+    const bool is_declared = !record_.criterion.empty() && !record_.is_best_known;
+    if (is_declared && record_.minimum)
+      hold(!(summary_.best_loss < *record_.minimum - kBelowMinimum * size()),
+           fmt::format("its best loss, {}, is below the minimum that its problem declares, {}",
+                       summary_.best_loss, *record_.minimum));
+  }
+
+  Real goal_at(Real tau) const { return *record_.minimum + tau * *record_.scale; }
+  Real slack() const { return kRounding * size(); }
+
+  // A target is met by the iterate of an iteration, or by a trial on the way to the next one.
+  void check_hits(const Hits& hits) {
+    for (std::size_t j = 0; j < hits.target.size(); ++j) {
+      const Real goal = goal_at(hits.target[j]);
+      if (hits.iteration[j] < 0) {
+        hold(!(summary_.best_loss < goal - slack()),
+             fmt::format("it never met the target {}, and its best loss is {}", hits.target[j],
+                         summary_.best_loss));
+        continue;
+      }
+      hold(summary_.best_loss <= goal + slack(),
+           fmt::format("it met the target {}, {}, and its best loss is {}", hits.target[j], goal,
+                       summary_.best_loss));
+      for (std::size_t i = 0; i < curve_.iteration.size(); ++i)
+        if (is_beside(hits, j, i, goal))
+          return hold(false, fmt::format("its target {} is not met where its curve meets it, at "
+                                         "iteration {}",
+                                         hits.target[j], curve_.iteration[i]));
+    }
+  }
+
+  // A kept point before it has not met it and took no more; one after it took no less.
+  bool is_beside(const Hits& hits, std::size_t j, std::size_t i, Real goal) const {
+    const std::int64_t hit = hits.iteration[j], at = curve_.iteration[i];
+    if (at < hit) return curve_.work[i] > hits.work[j] || curve_.loss[i] < goal - slack();
+    return at > hit && curve_.work[i] < hits.work[j];
+  }
+
+  // At the returned point, which is the last.
+  void check_verdicts() {
+    const bool has_returned = !curve_.loss.empty();
+    const auto check = [&](const char* name, const auto& verdicts, const auto& is_met) {
+      for (const auto& [text, tau] : kVerified)
+        if (const auto at = verdicts.find(text); at != verdicts.end() && at->second)
+          hold(*at->second == (has_returned && is_met(tau)),
+               fmt::format("it is {}{} to {}, and its last point says otherwise",
+                           *at->second ? "" : "not ", name, text));
+    };
+    if (record_.minimum && record_.scale)
+      check("verified", record_.verified, [&](Real tau) {
+        return std::isfinite(summary_.loss) && summary_.loss <= goal_at(tau);
+      });
+    if (record_.x_scale)
+      check("found", record_.found, [&](Real tau) {
+        return summary_.x_error <= x_goal(tau, *record_.x_scale, record_.x_floor);
+      });
+    if (record_.status != Status::target || !record_.scale) return;
+    const Real tau = record_.request.budget.target;
+    hold(record_.minimum &&
+             summary_.best_loss <= goal_at(record_.aim == Aim::x ? tau * tau : tau) + slack(),
+         fmt::format("its status is target, and its best loss, {}, is above it",
+                     summary_.best_loss));
+  }
+
+  const Record& record_;
+  const Curve& curve_;
+  const Summary& summary_;
+  std::vector<std::string> broken_;
+};
+
+}  // namespace
+
+Criterion criterion_of(const Record& record) {
+  return {record.minimum, record.scale, record.x_scale, record.x_floor, record.aim, record.prices};
+}
+
+std::string digest_of(const Criterion& criterion) {
+  return digest(fmt::format("{} {} {} {} {} {}", number_text(criterion.minimum),
+                            number_text(criterion.scale), number_text(criterion.x_scale),
+                            criterion.x_floor, name_of(criterion.aim),
+                            fmt::join(criterion.prices, " ")));
+}
+
+std::vector<std::string> broken_invariants(const Record& record) {
+  return Invariants(record).broken();
+}
+
+}  // namespace isoline
