@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
+#include "core/oracle.h"
 #include "core/threads.h"
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
@@ -165,7 +167,7 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
       s, html_text(shown_spec(axis.label)), marks_html(axis), sheet_html(axis),
       html_text(reading(c, s)));
   html += row("kind", kind_title(axis.mathematics()));
-  if (axis.sheet != nullptr) html += row("asks for", list_html(axis.sheet->oracles));
+  html += row("asks for", html_text(counted_oracles(c, s)));
   if (!axis.privileges.empty())
     html += row("sees", "<span class=privilege>" + list_html(axis.privileges) + "</span>");
   html += list_row("best on", deeds.won) + list_row("does not solve", deeds.unsolved) +
@@ -175,6 +177,24 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
 }
 
 }  // namespace
+
+std::string counted_oracles(const Comparison& c, std::size_t s) {
+  std::array<std::size_t, kOracles> asked{};  // problems on which some run asked it
+  std::size_t all = 0;
+  for (const auto& problem : c.cells) {
+    if (!problem[s].is_measured()) continue;
+    ++all;
+    for (std::size_t kind = 0; kind < kOracles; ++kind)
+      asked[kind] += std::ranges::any_of(
+          problem[s].runs, [&](std::size_t run) { return c.runs[run].record->counts[kind] > 0; });
+  }
+  std::vector<std::string> words;
+  for (std::size_t kind = 0; kind < kOracles; ++kind)
+    if (asked[kind] > 0)
+      words.push_back(std::string(kOracleNames[kind]) +
+                      (asked[kind] < all ? fmt::format(" (on {} of {})", asked[kind], all) : ""));
+  return joined(words);
+}
 
 std::string optimizers_html(const Comparison& c) {
   std::string html;

@@ -1,6 +1,4 @@
 // The bar that chooses what is shown: lists of methods and problems, the measure, the tolerance.
-'use strict';
-
 function element(tag, properties = {}, ...children) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);

@@ -6,8 +6,8 @@ const DATA = JSON.parse(document.getElementById('data').textContent);
 
 // Rows of the data by name.
 for (const problem of DATA.problems) {
-  problem.cells = problem.cells.map(([s, reached = [], medians = [], failed = 0, missing = 0]) =>
-    ({s, reached, medians, failed, missing, origin: problem.origins?.[s]}));
+  problem.cells = problem.cells.map(([s, reached = [], medians = [], failed = 0, missing = 0, records = []]) =>
+    ({s, reached, medians, failed, missing, records, origin: problem.origins?.[s]}));
   if (problem.learned !== undefined)
     problem.learned.rows = problem.learned.rows.map(([s, error, low, high, loss, runs]) => ({s, error, low, high, loss, runs}));
 }
@@ -55,11 +55,6 @@ function standingsAt(measure, target) {
 }
 const standingsNow = () => standingsAt(view.measure, view.target);
 
-// The first of each kind in a list that stands best first.
-function firstOfEachKind(ranking) {
-  const kinds = new Set();
-  return ranking.filter((s) => !kinds.has(DATA.kinds[s]) && kinds.add(DATA.kinds[s]));
-}
 // The optimizers of a problem, best first: of a learned one by its error in x at equal work.
 function rankingOf(problem) {
   if (problem.learned !== undefined) return problem.learned.rows.map((row) => row.s);

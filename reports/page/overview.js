@@ -1,7 +1,5 @@
 // The tables of the first tab, for the tolerance and the measure chosen: figures of the report's own,
 // for every one of them.
-'use strict';
-
 const SHOWN_AT_FIRST = 12;  // of the standings; the others on demand
 
 const cellWith = (text, small = '', properties = {}) => element('td', properties, text, ...small === '' ? [] : [element('small', {}, small)]);
@@ -59,7 +57,7 @@ function learnedCell(problem, s) {
   const row = problem.learned.rows.find((one) => one.s === s), least = problem.learned.rows[0]?.error;
   if (row === undefined) return heatCell(cellOf(problem, s), 0, 0);
   if (row.error === null) return cellWith('✗', '', {className: 'no'});
-  return cellWith(figure(row.error), '', {className: row.error === least ? 'h0 best' : heatOf(row.error, least)});
+  return cellWith(short(row.error), '', {className: row.error === least ? 'h0 best' : heatOf(row.error, least)});
 }
 
 // Best first; where all is learned, by how often each is nearest in x at equal work.

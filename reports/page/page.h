@@ -26,6 +26,9 @@ std::string problems_html(const Comparison& comparison, const Ladders& ladders,
                           const AllFields& fields);
 std::string methods_html(const Comparison& comparison);     // the grid of properties
 std::string optimizers_html(const Comparison& comparison);  // one article each
+// What its runs asked for, as counted, not the least that it can do with: "forward, jacobian,
+// inverse (on 3 of 20)" settings.
+std::string counted_oracles(const Comparison& comparison, std::size_t optimizer);
 std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
 
 // Drawings with their words.
@@ -46,6 +49,7 @@ std::string fields_json(const FoundFields& all);
 
 // The data of the scripts, as JSON that is safe inside a script element.
 std::string page_data(const Document& document, const Ladders& ladders, const AllFields& fields);
+std::string runs_address(const Document& document);  // of the folder of records, from the page
 std::string json_quoted(const std::string& text);
 // Those that the page can be switched to, in the order of its data.
 std::vector<Measure> measures_of(const Comparison& comparison);

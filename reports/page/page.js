@@ -1,6 +1,4 @@
 // What the page does: themes, switches, copying, and what is built when first seen.
-'use strict';
-
 function pressable(text, isPressed, onPress) {
   const button = document.createElement('button');
   button.type = 'button';

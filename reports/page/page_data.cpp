@@ -63,15 +63,20 @@ std::string medians_json(const Comparison& c, const TargetMedians& medians) {
   });
 }
 
-// [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing]: what
-// the page chooses from. The optimizer alone where the pair makes no sense.
+// [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing, [record
+// of each run]]: what the page chooses from. The optimizer alone where the pair makes no sense.
 std::string cell_json(const Comparison& c, const Ladders& ladders, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
   const TargetMedians& medians = ladders.at(p, s);
   const std::size_t missing = cell.planned - cell.runs.size();
-  return fmt::format("[{},{},{}{}]", s, indices(medians.reached), medians_json(c, medians),
-                     cell.failed + missing > 0 ? fmt::format(",{},{}", cell.failed, missing) : "");
+  const bool is_large = targets_of(c).size() < kTargets;
+  const std::string records = list(cell.runs, [&](std::size_t run) {
+    const std::string name = c.runs[run].record->file_name();
+    return json_quoted(name.substr(0, name.find('.')));
+  });
+  return fmt::format("[{},{},{},{},{}{}]", s, indices(medians.reached), medians_json(c, medians),
+                     cell.failed, missing, is_large ? "" : "," + records);
 }
 
 std::string cells_json(const Comparison& c, const Ladders& ladders, std::size_t p) {
@@ -180,15 +185,15 @@ std::string axes_json(const Comparison& c) {
   const auto texts = [&](auto text) {
     return list(c.optimizers, [&](const OptimizerAxis& axis) { return json_quoted(text(axis)); });
   };
+  std::vector<std::size_t> all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.push_back(s);
   return fmt::format(
       "\"optimizers\":{},\"methods\":{},\"kinds\":{},\"privileges\":{},\"marks\":{},\"asks\":{}",
       texts([](const OptimizerAxis& axis) { return optimizer_name(axis); }),
       texts([](const OptimizerAxis& axis) { return axis.method; }),
       texts([](const OptimizerAxis& axis) { return kind_title(axis.mathematics()); }),
       texts([](const OptimizerAxis& axis) { return joined(axis.privileges); }), texts(marks_of),
-      texts([](const OptimizerAxis& axis) {
-        return axis.sheet == nullptr ? "" : joined(axis.sheet->oracles);
-      }));
+      list(all, [&](std::size_t s) { return json_quoted(counted_oracles(c, s)); }));
 }
 
 // name, what is counted, its unit, the least that counts.
@@ -224,11 +229,11 @@ std::string json_quoted(const std::string& text) { return json_text(Json(text));
 std::string page_data(const Document& document, const Ladders& ladders, const AllFields& fields) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
-      "{{\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
+      "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
       "\"rungs\":{},\"targets\":{},{},\"given\":{},\"ranked\":{},\"common\":{},\"claims\":{},"
       "\"standings\":{},\"problems\":[",
-      name_of(c.yardstick.by), is_all_learned(c), list(kShades, exact_figure), measures_json(c),
-      c.is_any_timed_together,
+      json_quoted(runs_address(document)), name_of(c.yardstick.by), is_all_learned(c),
+      list(kShades, exact_figure), measures_json(c), c.is_any_timed_together,
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),

@@ -1,7 +1,5 @@
 // Two methods of the reader's choice. `pairOf` is the one function of these scripts that makes
 // figures: those of `pairing_of` in the report, which a test of the browser holds it to for every pair.
-'use strict';
-
 const MOST_DOUBLINGS = 6;  // unsolved counts as 64 times as much
 
 function medianOf(ascending) {

@@ -1,6 +1,4 @@
 // One problem: its curves, and beside them a table whose rows are the legend.
-'use strict';
-
 const CHOSEN = new Map();  // the lines that a reader chose, by problem
 
 const linesShown = (p) => CHOSEN.get(p) ?? new Set(DATA.problems[p].lines);

@@ -162,6 +162,17 @@ std::string record_link(const Document& document, const std::string& name) {
   return "";
 }
 
+}  // namespace
+
+std::string runs_address(const Document& document) {
+  const auto& runs = document.comparison.runs;
+  const std::string name = runs.empty() ? "" : runs.front().record->file_name();
+  const std::string link = name.empty() ? "" : record_link(document, name);
+  return link.substr(0, link.rfind('/') + 1);
+}
+
+namespace {
+
 void link_records(const Document& document, Section& claim) {
   for (Table& table : claim.tables)
     if (!table.columns.empty() && table.columns.back() == "record")
@@ -363,8 +374,7 @@ std::string row_html(const Comparison& c, std::size_t s) {
       swatch(), html_text(optimizer_name(axis)), marks_html(axis), kind_title(axis.mathematics()));
   for (const Property& property : kProperties) html += answer_html(property, audit_of(c, s));
   return html + fmt::format("<td class=text>{}<td class=text>{}\n",
-                            axis.sheet == nullptr ? "" : html_text(joined(axis.sheet->oracles)),
-                            html_text(joined(axis.privileges)));
+                            html_text(counted_oracles(c, s)), html_text(joined(axis.privileges)));
 }
 
 }  // namespace

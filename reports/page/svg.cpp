@@ -90,7 +90,7 @@ std::string y_axis(const Frame& frame, const std::string& label, bool is_share) 
 
 namespace {
 
-constexpr Real kLeft = 62, kTop = 26, kBelow = 40, kNameWidth = 150;
+constexpr Real kLeft = 62, kTop = 26, kBelow = 40, kNameWidth = 164;
 
 bool is_hidden(const Drawing& drawing, const PlotSeries& line) {
   return line.optimizer && drawing.on_demand.contains(*line.optimizer);

@@ -1,6 +1,4 @@
 // Tables that sort by any column and filter by words. They are complete without this script.
-'use strict';
-
 // What a cell sorts by: its leading number, ✗ as infinite, words otherwise, nothing last.
 function sortKey(cell) {
   const text = (cell?.firstChild?.textContent ?? '').trim();
@@ -40,7 +38,7 @@ function sortTable(table, column, isDescending) {
   }
 }
 
-// Of a long table so many rows stand in the page; the others wait for a filter, an order, or paper.
+// Of a long table so many rows stand in the page; the others wait for a filter or an order.
 const MOST_IN_PAGE = 200;
 const LONG = new Map();  // {rows, show} of each
 const rowsOf = (table) => LONG.get(table)?.rows ?? [...table.tBodies[0].rows];
@@ -83,7 +81,6 @@ function makeFilter(input, table, output) {
   LONG.set(table, {rows: [...table.tBodies[0].rows], show});
   output.after(' ', all);
   input.addEventListener('input', show);
-  addEventListener('beforeprint', () => { most = Infinity; show(); });
   show();
   return show;
 }
@@ -133,7 +130,6 @@ function explainMatrix(matrix) {
     if (cell !== null) showTip(tip, explanationOf(Number(cell.dataset.p), Number(cell.parentElement.dataset.s)), cell); else tip.hidden = true;
   };
   matrix.addEventListener('pointerover', explain);
-  matrix.addEventListener('click', explain);
   matrix.addEventListener('pointerleave', () => { tip.hidden = true; });
   addEventListener('scroll', () => { tip.hidden = true; }, {passive: true});
 }

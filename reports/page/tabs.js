@@ -1,7 +1,5 @@
 // Tabs: one is laid out at a time. Each has an address, and so has each problem, card and claim in
 // them; what is large is made when its tab is first opened. Paper shows the open one.
-'use strict';
-
 const TABS = [...document.querySelectorAll('main > .tab')];
 const FIRST = TABS[0].id;
 

@@ -1,8 +1,6 @@
 // What the reader looks at: which methods and problems, to which tolerance, by what measure. Kept in
 // the address, so that a view can be shared. Any element with data-s or data-p follows, whoever made
 // it: a filter hides, and changes no number.
-'use strict';
-
 const TARGETS = DATA.targets;  // those there are medians to, of τ = 10^(−j/5)
 const DEFAULT_TARGET = DATA.rungs[DATA.rungs.length - 1];  // the report's own
 const KINDS = {s: {names: DATA.optimizers, address: 'o'}, p: {names: DATA.problems.map((problem) => problem.spec), address: 'p'}};

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 import urllib.request
+import xml.etree.ElementTree
 
 import browser
 import colours
@@ -157,7 +158,7 @@ class Page(InBrowser):
     # --- what is shown
 
     def test_a_method_left_out_is_nowhere_to_be_seen_and_no_figure_changes(self):
-        before = self.browser.run(STANDINGS)
+        before = self.browser.wait(STANDINGS)  # empty until they are drawn
         out = self.optimizer("newton")
         self.browser.click(".pick[data-kind=s] > summary")
         self.browser.wait("return document.querySelector('[data-choice]') !== null")
@@ -220,6 +221,7 @@ class Page(InBrowser):
     def test_a_heading_sorts_its_column_both_ways(self):
         head = "#standings-table thead th:nth-child(8)"
         for order, is_descending in (("ascending", False), ("descending", True)):
+            self.browser.wait("return document.querySelector(arguments[0] + ' button') !== null", head)
             self.browser.run("document.querySelector(arguments[0] + ' button').click()", head)
             sort = self.browser.run("return document.querySelector(arguments[0]).ariaSort", head)
             self.assertEqual(sort, order)
@@ -334,6 +336,80 @@ class Page(InBrowser):
                 self.assertGreater(colours.least_distance(palette, vision), told_apart,
                                    f"{theme}, {vision}")
 
+    def test_names_at_the_ends_of_lines_can_be_read(self):
+        self.open(f"#problem-{self.problem('beale')}")
+        self.browser.wait(IS_DRAWN, ".problem.chosen .curves")
+        self.browser.run("showLines(arguments[0], DATA.optimizers.keys())", self.problem("beale"))
+        count = "return document.querySelectorAll('.problem.chosen .chart:not([hidden]) .ends text').length"
+        self.browser.wait(count + " > 5")
+        for theme in ("light", "dark"):
+            self.browser.run("document.documentElement.dataset.theme = arguments[0]", theme)
+            contrasts = self.browser.run(
+                "const context = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});"
+                "const luminance = (colour) => { context.fillStyle = colour; context.fillRect(0, 0, 1, 1);"
+                "  const [r, g, b] = [...context.getImageData(0, 0, 1, 1).data].map((v) => v / 255)"
+                "    .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));"
+                "  return 0.2126 * r + 0.7152 * g + 0.0722 * b; };"
+                "const paper = luminance(getComputedStyle(document.body).backgroundColor);"
+                "return [...document.querySelectorAll('.problem.chosen .chart:not([hidden]) .ends text')]"
+                ".map((text) => luminance(getComputedStyle(text).fill)).map((ink) => "
+                "(Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05))")
+            self.assertGreaterEqual(min(contrasts), 4.5, theme)
+
+    def test_a_method_that_is_chosen_is_never_folded_away(self):
+        for index, optimizer in enumerate(self.json["optimizers"]):
+            self.open("")
+            self.browser.run("show('s', [arguments[0]])", index)
+            for table in ("standings-table", "heat"):
+                self.browser.wait(
+                    "return [...document.querySelectorAll(`#${arguments[0]} tbody tr`)].filter("
+                    "(row) => row.getClientRects().length > 0).map((row) => row.dataset.s).join() "
+                    "=== String(arguments[1])", table, index)
+
+    def test_a_chart_is_zoomed_turned_and_kept_as_a_file(self):
+        self.open(f"#problem-{self.problem('beale')}")
+        self.browser.wait(IS_DRAWN, ".problem.chosen .curves")
+        chart = "const chart = document.querySelector('.problem.chosen .chart:not([hidden])');"
+        ends = chart + "return [...chart.querySelectorAll('.axes text')].map((one) => one.textContent)"
+        whole = self.browser.run(ends)
+        self.browser.run(chart + "setView(chart, 1000, 1000, 500, 500)")
+        self.assertNotEqual(self.browser.run(ends), whole)
+        self.browser.run(chart + "fitView(chart)")
+        self.assertEqual(self.browser.run(ends), whole)
+        points = "const [x, y] = [axisOf(chart, 'x'), axisOf(chart, 'y')];" \
+                 "return linesOf(chart).filter(isLineShown).map((line) => pointsOf(pathOf(line))" \
+                 ".map((at) => valueAt(x, at[0] / AREA)).filter((v) => v > 20))"
+        before = self.browser.run(chart + points)
+        after = self.browser.run(chart + "setKind(chart, 'x', 'linear');" + points)
+        for one, other in zip(before, after):
+            for a, b in zip(one, other):
+                self.assertAlmostEqual(a / b, 1, delta=0.02)
+        svg = self.browser.run(chart + "return svgText(chart)")
+        self.assertEqual(xml.etree.ElementTree.fromstring(svg).tag, "{http://www.w3.org/2000/svg}svg")
+        self.assertNotIn("var(", svg)
+        rows = self.browser.run(chart + "return csvText(chart)").splitlines()
+        self.assertEqual(rows[0], "line,x,y")
+        self.assertGreater(len(rows), 20)
+
+    def test_a_figure_opens_its_records_and_the_commands_that_repeat_it(self):
+        cell = self.browser.wait(
+            "const cell = document.querySelector('#heat tbody tr td[data-p].best');"
+            "cell?.click(); return cell && [cell.dataset.p, cell.parentElement.dataset.s]")
+        self.browser.wait("return document.getElementById('drawer').open")
+        links, codes, has_curve = self.browser.run(
+            "const drawer = document.getElementById('drawer');"
+            "return [[...drawer.querySelectorAll('li a')].map((link) => link.href), "
+            "[...drawer.querySelectorAll('code')].map((code) => code.textContent), "
+            "drawer.querySelector('.spark') !== null]")
+        self.assertGreater(len(links), 0)
+        for link in links:
+            self.assertTrue(pathlib.Path(urllib.request.url2pathname(link[7:])).exists(), link)
+        self.assertTrue(codes[0].startswith("./isoline run --problem"))
+        self.assertTrue(codes[1].startswith("./isoline replay "))
+        self.assertTrue(has_curve, cell)
+        self.browser.press("escape")
+        self.browser.wait("return !document.getElementById('drawer').open")
+
     # --- two methods
 
     def test_a_pair_has_the_figures_of_the_report(self):
@@ -372,6 +448,8 @@ class Page(InBrowser):
             self.open(f"#{tab}")
             wide = self.browser.run(WIDER)
             self.assertLessEqual(wide, 0, f"{tab} is wider than the window")
+            self.assertLessEqual(self.browser.run("return document.querySelector('.bars')"
+                                                  ".offsetHeight"), 105)
 
     def test_paper_has_the_open_tab_drawn(self):
         for tab in ("overview", "problems", "statistics"):
@@ -397,7 +475,7 @@ class Learned(unittest.TestCase):
                 verdict = page.run("return document.querySelector('.verdict').innerText")
                 self.assertIn("at equal work", verdict)
                 self.assertIn("nearest in x", verdict)
-                heat = page.run("return document.querySelector('#heat').innerText")
+                heat = page.wait("return document.querySelector('#heat').innerText")
                 self.assertIn("learned: error in x", heat)
                 self.assertIn("Nothing here is ranked by work",
                               page.run("return document.getElementById('overview').innerText"))
@@ -408,6 +486,10 @@ class Learned(unittest.TestCase):
                 page.wait(IS_DRAWN, "#problem-0 .curves")
                 caption = page.run("return document.querySelector('.reached caption').innerText")
                 self.assertIn("error in x", caption)
+                self.assertTrue(page.run(
+                    "const chart = document.querySelector('.chart[data-vertical=x_error]');"
+                    "return linesOf(chart).every((line) => line.querySelector('.points') !== null"
+                    " && pathOf(line).getAttribute('d').includes('l'))"), "joined, and marked")
                 self.assertEqual(page.complaints(), [])
             finally:
                 page.close()

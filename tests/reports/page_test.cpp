@@ -6,6 +6,7 @@
 
 #include "core/files.h"
 #include "core/json.h"
+#include "core/oracle.h"
 #include "reports/read/reached.h"
 #include "reports/report.h"
 #include "reports/sections/words.h"
@@ -62,10 +63,9 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
     for (const char* optimizer : {"gd", "newton"})
       study.runs.push_back(record_of({.problem = problem, .optimizer = optimizer}));
   const std::string page = html_report(document_of(compare_optimizers(study)));
-  for (const char* part :
-       {"<article class=\"problem one\" id=problem-1 data-p=1>",
-        "<article class=\"optimizer one\" id=optimizer-1 data-s=1>", "<tr data-p=1 data-s=1><th>b",
-        "<g data-s=1", "<tr data-s=1"})
+  for (const char* part : {"<article class=\"problem one\" id=problem-1 data-p=1>",
+                           "<article class=\"optimizer one\" id=optimizer-1 data-s=1>",
+                           "<tr data-p=1 data-s=1><th>b", "<g data-s=1", "<tr data-s=1"})
     EXPECT_TRUE(has(page, part)) << part;
 }
 
@@ -104,6 +104,38 @@ TEST(Page, IsTitledByItsSuites) {
   study.runs = {record_of({})};
   study.plan.suites = {"quick"};
   EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))), "<title>quick"));
+}
+
+// A sheet names the least that a method can do with; the page names what its runs asked for.
+TEST(Page, NamesTheDerivativesThatRunsCounted) {
+  Study study;
+  study.runs = {record_of({.problem = "a", .optimizer = "hig"}),
+                record_of({.problem = "b", .optimizer = "hig"})};
+  for (Record& record : study.runs) record.counts = {};
+  for (Record& record : study.runs) record.counts[static_cast<std::size_t>(Oracle::forward)] = 11;
+  study.runs[1].counts[static_cast<std::size_t>(Oracle::jacobian)] = 11;
+  EXPECT_EQ(counted_oracles(compare_optimizers(study), 0), "forward, jacobian (on 1 of 2)");
+}
+
+// One line ends a hundred times below all others.
+TEST(PanelsOfThePage, HaveNoAxisThatLeavesOutTheEndOfALine) {
+  Study study;
+  Figure figure{
+      .problem = "square", .title = "5c", .kind = "curve", .is_log_x = true, .is_log_y = true};
+  for (std::size_t s = 0; s < 5; ++s) {
+    study.runs.push_back(record_of({.optimizer = "m" + std::to_string(s)}));
+    figure.lines.push_back({.optimizer = s,
+                            .x = {1, 10, 100},
+                            .y = {3, 2, s == 0 ? 0.0124 : 1.3},
+                            .low = {},
+                            .high = {}});
+  }
+  Document document{.comparison = compare_optimizers(study)};
+  document.figures = {figure};
+  const std::string html = figures_html(document);
+  const std::size_t at = html.find("data-y=\"");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_LE(std::stod(html.substr(at + 8)), 0.0124);
 }
 
 // Eight lines can be told apart; the others are shown on demand.

@@ -1,0 +1,101 @@
+// What a reader does with a chart: zoom by a drag, linear or logarithmic axes, the chart as a file.
+
+// Each corner of a path, moved: steps stay steps, since each axis moves for itself.
+function movedPath(path, across, up) {
+  let x = 0, y = 0;
+  return path.replaceAll(/([MLHVhvl])(-?\d+)(?: ?(-?\d+))?|Z/g, (token, letter, first, second) => {
+    if (token === 'Z') return token;
+    const [a, b] = [Number(first), Number(second)], isDot = letter === 'h' && a === 0;
+    if (letter === 'M' || letter === 'L') [x, y] = [a, b];
+    else if (letter === 'l') [x, y] = [x + a, y + b];
+    else if (letter === 'H') x = a;
+    else if (letter === 'h') x += a;
+    else y = letter === 'V' ? a : y + a;
+    return isDot ? 'h0' : `${letter === 'M' ? 'M' : 'L'}${Math.round(across(x))} ${Math.round(up(y))}`;
+  });
+}
+
+// The same numbers on another axis; what is not above 0 stays at the low edge of a logarithm.
+function setKind(chart, key, kind) {
+  const from = axisOf(chart, key), far = 4 * AREA;
+  const to = {...from, kind, low: kind === 'log' ? Math.max(from.low, 1e-6 * from.high) : from.low};
+  const move = (at) => {
+    const share = shareOf(to, valueAt(from, key === 'x' ? at / AREA : 1 - at / AREA)), end = Number.isNaN(share) || share === -Infinity ? 0 : share;
+    return Math.max(-far, Math.min(far, AREA * (key === 'x' ? end : 1 - end)));
+  };
+  const same = (at) => at;
+  for (const path of chart.querySelectorAll('.area path')) {
+    if (path.matches('.tau')) continue;
+    path.setAttribute('d', key === 'x' ? movedPath(path.getAttribute('d'), move, same) : movedPath(path.getAttribute('d'), same, move));
+    POINTS.delete(path);
+  }
+  chart.dataset[key] = `${to.low} ${to.high} ${kind}`;
+  moveTolerance(chart);
+  fitView(chart);
+}
+
+function download(name, type, text) {
+  const link = element('a', {href: URL.createObjectURL(new Blob([text], {type})), download: name});
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href));
+}
+
+const fileOf = (chart) => chart.querySelector('title').textContent.replaceAll(/[^A-Za-z0-9]+/g, '-');
+
+// With the colours of the moment in each element, as programs that know no style sheet read them.
+function svgText(chart) {
+  const copy = chart.cloneNode(true), originals = [chart, ...chart.querySelectorAll('*')], pixel = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});
+  const plain = (colour) => {
+    pixel.clearRect(0, 0, 1, 1);
+    pixel.fillStyle = colour;
+    pixel.fillRect(0, 0, 1, 1);
+    return `rgb(${pixel.getImageData(0, 0, 1, 1).data.slice(0, 3).join(',')})`;
+  };
+  [copy, ...copy.querySelectorAll('*')].forEach((one, i) => {
+    const style = getComputedStyle(originals[i]);
+    if (style.display === 'none') return one.remove();
+    for (const name of ['fill', 'stroke']) one.setAttribute(name, style[name] === 'none' ? 'none' : plain(style[name]));
+    for (const name of ['stroke-width', 'stroke-dasharray', 'stroke-linecap', 'opacity', 'vector-effect', 'font-size', 'font-family']) one.setAttribute(name, style.getPropertyValue(name));
+  });
+  return new XMLSerializer().serializeToString(copy);
+}
+
+function csvText(chart) {
+  const [x, y] = [axisOf(chart, 'x'), axisOf(chart, 'y')], quoted = (text) => `"${text.replaceAll('"', '""')}"`;
+  const number = (value) => String(Number(value.toPrecision(4)));
+  return ['line,x,y', ...linesOf(chart).filter(isLineShown).flatMap((group) => pointsOf(pathOf(group)).map(
+      ([across, up]) => `${quoted(nameOf(group))},${number(valueAt(x, across / AREA))},${number(valueAt(y, 1 - up / AREA))}`))].join('\n') + '\n';
+}
+
+// A row of buttons for the chart of a place that is not hidden.
+function addTools(place) {
+  const chart = () => place.querySelector('.chart:not([hidden])');
+  const turn = (key) => () => setKind(chart(), key, axisOf(chart(), key).kind === 'log' ? 'linear' : 'log');
+  const tools = element('p', {className: 'tools'}, pressable('whole', undefined, () => fitView(chart())), pressable('SVG', undefined, () => download(`${fileOf(chart())}.svg`, 'image/svg+xml', svgText(chart()))),
+      pressable('CSV', undefined, () => download(`${fileOf(chart())}.csv`, 'text/csv', csvText(chart()))));
+  for (const key of ['x', 'y'])
+    if (axisOf(chart(), key).kind !== 'share' && axisOf(chart(), key).low > 0) tools.firstChild.after(pressable(`log ${key}`, undefined, turn(key)));
+  place.querySelector('.chart:last-of-type').after(tools);
+}
+
+// A drag over the area of a chart looks at that part of it.
+let drag;
+const placeIn = (chart, event) => {
+  const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), shape = chart.getBoundingClientRect(), scale = chart.viewBox.baseVal.width / shape.width;
+  return [left + ((event.clientX - shape.left) * scale - box.x) / box.width * width, top + ((event.clientY - shape.top) * scale - box.y) / box.height * height];
+};
+document.addEventListener('pointerdown', (event) => {
+  const chart = event.target.closest?.('.chart');
+  drag = chart && event.pointerType === 'mouse' && event.button === 0 ? {chart, from: placeIn(chart, event), at: [event.clientX, event.clientY]} : undefined;
+  if (drag) event.preventDefault();
+});
+document.addEventListener('pointerup', (event) => {
+  const least = 8;  // pixels: less is a press
+  if (drag && Math.min(Math.abs(event.clientX - drag.at[0]), Math.abs(event.clientY - drag.at[1])) > least) {
+    const [x, y] = placeIn(drag.chart, event), [left, top] = drag.from;
+    setView(drag.chart, Math.min(x, left), Math.min(y, top), Math.abs(x - left), Math.abs(y - top));
+  }
+  drag = undefined;
+});
+document.addEventListener('dblclick', ({target}) => { if (target.closest?.('.chart')) fitView(target.closest('.chart')); });
+ON_UNPACK.push((place) => { for (const one of new Set([...place.querySelectorAll('.chart')].map((chart) => chart.parentElement))) addTools(one); });
