@@ -4,9 +4,10 @@
 //   L(N(θ)) ≤ (1 − τ/2) L(x),
 //
 // half of what U itself gives, and only then is the physics inverted again. At most `most-steps`,
-// for a network need not be able to. The bound K of the theorem's second condition is measured as
-// ‖U‖ ≤ K ‖y − y*‖. Deviation: all samples of a fresh batch are stopped together, by their mean
-// loss.
+// for a network need not be able to: the share of the U so far that it could not follow is traced.
+// So is the bound K of the theorem's second condition (equation 12), ‖U‖ ≤ K (L − L*) with L* = 0,
+// of lengths as root mean squares over the samples. Near a solution L falls with the square of ‖U‖,
+// and no K holds. Deviation: all samples of a fresh batch are stopped together, by their mean loss.
 #include <cmath>
 
 #include "optimizers/inversion.h"
@@ -35,7 +36,8 @@ class SipTheorem3 final : public ProxyMethod {
   void start(Meter& f, const Vector& theta) override {
     inversion_ = make_inversion(options_.inversion, f.inverse_kind());
     ProxyMethod::start(f, theta);
-    f.name_series({"τ of U", "K of U", "length of U", "network steps of U"});
+    f.name_series(
+        {"τ of U", "K of U", "length of U", "network steps of U", "U not followed, share"});
   }
 
   Status step(Meter& f, Vector& theta) override {
@@ -44,23 +46,32 @@ class SipTheorem3 final : public ProxyMethod {
     f.linearize_physics(found_, reached_);
     const Real tau = 1 - reached_.loss() / at_.loss();
     const Real goal = (1 - tau / 2) * at_.loss();
-    const Real length = (found_ - at_.x()).norm();
+    const Real length = (found_ - at_.x()).norm() / std::sqrt(static_cast<Real>(found_.cols()));
     f.note(0, tau);
-    f.note(1, length / (at_.y() - f.target()).norm());
-    f.note(2, length / std::sqrt(static_cast<Real>(found_.cols())));
+    f.note(1, length / at_.loss());
+    f.note(2, length);
     Index steps = 0;
     do {
       descent_.approach(found_, Proxy::l2, at_, theta);
       f.linearize(theta, at_);
     } while (++steps < options_.most_steps && at_.loss() > goal && !f.is_spent());
+    ++updates_;
+    if (at_.loss() > goal) ++not_followed_;
     f.note(3, static_cast<Real>(steps));
+    f.note(4, static_cast<Real>(not_followed_) / static_cast<Real>(updates_));
     return Status::running;
+  }
+
+  bool persist(Archive& archive) override {
+    archive(updates_, not_followed_);
+    return ProxyMethod::persist(archive);
   }
 
  private:
   const Options options_;
   std::unique_ptr<Inversion> inversion_;
   Linearization reached_;
+  std::int64_t updates_ = 0, not_followed_ = 0;
 };
 
 }  // namespace
@@ -72,9 +83,10 @@ void register_sip_theorem_3(OptimizerRegistry& registry) {
        .formula = "x̃ = x + U;  θ ← steps on (1/B) Σ ½‖x − x̃‖² until L ≤ (1 − τ/2) L(x),  "
                   "τ = 1 − L(x + U)/L(x)",
        .source = "Holl, Koltun, Thuerey (2022), theorem 3",
-       .note = "All samples of a batch are stopped together. Traced are τ, K = ‖U‖/‖y − "
-               "y*‖, the length of U as a root mean square over the samples, and the "
-               "network's steps. Each check of the loss is a forward solve, counted.",
+       .note = "All samples of a batch are stopped together. Traced are τ, K = ‖U‖/(L − L*), the "
+               "length of U as a root mean square over the samples, the network's steps, and the "
+               "share of all U so far that these could not follow. Each check of the loss is a "
+               "forward solve, counted.",
        .needs = {Oracle::forward, Oracle::network},
        .is_input_scale_invariant = true,
        .tunable = {.option = "step", .below = 5},

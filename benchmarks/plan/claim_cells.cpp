@@ -87,8 +87,8 @@ Claim claim_from(const Catalog& catalog, const Rates& rates, const Json& json,
     Json bare = block;
     bare.erase("iterations");
     block["terms"] = terms_of(from, json.at("quantity"), bare, known);
-    if (json.contains("contrast"))
-      block["contrast_terms"] = terms_of(from, json["contrast"].at("quantity"), bare, known);
+    for (const Json& contrast : json.value("contrasts", Json::array()))
+      block["contrast_terms"].push_back(terms_of(from, contrast.at("quantity"), bare, known));
     claim.cells.push_back(std::move(cells));
   }
   return claim;

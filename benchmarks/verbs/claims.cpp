@@ -34,6 +34,7 @@ struct ClaimArguments {
   std::string out = "results/claims";
   int jobs = 0;
   bool is_list = false, as_json = false, no_run = false, with_long = false, lists_all = false;
+  bool as_papers = false;
 };
 
 void declare(VerbArguments& verb, ClaimArguments& given) {
@@ -43,6 +44,7 @@ void declare(VerbArguments& verb, ClaimArguments& given) {
   verb.flag("--list", given.is_list, "List the claims, and run nothing");
   verb.flag("--all", given.lists_all, "List every claim, not the first 20");
   verb.flag("--json", given.as_json, "Print JSON");
+  verb.flag("--papers", given.as_papers, "Print a table a paper, in Markdown: docs/papers.md");
   verb.flag("--no-run", given.no_run, "Judge by the runs that are there");
   verb.flag("--long", given.with_long, "Run also what takes hours");
 }
@@ -96,6 +98,14 @@ std::string terminal_text_of(const std::vector<Judgement>& judgements, bool list
   return text + "`isoline claims ID` shows one of them with the figures that decide it.\n";
 }
 
+std::string papers_page(const std::vector<Judgement>& judgements) {
+  return "# What do the papers say, and what comes of it here?\n\n"
+         "`./isoline claims --no-run --papers --out results/papers` makes this page of the claims in "
+         "`benchmarks/claims` and of the runs in a folder of results: a row a claim, with the "
+         "command that decides it. [Claims](claims.md) says what the verdicts mean.\n" +
+         reports::markdown_section(reports::papers_section(judgements), reports::kAllRows);
+}
+
 int exit_code_of(const std::vector<Judgement>& judgements) {
   const auto has = [&](auto&& is_so) {
     return std::ranges::any_of(judgements, is_so, &Judgement::verdict);
@@ -111,8 +121,9 @@ int run(const ClaimArguments& given, Session& session) {
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
   const std::vector<Judgement> judgements = judged(claims, read_study({given.out}).runs);
-  say(stdout, given.as_json ? json_text(claims_json(judgements), 2) + "\n"
-                            : terminal_text_of(judgements, given.lists_all));
+  say(stdout, given.as_json     ? json_text(claims_json(judgements), 2) + "\n"
+              : given.as_papers ? papers_page(judgements)
+                                : terminal_text_of(judgements, given.lists_all));
   const int of_runs = exit_code_of(outcome);
   return of_runs == kGood ? exit_code_of(judgements) : of_runs;
 }
@@ -131,7 +142,7 @@ void register_claims(VerbRegistry& registry) {
            "  isoline claims --no-run --out results/quick      what the runs of a suite decide",
        .notes =
            "A claim is reproduced where what is measured lies within the source's own error of reading,\n"
-           "partly where only the direction holds.\n"
+           "partly where only the direction holds; of fewer than six seeds it is consistent or at odds.\n"
            "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 none can be compared."},
       declare, run));
 }

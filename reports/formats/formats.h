@@ -22,7 +22,8 @@ std::string terminal_section(const Section& section, std::size_t most_rows = kAl
 std::string terminal_claim(const Section& claim);  // one whole: readings, plots, tables
 std::string text_plot(const Plot& plot);           // lines in letters, for a terminal
 std::string markdown_claim(const Section& claim);
-std::string markdown_section(const Section& section);
+inline constexpr std::size_t kSummaryRows = 60;  // of a table, so that a summary stays a summary
+std::string markdown_section(const Section& section, std::size_t most_rows = kSummaryRows);
 
 // Parts of report.json.
 nlohmann::json statistics_json(const Document& document);

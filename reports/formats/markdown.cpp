@@ -10,8 +10,6 @@
 namespace isoline::reports {
 namespace {
 
-constexpr std::size_t kMostRows = 60;  // of a table, so that a summary stays a summary
-
 std::string cell_text(const TableCell& cell) {
   std::string text = markdown_text(cell.text);
   if (cell.is_best) text = "**" + text + "**";
@@ -20,7 +18,7 @@ std::string cell_text(const TableCell& cell) {
 }
 
 // Columns [first, last) beside the names of the rows.
-std::string part_text(const Table& table, const Part& part) {
+std::string part_text(const Table& table, const Part& part, std::size_t most_rows) {
   const auto line = [&](const auto& of_column) {
     std::string text = "|";
     for (std::size_t i = 0; i < table.names; ++i) text += of_column(i);
@@ -30,7 +28,7 @@ std::string part_text(const Table& table, const Part& part) {
   std::string text =
       line([&](std::size_t i) { return " " + markdown_text(table.columns[i]) + " |"; });
   text += line([&](std::size_t i) { return table.align_of(i) == 'r' ? "---:|" : "---|"; });
-  for (std::size_t row = 0; row < std::min(table.rows.size(), kMostRows); ++row)
+  for (std::size_t row = 0; row < std::min(table.rows.size(), most_rows); ++row)
     text += line([&](std::size_t i) {
       const auto& cells = table.rows[row];
       return i < cells.size() ? " " + cell_text(cells[i]) + " |" : "";
@@ -38,7 +36,7 @@ std::string part_text(const Table& table, const Part& part) {
   return text + "\n";
 }
 
-std::string table_text(const Table& table) {
+std::string table_text(const Table& table, std::size_t most_rows = kSummaryRows) {
   std::string text;
   if (!table.title.empty()) text += fmt::format("### {}\n\n", markdown_text(table.title));
   if (!table.reading.empty()) text += markdown_text(table.reading) + "\n\n";
@@ -47,9 +45,9 @@ std::string table_text(const Table& table) {
   const std::size_t most = table.most_columns > 0 ? table.most_columns : table.columns.size();
   Table whole = table;
   whole.parts.clear();
-  for (const Part& part : table_parts(whole, most)) text += part_text(table, part);
-  if (table.rows.size() > kMostRows)
-    text += fmt::format("{} more rows are in the page.\n\n", table.rows.size() - kMostRows);
+  for (const Part& part : table_parts(whole, most)) text += part_text(table, part, most_rows);
+  if (table.rows.size() > most_rows)
+    text += fmt::format("{} more rows are in the page.\n\n", table.rows.size() - most_rows);
   for (std::size_t i = 1; i < table.meanings.size(); ++i)
     text +=
         fmt::format("{}: {}. ", markdown_text(table.columns[i]), markdown_text(table.meanings[i]));
@@ -59,7 +57,7 @@ std::string table_text(const Table& table) {
 
 }  // namespace
 
-std::string markdown_section(const Section& section) {
+std::string markdown_section(const Section& section, std::size_t most_rows) {
   if (section.is_empty()) return "";
   std::string text = fmt::format("\n## {}\n\n", markdown_text(section.title));
   if (!section.lead.empty()) text += markdown_text(section.lead) + "\n\n";
@@ -69,7 +67,7 @@ std::string markdown_section(const Section& section) {
         reading.title.empty() ? "" : fmt::format("**{}:** ", markdown_text(reading.title)),
         markdown_text(reading.text));
   if (!section.readings.empty()) text += "\n";
-  for (const Table& table : section.tables) text += table_text(table);
+  for (const Table& table : section.tables) text += table_text(table, most_rows);
   return text;
 }
 

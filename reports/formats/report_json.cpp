@@ -366,6 +366,7 @@ Json claims_json(const std::vector<Judgement>& judgements) {
               {"published", judgement.published},
               {"fact", judgement.fact},
               {"verdict", std::string(name_of(judgement.verdict))},
+              {"verification", judgement.is_verification},
               {"survives", judgement.survives},
               {"needs_iterations", judgement.needs},
               {"why", judgement.why},
@@ -374,11 +375,18 @@ Json claims_json(const std::vector<Judgement>& judgements) {
               {"evidence", evidence_json(judgement.evidence)},
               {"sets", sets_json(judgement.sets)},
               {"command", repeat_command(judgement.id, judgement.sets)}};
-    if (const auto& contrast = judgement.contrast)
-      json["contrast"] = {{"quantity", contrast->quantity},
-                          {"published", contrast->published},
-                          {"measured", measurement_json(contrast->measured)},
-                          {"evidence", evidence_json(contrast->evidence)}};
+    for (const Contrast& contrast : judgement.contrasts)
+      json["contrasts"].push_back({{"quantity", contrast.quantity},
+                                   {"published", contrast.published},
+                                   {"measured", measurement_json(contrast.measured)},
+                                   {"evidence", evidence_json(contrast.evidence)}});
+    for (const OtherReading& other : judgement.others)
+      json["others"].push_back({{"how", other.how},
+                                {"verdict", std::string(name_of(other.verdict))},
+                                {"measured", measurement_json(other.measured)}});
+    if (judgement.is_of_one_run && judgement.measured && judgement.measured->predicted)
+      json["predicted"] = {json_number(judgement.measured->predicted->low),
+                           json_number(judgement.measured->predicted->high)};
     list.push_back(std::move(json));
   }
   return list;

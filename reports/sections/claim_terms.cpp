@@ -23,6 +23,7 @@ namespace {
 
 constexpr Real kAbsent = std::numeric_limits<Real>::quiet_NaN();
 constexpr std::string_view kSeries = "series: ";
+constexpr std::string_view kUntil = "until: ";  // then a column, and what it falls to
 
 // Running means begin with the first step: before it, what that saw.
 Real value_at(const std::vector<Real>& column, std::size_t index) {
@@ -118,7 +119,27 @@ Real slowdown(const Curve& curve, std::size_t index) {
   return last > 0 ? first / last : kNever;
 }
 
+// What was spent of that by which the place is named, when the column first was no more than a
+// bound; infinite where it was not by then.
+Real spent_until(const Record& record, const Place& place) {
+  const Curve& curve = record.curve;
+  const auto& [name, bound] = bound_of(place.column);
+  const std::vector<Real>* column = column_of(record, name);
+  if (column == nullptr) return kAbsent;
+  for (std::size_t i = 0; i <= index_at(curve, place); ++i) {
+    if (!(value_at(*column, i) <= bound)) continue;
+    if (place.seconds) return curve.processor_seconds.at(i);
+    return static_cast<Real>(place.work ? curve.work.at(i) : curve.iteration[i]);
+  }
+  return kNever;
+}
+
 }  // namespace
+
+std::pair<std::string, Real> bound_of(const std::string& column) {
+  const std::size_t last = column.rfind(' ');
+  return {column.substr(kUntil.size(), last - kUntil.size()), std::stod(column.substr(last))};
+}
 
 std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
   const Rows& path =
@@ -138,6 +159,7 @@ std::vector<PrintedRow> printed_rows(const Record& record, const Place& place) {
 std::size_t index_at(const Curve& curve, const Place& place) {
   if (place.iteration) return point_at(curve.iteration, *place.iteration);
   if (place.seconds) return point_at(curve.processor_seconds, *place.seconds);
+  if (place.work) return point_at(curve.work, *place.work);
   return curve.iteration.size() - 1;
 }
 
@@ -153,6 +175,7 @@ Real figure_of(const Record& record, const Place& place) {
   if (name == "loss_peak") return std::ranges::max(curve.loss | std::views::take(index + 1));
   if (name == "loss_drop") return curve.loss[0] - curve.loss[index];
   if (name == "slowdown") return slowdown(curve, index);
+  if (name.starts_with(kUntil)) return spent_until(record, place);
   if (const auto* column = column_of(record, name)) {
     if (column->empty()) return kAbsent;
     const Real value = value_at(*column, index);
@@ -187,6 +210,10 @@ std::string column_words(const std::string& column) {
       {"distance", "distance to the origin"},
       {"milliseconds", "milliseconds an iteration"}};
   if (column.starts_with(kSeries)) return column.substr(kSeries.size());
+  if (column.starts_with(kUntil)) {
+    const auto& [name, bound] = bound_of(column);
+    return fmt::format("what was spent until the {} was {}", column_words(name), figure(bound));
+  }
   const auto found = words.find(column);
   return found == words.end() ? column : found->second;
 }
@@ -254,12 +281,15 @@ std::string success_text(const Comparison& c) {
 using Json = nlohmann::json;
 namespace {
 
-// visit(alternative) for every way to fill a term, of the claim and of its contrast.
+// visit(alternative) for every way to fill a term, of the claim and of its contrasts.
 template <class Visit>
 void each_alternative(const Json& set, Visit visit) {
-  for (const char* list : {"terms", "contrast_terms"})
-    for (const Json& term : set.value(list, Json::array()))
+  const auto visit_all = [&](const Json& terms) {
+    for (const Json& term : terms)
       for (const Json& alternative : term) visit(alternative);
+  };
+  visit_all(set.at("terms"));
+  for (const Json& terms : set.value("contrast_terms", Json::array())) visit_all(terms);
 }
 
 }  // namespace
@@ -295,20 +325,22 @@ Place place_of(const Json& claim, const Json& term) {
   return place;
 }
 
-std::vector<Real> equal_seconds(const Json& cells, const ByCell& runs, std::int64_t iterations) {
-  std::vector<Real> seconds;
+std::vector<Real> equal_spending(const Json& cells, const ByCell& runs, std::int64_t iterations,
+                                 bool is_work) {
+  std::vector<Real> spent;
   for (const Json& term : cells)
     for (const Json& alternative : term) {
       const Json& all = alternative.at("cells");
-      seconds.resize(std::max(seconds.size(), all.size()), kNever);
+      spent.resize(std::max(spent.size(), all.size()), kNever);
       for (std::size_t seed = 0; seed < all.size(); ++seed) {
         const Summary& summary = runs.at(all[seed].get<std::string>())->summary;
         if (summary.iterations == 0) continue;
-        const Real price = summary.processor_seconds / static_cast<Real>(summary.iterations);
-        seconds[seed] = std::min(seconds[seed], price * static_cast<Real>(iterations));
+        const Real whole = is_work ? static_cast<Real>(summary.work) : summary.processor_seconds;
+        spent[seed] = std::min(spent[seed], whole / static_cast<Real>(summary.iterations) *
+                                                static_cast<Real>(iterations));
       }
     }
-  return seconds;
+  return spent;
 }
 
 namespace {
@@ -329,16 +361,16 @@ void take_for_one(std::vector<Term>& terms, const Json& asked) {
 }  // namespace
 
 std::vector<Term> terms_of(const Json& claim, const Json& cells, const ByCell& runs,
-                           std::int64_t iterations, Null null) {
+                           std::int64_t iterations, Null null, ReadAt at) {
+  constexpr std::int64_t kThird = 3;
   const Json& quantity = claim.at("quantity");
-  const bool is_by_time = quantity.value("clock", "") == "seconds";
-  const std::vector<Real> seconds =
-      is_by_time ? equal_seconds(cells, runs, iterations) : std::vector<Real>();
+  const bool is_equal = quantity.value("clock", "") == "seconds";
+  const bool is_work = at == ReadAt::equal_work;
+  const std::vector<Real> spent =
+      is_equal ? equal_spending(cells, runs, iterations, is_work) : std::vector<Real>();
   std::vector<Term> terms;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const Json& asked = quantity.at("terms").at(i);
-    Place place = place_of(claim, asked);
-    if (null == Null::untrained) place.iteration = 0;
     Term& term = terms.emplace_back(Term{.figures = {},
                                          .at = asked.value("at", 1.0),
                                          .scale = asked.value("scale", 1.0),
@@ -346,8 +378,19 @@ std::vector<Term> terms_of(const Json& claim, const Json& cells, const ByCell& r
     for (const Json& alternative : cells[i]) {
       auto& values = term.figures.emplace_back();
       for (const Json& cell : alternative.at("cells")) {
-        if (is_by_time && !place.iteration) place.seconds = seconds.at(values.size());
-        values.push_back(figure_of(*runs.at(cell.get<std::string>()), place));
+        const Record& run = *runs.at(cell.get<std::string>());
+        Place place = place_of(claim, asked);
+        const bool is_third = at == ReadAt::third_of_sip && run.request.optimizer.name == "sip";
+        if (null == Null::untrained) place.iteration = 0;
+        if (is_third && !place.iteration) place.iteration = iterations / kThird;
+        if (is_equal && !place.iteration) {
+          const Real most = spent.at(values.size());
+          if (is_work)
+            place.work = std::llround(most);
+          else
+            place.seconds = most;
+        }
+        values.push_back(figure_of(run, place));
       }
     }
   }
@@ -362,27 +405,27 @@ bool has_rivals(const Json& claim) {
       if (one.value("problem", "") == other.value("problem", "") &&
           one.at("optimizer") != other.at("optimizer"))
         return true;
-  return claim.contains("contrast") && has_rivals(claim.at("contrast"));
+  const Json contrasts = claim.value("contrasts", Json::array());
+  return std::ranges::any_of(contrasts, has_rivals);
 }
 
 // Words for the figures of a claim.
 
 namespace {
 
-const char* words_of_source(const std::string& from) {
-  if (from == "text") return "from text";
-  return from == "digitized" ? "off a digitized curve" : "off a figure";
-}
-
 std::string tolerance_text(const Json& tolerance) {
   const std::string from = tolerance.at("from");
-  const bool is_ratio = tolerance.value("values", 1) == 2;
   if (from == "none") return "no error stated";
   if (from == "digits")
     return fmt::format("±{} in its digits", figure(real_of(tolerance["absolute"])));
+  if (from == "order") return "to half an order of magnitude";
   const Real t = real_of(tolerance["relative"]);
-  std::string of_one = fmt::format("±{:.0f} % {}", 100 * t, words_of_source(from));
-  if (!is_ratio) return of_one;
+  if (from == "about") return fmt::format("±{:.0f} %, which “about” leaves open", 100 * t);
+  const std::string of_one = fmt::format("±{:.0f} % {}", 100 * t,
+                                         from == "text"        ? "from text"
+                                         : from == "digitized" ? "off a digitized curve"
+                                                               : "off a figure");
+  if (tolerance.value("values", 1) != 2) return of_one;
   // The law of quantities.cpp for a ratio of two readings.
   return fmt::format("{}, each value: {:+.0f} to {:+.0f} %", of_one, 100 * ((1 - t) / (1 + t) - 1),
                      100 * ((1 + t) / (1 - t) - 1));
@@ -430,6 +473,18 @@ std::string source_text(const Json& source) {
   for (const char* part : {"section", "figure"})
     if (source.contains(part)) text += fmt::format(", {}", source[part].get<std::string>());
   return text;
+}
+
+std::string reading_text(const Json& claim) {
+  const std::string from = claim.at("tolerance").at("from");
+  const Json& source = claim.at("source");
+  const std::string where = source.value("figure", source.value("section", "a figure"));
+  if (from == "figure")
+    return fmt::format("Read by eye off the plot ({}): no table of its points is published.",
+                       where);
+  return from == "digitized"
+             ? fmt::format("Digitized from the plot ({}), on its logarithmic axis.", where)
+             : "";
 }
 
 std::string quantity_text(const Json& claim) {

@@ -19,11 +19,13 @@ namespace isoline::reports {
 // One figure of one run: what the quantities of claims are made of.
 
 // Where a figure of a run is read: a column of its curve or a quantity of its path, at an
-// iteration, or when so much processor time has passed, or at the end where neither is named.
+// iteration, or when so much processor time has passed or work been counted, or at the end where
+// none is named.
 struct Place {
   std::string column;  // "series: …" is a quantity of the problem's own
   std::optional<std::int64_t> iteration;
   std::optional<Real> seconds;
+  std::optional<std::int64_t> work;
   std::vector<std::vector<Real>> table;  // of deviations: at iterations 1, 2, …; one row: there
 };
 
@@ -38,6 +40,9 @@ std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
 
 // The last kept point at or before the place.
 std::size_t index_at(const Curve& curve, const Place& place);
+
+// "until: loss 0.1" is what was spent until the loss was no more than 0.1: the column, the bound.
+std::pair<std::string, Real> bound_of(const std::string& column);
 
 // Not-a-number where the record does not hold it.
 Real figure_of(const Record& record, const Place& place);
@@ -85,16 +90,22 @@ enum class Null {
   twins       // one method under several names: all terms of a problem are the same run
 };
 
-// The figures of a claim's terms, or of its contrast's. `cells` is a list of terms, each a list of
+// Where a claim is read, and where else because its verdict must not hang on that: a time is that
+// of a machine, and the published runs of the sine had a time, in which SIP made a third of the
+// iterations of others.
+enum class ReadAt { asked, equal_work, third_of_sip };
+
+// The figures of a claim's terms, or of a contrast's. `cells` is a list of terms, each a list of
 // alternatives. Where the claim asks for equal time, all are read at the time at which the fastest
 // has made `iterations`.
 std::vector<Term> terms_of(const nlohmann::json& claim, const nlohmann::json& cells,
-                           const ByCell& runs, std::int64_t iterations, Null null = Null::none);
+                           const ByCell& runs, std::int64_t iterations, Null null = Null::none,
+                           ReadAt at = ReadAt::asked);
 
-// The processor time of each seed at which the fastest run of it has made so many iterations: a run
-// is charged at its own measured price, also where it stopped before.
-std::vector<Real> equal_seconds(const nlohmann::json& cells, const ByCell& runs,
-                                std::int64_t iterations);
+// The processor time of each seed, or its counted work, at which the cheapest run of it has made so
+// many iterations: a run is charged at its own price, also where it stopped before.
+std::vector<Real> equal_spending(const nlohmann::json& cells, const ByCell& runs,
+                                 std::int64_t iterations, bool is_work);
 
 // Whether terms of one problem are of several optimizers, in the claim or in what it is held
 // against: else none can be taken for another.
@@ -109,5 +120,6 @@ std::string published_text(const nlohmann::json& claim);  // "≥ 3 (±5 % from 
 Real published_value(const nlohmann::json& published);
 
 std::string source_text(const nlohmann::json& source);  // of a claim alone
+std::string reading_text(const nlohmann::json& claim);  // of what was read off a figure, else empty
 
 }  // namespace isoline::reports

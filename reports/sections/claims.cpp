@@ -141,8 +141,10 @@ Section claim_section(const Judgement& judgement) {
                   .lead = {},
                   .readings = readings_of(judgement)};
   show(section, judgement.evidence, judgement.id, "");
-  if (judgement.contrast)
-    show(section, judgement.contrast->evidence, judgement.id + "-contrast", "Contrast");
+  for (std::size_t i = 0; i < judgement.contrasts.size(); ++i) {
+    const std::string number = i == 0 ? "" : fmt::format("-{}", i + 1);
+    show(section, judgement.contrasts[i].evidence, judgement.id + "-contrast" + number, "Contrast");
+  }
   section.command = repeat_command(judgement.id, judgement.sets);
   return section;
 }
@@ -171,8 +173,8 @@ std::string over_seeds(const Judgement& judgement) {
 }
 
 std::string_view mark_of(Verdict verdict) {
-  constexpr std::array<std::string_view, kVerdictNames.size()> kMarks = {"✓", "∼", "≈",
-                                                                         "✗", "…", "·"};
+  constexpr std::array<std::string_view, kVerdictNames.size()> kMarks = {"✓", "✓", "∼", "≈", "✗",
+                                                                         "✗", "…", "·", "·"};
   return kMarks[static_cast<std::size_t>(verdict)];
 }
 
@@ -210,42 +212,62 @@ std::string marked_verdict(const Judgement& judgement) {
   return fmt::format("{} {}", mark_of(judgement.verdict), verdict_text(judgement));
 }
 
-// What a reader must know beside the figures: what it was held against, why not, and what differs
-// from the source.
+// What a reader must know beside the figures: what it was held against, how else it was read, why
+// not, and what differs from the source.
 std::vector<Reading> claim_notes(const Judgement& judgement) {
   std::vector<Reading> notes;
-  if (const auto& contrast = judgement.contrast)
-    notes.push_back({"Contrast", fmt::format("Checked against the {}: published {}, measured {}.",
-                                             contrast->quantity, contrast->published,
-                                             contrast->measured ? figure(contrast->measured->value)
-                                                                : kNothing)});
-  if (!judgement.why.empty()) notes.push_back({"Why", judgement.why + "."});
+  const auto add = [&](const char* title, std::string text) {
+    notes.push_back({title, std::move(text)});
+  };
+  for (const Contrast& contrast : judgement.contrasts)
+    add("Contrast", fmt::format("Checked against the {}: published {}, measured {}.",
+                                contrast.quantity, contrast.published,
+                                contrast.measured ? figure(contrast.measured->value) : kNothing));
+  for (const OtherReading& other : judgement.others)
+    add("Read otherwise", fmt::format("Read {}: {}, {}.", other.how, figure(other.measured.value),
+                                      name_of(other.verdict)));
+  if (const auto& measured = judgement.measured; measured && measured->predicted)
+    if (judgement.is_of_one_run)
+      add("One published run",
+          fmt::format("One further run of ours would lie from {} to {}.",
+                      figure(measured->predicted->low), figure(measured->predicted->high)));
+  if (!judgement.reading.empty()) add("Published figure", judgement.reading);
+  if (!judgement.why.empty()) add("Why", judgement.why + ".");
   if (!judgement.survives.empty())
-    notes.push_back({"Not refutable",
-                     fmt::format("The data could not refute it: {} would come to the same verdict.",
-                                 joined(judgement.survives, " and "))});
-  if (judgement.fact != judgement.id)
-    notes.push_back({"Fact", fmt::format("Counted with {}.", judgement.fact)});
-  if (!judgement.caveat.empty()) notes.push_back({"Caveat", judgement.caveat});
+    add("Not refutable",
+        fmt::format("The data could not refute it: {} would come to the same verdict.",
+                    joined(judgement.survives, " and ")));
+  if (judgement.fact != judgement.id) add("Fact", fmt::format("Counted with {}.", judgement.fact));
+  if (!judgement.caveat.empty()) add("Caveat", judgement.caveat);
   return notes;
 }
 
 std::string verdict_text(const Judgement& judgement) {
+  if (judgement.is_verification && judgement.verdict == Verdict::reproduced) return "verified";
+  if (judgement.is_verification && is_decided(judgement.verdict)) return "not verified";
   std::string text(name_of(judgement.verdict));
-  if (is_decided(judgement.verdict) && judgement.is_drawn)
-    text += " on " + counted(judgement.measured->n, "seed");
+  if (is_decided(judgement.verdict)) text += fmt::format(", n = {}", judgement.measured->n);
   return text;
 }
 
 std::string claims_reading(const std::vector<Judgement>& judgements) {
-  const std::vector<Verdict> facts = verdicts_on_facts(judgements);
+  const std::vector<Verdict> facts = verdicts_on_facts(judgements, false),
+                             identities = verdicts_on_facts(judgements, true);
   const auto count = [&](Verdict verdict) { return std::ranges::count(facts, verdict); };
   std::string text = fmt::format(
-      "{} in {}: {} reproduced, {} consistent with what was published, {} partly reproduced, "
-      "{} not reproduced; the runs are too short for {}, and {} cannot be compared.",
-      counted(facts.size(), "fact"), counted(judgements.size(), "claim"),
-      count(Verdict::reproduced), count(Verdict::consistent), count(Verdict::partly),
-      count(Verdict::not_reproduced), count(Verdict::too_short), count(Verdict::not_comparable));
+      "{} in {}: {} reproduced and {} stronger than published, {} consistent with what was "
+      "published, {} partly reproduced, {} at odds with it by few seeds, {} not reproduced; the "
+      "runs are too short for {}, {} are undecidable, and {} cannot be compared.",
+      counted(facts.size() + identities.size(), "fact"), counted(judgements.size(), "claim"),
+      count(Verdict::reproduced), count(Verdict::stronger), count(Verdict::consistent),
+      count(Verdict::partly), count(Verdict::at_odds), count(Verdict::not_reproduced),
+      count(Verdict::too_short), count(Verdict::undecidable), count(Verdict::not_comparable));
+  const auto decided = std::ranges::count_if(identities, is_decided);
+  if (decided > 0)
+    text += fmt::format(
+        " Counted apart as verification, of identities and printed digits without chance: {} of {} "
+        "verified.",
+        std::ranges::count(identities, Verdict::reproduced), decided);
   const auto surviving = std::ranges::count_if(
       judgements, [](const Judgement& judgement) { return !judgement.survives.empty(); });
   if (surviving > 0)
@@ -260,9 +282,11 @@ Section claims_section(const std::vector<Judgement>& judgements) {
   if (judgements.empty()) return section;
   section.lead =
       "Measured are medians over seeds, with 95 % of the bootstrap over seeds, or the range of fewer "
-      "than six. Reproduced: all of that lies within the error of what was published. Consistent: some of it does. "
-      "Partly: all of it is on the published side of a tie, with a third to three times the "
-      "published effect. Claims that restate one fact count once, by the weakest.";
+      "than six. Reproduced: all of that lies within the error of what was published, or, where that "
+      "is one run, one further run of ours may be it. Consistent: some of it does. Stronger: all of "
+      "it is better than published. Partly: all of it is on the published side of a tie, with a "
+      "third to three times the published effect. Fewer than six seeds are consistent or at odds. "
+      "Claims that restate one fact count once, by the weakest.";
   section.readings = {{"", claims_reading(judgements)}};
   Table& table = section.tables.emplace_back(Table{
       .id = "claims-table",
@@ -271,6 +295,45 @@ Section claims_section(const std::vector<Judgement>& judgements) {
   for (const Judgement& judgement : judgements) {
     table.rows.push_back(claim_row(judgement));
     table.row_topics.push_back({.claim = judgement.id});
+  }
+  return section;
+}
+
+namespace {
+
+std::string rough_time(Real seconds) {
+  constexpr Real kMinute = 60;
+  if (seconds < 1) return "< 1 s";
+  return seconds < 2 * kMinute ? fmt::format("{:.0f} s", seconds)
+                               : fmt::format("{:.0f} min", seconds / kMinute);
+}
+
+}  // namespace
+
+Section papers_section(const std::vector<Judgement>& judgements) {
+  Section section{.id = "papers",
+                  .title = "The papers, sentence by sentence",
+                  .readings = {{"", claims_reading(judgements)}}};
+  for (const Judgement& judgement : judgements) {
+    auto table = std::ranges::find(section.tables, judgement.paper, &Table::title);
+    if (table == section.tables.end())
+      table =
+          section.tables.insert(table, Table{.title = judgement.paper,
+                                             .columns = {"what it says", "where", "command", "time",
+                                                         "published", "measured", "verdict"},
+                                             .align = "lllrlll"});
+    const bool is_decided_by_runs = judgement.measured && !judgement.sets.empty();
+    const bool is_long = !judgement.sets.empty() && judgement.sets.back().is_long;
+    table->rows.push_back(
+        {judgement.sentence, judgement.place,
+         fmt::format("isoline claims {}{}", judgement.id, is_long ? " --long" : ""),
+         is_decided_by_runs ? rough_time(judgement.seconds)
+         : is_long          ? "hours"
+                            : kNothing,
+         judgement.published, measured_text(judgement),
+         judgement.verdict == Verdict::undecidable || judgement.verdict == Verdict::not_comparable
+             ? fmt::format("{}: {}", verdict_text(judgement), judgement.why)
+             : verdict_text(judgement)});
   }
   return section;
 }

@@ -207,6 +207,7 @@ constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
 std::string curve_of(const std::string& column) {
   constexpr std::array<const char*, 3> kWhole = {"milliseconds", "alignment", "turn"};
   if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
+  if (column.starts_with("until: ")) return bound_of(column).first;
   return column == "slowdown" ? "x_error" : column;
 }
 
@@ -298,7 +299,7 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
   const std::vector<Term> terms = terms_of(claim, cells, runs, iterations);
   out.abscissa = abscissa_of(terms, cells, runs);
   const Real seconds =
-      out.is_over_time ? median_of(equal_seconds(cells, runs, iterations)) : kNever;
+      out.is_over_time ? median_of(equal_spending(cells, runs, iterations, false)) : kNever;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const Json& asked = quantity.at("terms").at(i);
     Place place = place_of(claim, asked);
@@ -353,32 +354,52 @@ struct Measured {
   const Json& set;
   const ByCell& runs;
   Null null = Null::none;
+  ReadAt at = ReadAt::asked;
 
   std::int64_t iterations() const { return set.at("iterations").get<std::int64_t>(); }
-  Measurement of(const Json& asked, const char* list) const {
-    const std::vector<Term> terms = terms_of(asked, set.at(list), runs, iterations(), null);
+  Measurement of(const Json& asked, const Json& cells) const {
+    const std::vector<Term> terms = terms_of(asked, cells, runs, iterations(), null, at);
     return measure(asked.at("quantity").at("kind"), terms, claim.at("id"));
   }
-  Evidence evidence(const Json& asked, const char* list) const {
-    return evidence_of(asked, set.at(list), runs, iterations());
+  Evidence evidence(const Json& asked, const Json& cells) const {
+    return evidence_of(asked, cells, runs, iterations());
   }
 };
 
-// The weaker of what is said of the quantity and of what it is held against.
-Verdict weaker_verdict(const Judgement& judged, const Json& claim) {
-  const Verdict verdict = verdict_of(*judged.measured, claim, judged.is_drawn);
-  if (!judged.contrast) return verdict;
-  return std::max(verdict,
-                  verdict_of(*judged.contrast->measured, claim.at("contrast"), judged.is_drawn));
+// The weakest of what is said of the quantity and of what it is held against.
+Verdict weakest_verdict(const Judgement& judged, const Json& claim) {
+  Verdict verdict = verdict_of(*judged.measured, claim, judged.is_drawn);
+  for (std::size_t i = 0; i < judged.contrasts.size(); ++i)
+    verdict = std::max(verdict, verdict_of(*judged.contrasts[i].measured,
+                                           claim.at("contrasts").at(i), judged.is_drawn));
+  return verdict;
 }
 
-// The measurements, of the claim and of what it is held against. Whether both are numbers.
+// The measurements, of the claim and of what it is held against. Whether all are numbers.
 bool take(Judgement& out, const Measured& from) {
-  out.measured = from.of(from.claim, "terms");
+  out.measured = from.of(from.claim, from.set.at("terms"));
   bool is_known = !std::isnan(out.measured->value);
-  if (!out.contrast) return is_known;
-  out.contrast->measured = from.of(from.claim.at("contrast"), "contrast_terms");
-  return is_known && !std::isnan(out.contrast->measured->value);
+  for (std::size_t i = 0; i < out.contrasts.size(); ++i) {
+    const Measurement& measured = out.contrasts[i].measured.emplace(
+        from.of(from.claim.at("contrasts").at(i), from.set.at("contrast_terms").at(i)));
+    is_known = is_known && !std::isnan(measured.value);
+  }
+  return is_known;
+}
+
+// Reads the claim in the ways that its source leaves open: its verdict must not hang on them.
+void read_otherwise(Judgement& out, Measured from) {
+  const auto add = [&](ReadAt at, const char* how) {
+    Judgement other = out;
+    from.at = at;
+    if (!take(other, from)) return;
+    out.others.push_back({how, *other.measured, weakest_verdict(other, from.claim)});
+  };
+  if (from.claim.at("quantity").contains("clock")) add(ReadAt::equal_work, "at equal counted work");
+  if (from.claim.contains("length") && from.claim["length"].value("guessed", false))
+    add(ReadAt::third_of_sip, "at a third of SIP’s iterations");
+  for (const OtherReading& other : out.others)
+    out.verdict = joint_verdict(out.verdict, other.verdict);
 }
 
 // What else would have come to the same verdict: then the data cannot turn it.
@@ -386,7 +407,7 @@ void name_survived_nulls(Judgement& out, Measured from) {
   const auto is_survived = [&](Null null) {
     Judgement planted = out;
     from.null = null;
-    return take(planted, from) && weaker_verdict(planted, from.claim) <= out.verdict;
+    return take(planted, from) && weakest_verdict(planted, from.claim) <= out.verdict;
   };
   if (is_survived(Null::untrained)) out.survives.emplace_back("networks that were never trained");
   if (has_rivals(from.claim) && is_survived(Null::twins))
@@ -408,25 +429,28 @@ std::int64_t needed_iterations(const Json& claim) {
 void measure_in(Judgement& out, const Measured& from) {
   const Json &claim = from.claim, &set = from.set;
   out.is_covered = true;
-  out.is_drawn = set.contains("seeds");
   out.cells = cells_of(set);
+  for (const std::string& cell : std::set<std::string>(out.cells.begin(), out.cells.end()))
+    out.seconds += from.runs.at(cell)->summary.wall_seconds;
   const bool is_known = take(out, from);
   if (set.contains("deviation"))
     out.caveat = set["deviation"].get<std::string>() + (out.caveat.empty() ? "" : " ") + out.caveat;
-  if (claim.contains("not_comparable")) {
-    out.why = claim["not_comparable"];
-  } else if (from.iterations() < out.needs) {
+  out.evidence = from.evidence(claim, set.at("terms"));
+  for (std::size_t i = 0; i < out.contrasts.size(); ++i)
+    out.contrasts[i].evidence =
+        from.evidence(claim.at("contrasts").at(i), set.at("contrast_terms").at(i));
+  if (!out.why.empty()) return;
+  if (from.iterations() < out.needs) {
     out.verdict = Verdict::too_short;
     out.why =
         fmt::format("{} of the {} iterations that it speaks of", from.iterations(), out.needs);
   } else if (!is_known) {
     out.why = "the runs have no such figure";
   } else {
-    out.verdict = weaker_verdict(out, claim);
-    if (out.verdict <= Verdict::consistent) name_survived_nulls(out, from);
+    out.verdict = weakest_verdict(out, claim);
+    if (is_supported(out.verdict)) name_survived_nulls(out, from);
+    read_otherwise(out, from);
   }
-  out.evidence = from.evidence(claim, "terms");
-  if (out.contrast) out.contrast->evidence = from.evidence(claim.at("contrast"), "contrast_terms");
 }
 
 Judgement judge_one(const Json& claim, const ByCell& runs) {
@@ -435,27 +459,34 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
   claim.at("sentence").get_to(out.sentence);
   out.fact = claim.value("fact", out.id);
   out.source = source_text(claim.at("source"));
+  out.paper = claim["source"].at("paper");
+  out.place = claim["source"].value("figure", claim["source"].value("section", ""));
   out.caveat = claim.value("caveat", "");
   out.published = published_text(claim);
+  out.reading = reading_text(claim);
+  out.is_of_one_run = claim.at("published").contains("runs");
+  out.why = claim.value("undecidable", claim.value("not_comparable", ""));
+  if (claim.contains("undecidable")) out.verdict = Verdict::undecidable;
   if (claim.contains("quantity")) {
     out.quantity = quantity_text(claim);
     out.band = agreement_of(claim);
     out.needs = needed_iterations(claim);
   }
-  if (claim.contains("contrast"))
-    out.contrast =
-        Contrast{quantity_text(claim["contrast"]), published_text(claim["contrast"]), {}, {}};
+  for (const Json& contrast : claim.value("contrasts", Json::array()))
+    out.contrasts.push_back({quantity_text(contrast), published_text(contrast), {}, {}});
   out.sets = cell_sets(claim, runs);
+  const Json sets = claim.value("cells", Json::array());
+  out.is_drawn = std::ranges::any_of(sets, [](const Json& set) { return set.contains("seeds"); });
+  out.is_verification = !sets.empty() && !out.is_drawn;
   std::vector<std::string> missing;
-  for (const Json& set : claim.value("cells", Json::array())) {
+  for (const Json& set : sets) {
     missing = missing_cells(set, runs);
     if (missing.empty()) {
       measure_in(out, {claim, set, runs});
       return out;
     }
   }
-  out.why = claim.value("not_comparable", "");
-  if (out.why.empty() || !missing.empty()) out.why = fmt::format("no runs of {}", joined(missing));
+  if (!missing.empty() && out.why.empty()) out.why = fmt::format("no runs of {}", joined(missing));
   return out;
 }
 
@@ -469,9 +500,11 @@ std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs
   return judgements;
 }
 
-std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements) {
+std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements,
+                                       bool is_verification) {
   std::map<std::string, Verdict> facts;
   for (const Judgement& judgement : judgements) {
+    if (judgement.is_verification != is_verification) continue;
     const auto [known, is_first] = facts.emplace(judgement.fact, judgement.verdict);
     if (is_first) continue;
     Verdict& fact = known->second;

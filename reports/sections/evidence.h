@@ -174,20 +174,33 @@ struct Contrast {
   Evidence evidence;
 };
 
+// The claim read in another way that its source leaves open.
+struct OtherReading {
+  std::string how;  // "at equal counted work"
+  Measurement measured;
+  Verdict verdict = Verdict::not_comparable;
+};
+
 struct Judgement {
   std::string id, sentence, source, quantity, published, caveat;
+  std::string paper, place;  // of the source: "Someone (2022)", "Figure 1"
   std::string fact;  // the claim whose fact this one restates, or itself
   Verdict verdict = Verdict::not_comparable;
-  std::string why;  // it is too short, or not comparable
+  std::string why;      // it is too short, undecidable, or not comparable
+  std::string reading;  // how the published figure was read off a plot, where it was
   std::optional<Measurement> measured;
   std::optional<Agreement> band;
   Evidence evidence;          // none where nothing decides it
   std::vector<CellSet> sets;  // the longest first
-  std::optional<Contrast> contrast;
+  std::vector<Contrast> contrasts;
+  std::vector<OtherReading> others;   // the verdict is what all of them bear
   std::vector<std::string> cells;     // that decide it, of those there are
   std::vector<std::string> survives;  // nulls under which it would come out no worse, in words
   std::int64_t needs = 0;             // iterations
+  Real seconds = 0;                   // that these cells took, one after the other
   bool is_drawn = false;              // its runs are of seeds, of which others could be drawn
+  bool is_of_one_run = false;         // the published figure
+  bool is_verification = false;       // of runs that no seed varies: an identity, or printed digits
   bool is_covered = false;            // all cells of one of its lengths are among the records
 };
 
@@ -195,6 +208,8 @@ struct Judgement {
 std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs);
 
 // The verdict on each fact: the weakest of the claims that restate it, of those that are decided.
-std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements);
+// Of verifications, or of all others.
+std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements,
+                                       bool is_verification);
 
 }  // namespace isoline::reports

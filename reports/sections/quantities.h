@@ -2,6 +2,7 @@
 // and when it agrees with what was published.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -44,6 +45,7 @@ struct Measurement {
   Real value = 0;
   Real low = 0, high = 0;  // 95 % of the bootstrap over seeds, of few their range; nan of one
   std::size_t n = 0;       // seeds
+  std::optional<Interval> predicted = {};  // 95 % of one further run, where logarithms tell
 };
 
 // All terms are resampled by the same seeds: a ratio stays one between runs of equal start and
@@ -54,13 +56,31 @@ Measurement measure(const std::string& kind, const std::vector<Term>& terms,
 // When a measurement agrees with what was published: the law of the verdicts.
 
 // From the strongest to the weakest, then those that are none.
-enum class Verdict { reproduced, consistent, partly, not_reproduced, too_short, not_comparable };
-inline constexpr std::array<std::string_view, 6> kVerdictNames = {
-    "reproduced", "consistent", "partly", "not reproduced", "too short", "not comparable"};
+enum class Verdict {
+  stronger,
+  reproduced,
+  consistent,
+  partly,
+  at_odds,  // too few seeds for more
+  not_reproduced,
+  too_short,
+  undecidable,  // what a run would need was not published
+  not_comparable
+};
+inline constexpr std::array<std::string_view, 9> kVerdictNames = {
+    "stronger than published", "reproduced", "consistent",  "partly",        "at odds",
+    "not reproduced",          "too short",  "undecidable", "not comparable"};
 inline std::string_view name_of(Verdict verdict) {
   return kVerdictNames[static_cast<std::size_t>(verdict)];
 }
 inline bool is_decided(Verdict verdict) { return verdict < Verdict::too_short; }
+inline bool is_supported(Verdict verdict) { return verdict <= Verdict::consistent; }
+// Of one claim that was read in two ways: the weaker, and where one is for it and one against it,
+// neither.
+inline Verdict joint_verdict(Verdict one, Verdict other) {
+  if (is_supported(one) != is_supported(other)) return Verdict::consistent;
+  return std::max(one, other);
+}
 
 // What was published with its error: the values that agree with it. A tie agrees with nothing that
 // says who is ahead, so such a band ends where the tie begins, without it.
@@ -75,11 +95,13 @@ struct Agreement {
 };
 Agreement agreement_of(const nlohmann::json& claim);  // or of a contrast
 
-// Of a claim, or of its contrast. Reproduced: the interval over seeds lies within the band.
-// Consistent: it reaches into the band, and the value is on the published side of a tie. Partly:
-// the whole interval is on that side, and the value between a third and three times the published
-// effect (in logarithms, of a ratio). One run of several that could have been drawn is never more
-// than consistent.
+// Of a claim, or of its contrast. Reproduced: the interval over seeds lies within the band; where
+// the published figure is of one run, the band reaches into what one further run of ours would
+// give, the interval is on the published side of a tie, and the value is of the published order.
+// Consistent: it reaches into the band, and the value is on that side. Stronger: the whole interval
+// is beyond the band where the claim says that further is better. Partly: the whole interval is on
+// the published side, and the value between a third and three times the published effect (in
+// logarithms, of a ratio). Of fewer than six runs that were drawn it is consistent or at odds.
 Verdict verdict_of(const Measurement& measured, const nlohmann::json& claim, bool is_drawn);
 
 }  // namespace isoline::reports

@@ -23,6 +23,8 @@ Section claims_section(const std::vector<Judgement>& judgements);
 // A line a claim, the refuted first.
 Section claims_summary(const std::vector<Judgement>& judgements);
 Section claim_section(const Judgement& judgement);  // one of them whole, with its evidence
+// A table a paper: what it says, and the command, the time and the verdict of each claim.
+Section papers_section(const std::vector<Judgement>& judgements);
 Section properties_section(const Audits& audits);
 Section tuning_section(
     const Comparison& comparison);  // where rates came from, and what they bought

@@ -60,7 +60,9 @@ TEST(ClaimsOfTheTree, ReuseTheCellsOfTheSuites) {
 TEST(ClaimsOfTheTree, DecideAtLeastTwelveByTheCellsOfTheShortSuites) {
   std::size_t decided = 0;
   for (const Claim& claim : claims()) {
-    if (claim.cells.empty() || claim.json->contains("not_comparable")) continue;
+    if (claim.cells.empty() || claim.json->contains("not_comparable") ||
+        claim.json->contains("undecidable"))
+      continue;
     const Claim::Cells& shortest = claim.cells.back();
     const Json& quantity = claim.json->at("quantity");
     const auto asked = quantity.value("iteration", std::int64_t{0});
@@ -107,6 +109,72 @@ TEST(ClaimsOfTheTree, SayInWholeSentencesHowTheyDiffer) {
     file["claims"][0]["cells"][0]["deviation"] = text;
     EXPECT_FALSE(schema_violations(file, schema()).empty()) << text;
   }
+}
+
+bool is_among(const std::string& id, const std::vector<std::string>& parts) {
+  return std::ranges::any_of(
+      parts, [&](const std::string& part) { return id.find(part) != std::string::npos; });
+}
+
+// ±5 % is the error of a figure in a text, not of one that the text calls rough.
+TEST(ClaimsOfTheTree, LeaveRoughFiguresRough) {
+  for (const Claim& claim : claims())
+    if (is_among(claim.sentence,
+                 {"about", "around", "orders of magnitude", "an order of magnitude"})) {
+      EXPECT_NE(claim.json->at("tolerance").at("from"), "text") << claim.id;
+    }
+}
+
+TEST(ClaimsOfTheTree, WithoutTheirSettingsAreUndecidable) {
+  std::size_t toys = 0;
+  for (const Claim& claim : claims())
+    if (claim.id.starts_with("toy-")) {
+      EXPECT_TRUE(claim.json->contains("undecidable")) << claim.id;
+      ++toys;
+    }
+  EXPECT_EQ(toys, 24U);
+}
+
+// The published runs of learned problems were one each: their figures are compared with one run.
+TEST(ClaimsOfTheTree, SayThatAPublishedFigureIsOfOneRun) {
+  const std::set<std::string> kinds = {"value", "ratio", "greatest"};
+  for (const Claim& claim : claims()) {
+    if (claim.cells.empty() || !claim.json->at("cells").at(0).contains("seeds")) continue;
+    const Json &published = claim.json->at("published"), &quantity = claim.json->at("quantity");
+    if (published.contains("value") && kinds.contains(quantity.at("kind")) &&
+        quantity.at("column") != "milliseconds" && quantity.value("iteration", 1) > 0) {
+      EXPECT_EQ(published.value("runs", 0), 1) << claim.id;
+    }
+  }
+}
+
+TEST(ClaimsOfTheTree, OfWhatSlowsDownIncludeAdaHessian) {
+  for (const Claim& claim : claims())
+    if (claim.id == "poisson-slowdown" || claim.id == "heat-slowdown") {
+      EXPECT_TRUE(std::ranges::any_of(claim.cells.at(0).requests, [](const Request& request) {
+        return request.optimizer.name == "adahessian";
+      })) << claim.id;
+    }
+}
+
+// Who only sets out straight has not gone straight to the solution.
+TEST(ClaimsOfTheTree, OfTheStraightWayAskForArrival) {
+  for (const Claim& claim : claims()) {
+    if (!claim.id.ends_with("-ray")) continue;
+    const Json& contrasts = claim.json->at("contrasts");
+    EXPECT_TRUE(std::ranges::any_of(contrasts, [](const Json& contrast) {
+      return contrast.at("quantity").at("column") == "loss" &&
+             contrast.at("published").contains("at_most");
+    })) << claim.id;
+  }
+}
+
+TEST(ClaimsOfTheTree, OfGuessedLengthsSaySo) {
+  std::set<std::string> guessed;
+  for (const Claim& claim : claims())
+    if (claim.json->contains("length") && claim.json->at("length").value("guessed", false))
+      guessed.insert(claim.id);
+  EXPECT_EQ(guessed, (std::set<std::string>{"sine-crossing", "sine-sip-level"}));
 }
 
 TEST(ClaimsOfTheTree, AreChosenByIdOrGroupAndAMisspeltOneIsAnError) {

@@ -27,8 +27,8 @@ std::vector<Claim> shortened(std::int64_t most, int seeds) {
   for (const auto& [name, text] : builtin_claims()) {
     Json file = parse_json(std::string(text), name);
     for (Json& claim : file["claims"]) {
-      if (claim.contains("not_comparable"))  // no run decides it
-        for (const char* part : {"cells", "quantity", "contrast"}) claim.erase(part);
+      if (claim.contains("not_comparable") || claim.contains("undecidable"))  // no run decides it
+        for (const char* part : {"cells", "quantity", "contrasts"}) claim.erase(part);
       if (!claim.contains("cells")) continue;
       Json cheapest = claim["cells"].back();
       Json& iterations = cheapest["budget"]["iterations"];
@@ -37,7 +37,8 @@ std::vector<Claim> shortened(std::int64_t most, int seeds) {
       claim["cells"] = Json::array({cheapest});
       claim.erase("length");
       shorten(claim, most);
-      if (claim.contains("contrast")) shorten(claim["contrast"], most);
+      if (claim.contains("contrasts"))
+        for (Json& contrast : claim["contrasts"]) shorten(contrast, most);
     }
     for (Claim& claim : claims_from_json(catalog(), Rates::builtin(), file, name))
       if (!claim.cells.empty()) all.push_back(std::move(claim));

@@ -11,6 +11,7 @@
 #include "reports/formats/formats.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
+#include "tests/reports/asked_claim.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -36,28 +37,14 @@ std::vector<Record> adam_and_sip(Real adam = 0.2) {
   return runs;
 }
 
-Json cells_of(const std::string& optimizer) {
-  Json digests = Json::array();
-  for (int seed = 0; seed < 3; ++seed) digests.push_back(optimizer + std::to_string(seed));
-  return {{{"title", "square × " + optimizer}, {"cells", digests}}};
-}
-
 // Adam ends twice as far as SIP; of several, by the optimizers given.
-Json claim_of(const std::string& kind = "ratio",
-              const std::vector<std::string>& optimizers = {"adam", "sip"}) {
-  Json terms = Json::array(), cells = terms;
-  for (const std::string& optimizer : optimizers) {
-    terms.push_back({{"optimizer", optimizer}});
-    cells.push_back(cells_of(optimizer));
-  }
-  return {{"id", "twice"},
-          {"sentence", "Adam ends twice as far."},
-          {"source", {{"paper", "Someone (2022)"}, {"figure", "Figure 1"}}},
-          {"cells", {{{"iterations", kEnd}, {"seeds", "3"}, {"terms", cells}}}},
-          {"quantity", {{"kind", kind}, {"column", "x_error"}, {"terms", terms}}},
-          {"published", {{"value", 2}}},
-          {"tolerance", {{"from", "text"}, {"relative", 0.05}}},
-          {"caveat", "Drawn by hand."}};
+Json twice(const std::string& kind = "ratio",
+           const std::vector<std::string>& optimizers = {"adam", "sip"}) {
+  Json claim = claim_of(
+      {.kind = kind, .published = {{"value", 2}}, .optimizers = optimizers, .iterations = kEnd});
+  claim["id"] = "twice";
+  claim["sentence"] = "Adam ends twice as far.";
+  return claim;
 }
 
 Judgement judged(const Json& claim, const std::vector<Record>& runs) {
@@ -72,7 +59,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 }
 
 TEST(Evidence, OfAClaimIsWhatItsFigureIsMadeOf) {
-  const Judgement judgement = judged(claim_of(), adam_and_sip());
+  const Judgement judgement = judged(twice(), adam_and_sip());
   const auto& terms = judgement.evidence.terms;
   ASSERT_EQ(terms.size(), 2U);
   EXPECT_NEAR(terms[0].level, 0.21, 1e-15);  // rounding of the fixture's line
@@ -85,7 +72,7 @@ TEST(Evidence, OfAClaimIsWhatItsFigureIsMadeOf) {
 }
 
 TEST(Evidence, CurvesPassThroughTheFiguresThatAreRead) {
-  Json claim = claim_of();
+  Json claim = twice();
   for (const bool is_early : {false, true}) {
     if (is_early) claim["quantity"]["iteration"] = 10;
     const EvidenceTerm term = judged(claim, adam_and_sip()).evidence.terms.at(0);
@@ -100,9 +87,9 @@ TEST(Evidence, CurvesPassThroughTheFiguresThatAreRead) {
 }
 
 TEST(Evidence, OfSeveralAlternativesIsThatOfTheOneThatCounts) {
-  Json claim = claim_of();
+  Json claim = twice();
   claim["quantity"]["terms"][1]["optimizer"] = {"adam", "sip"};
-  claim["cells"][0]["terms"][1] = {cells_of("adam")[0], cells_of("sip")[0]};
+  claim["cells"][0]["terms"][1] = {asked_cells("adam")[0], asked_cells("sip")[0]};
   EXPECT_EQ(judged(claim, adam_and_sip()).evidence.terms.at(1).optimizer, "sip");
   claim["quantity"]["terms"][1]["of"] = "worst";
   EXPECT_EQ(judged(claim, adam_and_sip()).evidence.terms.at(1).optimizer, "adam");
@@ -112,7 +99,7 @@ TEST(Evidence, OfSeveralAlternativesIsThatOfTheOneThatCounts) {
 // not.
 TEST(Evidence, ARatioIsDrawnWhereTheFirstLineShouldBe) {
   for (const Real adam : {0.21, 0.9}) {
-    const Judgement judgement = judged(claim_of(), adam_and_sip(adam));
+    const Judgement judgement = judged(twice(), adam_and_sip(adam));
     const auto plots = claim_plots(judgement.evidence, "twice");
     ASSERT_EQ(plots.size(), 1U);
     ASSERT_EQ(plots[0].series.size(), 2U);
@@ -129,7 +116,7 @@ TEST(Evidence, ARatioIsDrawnWhereTheFirstLineShouldBe) {
 }
 
 TEST(Evidence, OfOneRunAtSeveralPlacesHasOneLine) {
-  Json claim = claim_of("ratio", {"sip", "sip"});
+  Json claim = twice("ratio", {"sip", "sip"});
   claim["quantity"]["terms"][0]["iteration"] = 0;
   const auto plots = claim_plots(judged(claim, adam_and_sip()).evidence, "twice");
   EXPECT_EQ(plots.at(0).series.size(), 1U);
@@ -152,7 +139,7 @@ TEST(Evidence, ASlopeIsDrawnOverItsAbscissaThroughTheMiddle) {
 }
 
 TEST(Evidence, PrintedFiguresStandBesideThoseReached) {
-  Json claim = claim_of("equality", {"sip"});
+  Json claim = twice("equality", {"sip"});
   claim["quantity"]["column"] = "deviation";
   claim["published"] = {{"table", {{1.5, 2.5}, {3.5, 4.5}}}};
   claim["tolerance"] = {{"from", "digits"}, {"absolute", 0.25}};
@@ -173,20 +160,20 @@ TEST(Evidence, PrintedFiguresStandBesideThoseReached) {
 }
 
 TEST(ClaimSection, TellsAllOfItInEveryFormat) {
-  const Judgement judgement = judged(claim_of(), adam_and_sip());
+  const Judgement judgement = judged(twice(), adam_and_sip());
   const Study study;
   const Document document = document_of(compare_optimizers(study), {judgement});
   for (const std::string& text :
        {terminal_claim(claim_section(judgement)), markdown_report(document), claims_html(document)})
     for (const char* part :
-         {"Adam ends twice as far.", "consistent on 3 seeds", "Someone (2022), Figure 1",
+         {"Adam ends twice as far.", "consistent, n = 3", "Someone (2022), Figure 1",
           "±5 % from text", "1.9 to 2.1", "range of 3", "Drawn by hand.", "6 runs of 50 iterations",
           "isoline claims twice --out results/twice", "sip2-b0.json"})
       EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
 }
 
 TEST(ClaimSection, NamesTheLengthsThatAreMissing) {
-  Json claim = claim_of();
+  Json claim = twice();
   Json longer = claim["cells"][0];
   longer["iterations"] = 5000;
   longer["long"] = true;
@@ -211,14 +198,14 @@ TEST(ClaimSection, IsRepeatedWithLongRunsWhereTheseDecideIt) {
 }
 
 TEST(ClaimSection, WithoutRunsSaysSoAndDrawsNothing) {
-  const Section section = claim_section(judged(claim_of(), {}));
+  const Section section = claim_section(judged(twice(), {}));
   EXPECT_TRUE(section.plots.empty());
   EXPECT_TRUE(section.tables.empty());
   EXPECT_NE(terminal_claim(section).find("no runs of square × adam"), std::string::npos);
 }
 
 TEST(ClaimsOfThePage, AreLedToByTheirRows) {
-  const Judgement judgement = judged(claim_of(), adam_and_sip());
+  const Judgement judgement = judged(twice(), adam_and_sip());
   const Study study;
   const std::string html = claims_html(document_of(compare_optimizers(study), {judgement}));
   EXPECT_EQ(count_of(html, "id=\"claim-twice\""), 1U);
@@ -233,7 +220,7 @@ TEST(ClaimsOfThePage, LeadToTheRecordsThatAreThere) {
   for (const Record& run : runs)
     if (run.cell != "sip2") folder.add(run);
   const Study study = read_study({folder.path().string()});
-  Document document = document_of(compare_optimizers(study), {judged(claim_of(), runs)});
+  Document document = document_of(compare_optimizers(study), {judged(twice(), runs)});
   EXPECT_EQ(count_of(claims_html(document), ".json\">"), 0U) << "where it goes is not known";
   document.out = (folder.path() / "report").string();
   EXPECT_EQ(count_of(claims_html(document), "href=\"../runs/adam0-b0.json\""), 1U);
@@ -249,13 +236,13 @@ TEST(ClaimsOfThePage, EscapeWhatAnAddressCannotHold) {
   const std::vector<Record> runs = adam_and_sip();
   folder.add_file("odd #1/runs/" + runs[0].file_name(), to_json(runs[0]).dump());
   const Study study = read_study({(folder.path() / "odd #1").string()});
-  Document document = document_of(compare_optimizers(study), {judged(claim_of(), runs)});
+  Document document = document_of(compare_optimizers(study), {judged(twice(), runs)});
   document.out = (folder.path() / "report").string();
   EXPECT_EQ(count_of(claims_html(document), "href=\"../odd%20%231/runs/adam0-b0.json\""), 1U);
 }
 
 TEST(ClaimsOfTheJson, HoldTheEvidenceByTheSchema) {
-  const Judgement judgement = judged(claim_of(), adam_and_sip());
+  const Judgement judgement = judged(twice(), adam_and_sip());
   const Study study;
   const Json json =
       parse_json(json_report(document_of(compare_optimizers(study), {judgement})), "report");
