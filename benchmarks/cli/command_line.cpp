@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kAbout =
     "Isoline compares optimizers on physical inverse problems: every problem of a registry "
     "against\n"
-    "every optimizer of a registry, one JSON record a run, and a report.";
+    "every optimizer of a registry, one JSON record per run, and a report.";
 constexpr const char* kExamples =
     "Examples:\n"
     "  isoline run                            the default suite, then its report\n"

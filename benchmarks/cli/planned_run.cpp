@@ -54,12 +54,12 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
   verb.text("--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
-  verb.whole("--iterations", given.iterations, "Most iterations of a cell");
-  verb.whole("--work", given.work, "Most work of a cell, in forward solves");
+  verb.whole("--iterations", given.iterations, "Largest number of iterations of a cell");
+  verb.whole("--work", given.work, "Largest work of a cell, in forward solves");
   verb.time("--time", given.seconds,
-            "Most time of a cell: 10s, 2m; a cell that uses twice that of a processor is killed");
+            "Time limit of a cell: 10s, 2m; at twice this processor time, it is killed");
   verb.real("--target", given.target, between(0, 1),
-            "Stop at f_L + TARGET s, where s is the scale of the loss; where x is sought, at "
+            "Stop at f_L + TARGET s, with s the scale of the loss; if the criterion is x, at "
             "TARGET of its error (default: 1e-10)");
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();

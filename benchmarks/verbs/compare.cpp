@@ -32,14 +32,14 @@ void declare(VerbArguments& verb, CompareArguments& given) {
   verb.text("BASE", given.before, "Result folder or baseline").required();
   verb.text("NEW", given.after, "Result folder").required();
   verb.real("--tolerance", given.tolerance, between(0, 1),
-            "Relative tolerance of figures (default: equal bit for bit)");
+            "Relative tolerance of values (default: bit for bit)");
   verb.texts("--time-cells", given.timed,
-             "Cells (digests, or their beginnings) whose time is judged, 20 at most")
+             "Cells (digests or prefixes) whose times are compared, at most 20")
       .between_commas();
   verb.real("--noise", given.noise, between(0, 10),
-            "Least band of noise of times, relative (default: 0.1)");
+            "Smallest relative noise of times (default: 0.1)");
   verb.text("--allow", given.allowed,
-            "File that lists cells which NEW may lack (isoline.allowed/1), with reasons");
+            "File of cells that NEW may lack, with reasons (isoline.allowed/1)");
   verb.flag("--common", given.is_common_only, "Let NEW lack any cell of BASE");
   verb.flag("--all", given.lists_all, "List every difference, not the first 20 lines");
   const Argument json = verb.flag("--json", given.as_json, "Print JSON");
@@ -78,13 +78,13 @@ void register_compare(VerbRegistry& registry) {
            "  isoline compare baseline.json results/quick --tolerance 1e-6 --all\n"
            "  isoline compare results/old results/new --markdown     for the summary of a job",
        .notes =
-           "Exit codes: 0 no worse and no better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
-           "4 not comparable: a clock ended a cell, its record is in doubt, or it is of another build\n"
-           "and --tolerance is not given. Cells are paired by what was asked of them, with seed and\n"
-           "budget, so that a changed default is compared, and named.\n"
-           "Time is judged where both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
-           "Benjamini-Hochberg at 0.05, and the whole 95 % interval of the ratio outside the noise that\n"
-           "the repetitions show. Without --time-cells the 20 slowest such cells of BASE are judged."},
+           "Exit codes: 0 neither worse nor better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
+           "4 not comparable: a clock ended a cell, its record is in doubt, or another build computed it\n"
+           "and --tolerance is not set. Cells are paired by their requests, seeds and budgets, so that a\n"
+           "changed default is compared and named.\n"
+           "Times are compared if both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
+           "Benjamini-Hochberg at 0.05, and the 95 % interval of the ratio entirely outside the noise of\n"
+           "the repetitions. The default of --time-cells is the 20 slowest such cells of BASE."},
       declare, run));
 }
 

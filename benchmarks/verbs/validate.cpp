@@ -1,4 +1,5 @@
-// isoline validate PATH...: are the records, plans, sheets, suites and rates what they claim to be?
+// isoline validate PATH...: do records, plans, component metadata, suites and rates satisfy their
+// schemas?
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -186,7 +187,7 @@ void register_validate(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "validate",
        .help_position = 190,
-       .summary = "Validate records, suites and all other JSON files of Isoline by their schemas",
+       .summary = "Check records, suites and all other JSON files of Isoline against their schemas",
        .examples = "  isoline validate results/quick my-suite.json"},
       declare, run));
 }
