@@ -20,7 +20,7 @@ void fields(Options& o, auto& field) {
   fields(o.inversion, field);
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
   field("proxy", o.proxy, Choices{"l2", "l1"}, "proxy loss: ½‖x − x̃‖² or Σ|x − x̃|");
-  field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion an update");
+  field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion per update");
   field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
 }
 

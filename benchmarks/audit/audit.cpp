@@ -213,9 +213,9 @@ void count_oracles(const Subject& subject, const Problem& problem, AuditedOptimi
     if (is_declared) audited.declared.push_back(name);
     if (path.counts[kind] > 0) audited.counted[name] = path.counts[kind];
     if (is_declared && path.counts[kind] == 0)
-      audited.flags.push_back(fmt::format("declares that it needs {}, and never asked", name));
+      audited.flags.push_back(fmt::format("declares that it needs {}, but never called it", name));
     if (!is_declared && path.counts[kind] > 0)
-      audited.flags.push_back(fmt::format("asked for {}, and does not declare it", name));
+      audited.flags.push_back(fmt::format("called {} without declaring it", name));
   }
 }
 
@@ -225,7 +225,7 @@ void compare_invariance(bool is_declared, AuditedOptimizer& audited) {
   const Real found = audited.deviations.front();
   if (!is_declared || std::isnan(found) || found <= kInvariantDeviation) return;
   audited.flags.push_back(fmt::format(
-      "declares that rescaled inputs leave its path, and they move it by {:.2g}", found));
+      "declares that rescaled inputs do not change its path, but they move it by {:.2g}", found));
 }
 
 OptionValues options_without_floors(const OptimizerEntry& entry) {

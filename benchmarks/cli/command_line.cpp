@@ -28,11 +28,11 @@ constexpr const char* kExamples =
     "  isoline run                            the default suite, then its report\n"
     "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
     "  isoline run quick --optimizer adam     the cells of a suite that have this optimizer\n"
-    "  isoline describe sip                   formula, options, needs and source\n"
+    "  isoline describe sip                   formula, options, required derivatives, source\n"
     "  isoline check rosenbrock               are its derivatives right?\n"
     "  isoline audit gd adam sip              scaling, invariance, order: measured\n"
     "  isoline compare results/old results/new    what is worse than before?\n"
-    "  isoline claims notebook                is what the notebook prints reproduced?\n"
+    "  isoline claims notebook                are the notebook's numbers reproduced?\n"
     "  isoline help run                       the options of a verb, with examples\n\n"
     "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable,\n"
     "130 interrupted.";

@@ -34,7 +34,7 @@ void require_loadable(const std::string& path) {
   };
   const IsolatedText loaded = isolated_text(load, kSeconds);
   require(loaded.text.has_value(),
-          [&] { return fmt::format("{}: it cannot be loaded: {}", path, loaded.failure); });
+          [&] { return fmt::format("{} cannot be loaded: {}", path, loaded.failure); });
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
   } catch (const UsageError& error) {
     return left_with(kUsage, program, error.what());
   } catch (const std::bad_alloc&) {
-    return left_with(kWorse, program, "there is not enough memory for this");
+    return left_with(kWorse, program, "out of memory");
   } catch (const std::exception& error) {
     return left_with(kWorse, program, error.what());
   }

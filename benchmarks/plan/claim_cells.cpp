@@ -101,7 +101,7 @@ std::vector<Claim> claims_from_json(const Catalog& catalog, const Rates& rates, 
   const Json schema = parse_json(std::string(builtin_schemas().at("claims")), "claims schema");
   const auto violations = schema_violations(file, schema);
   require(violations.empty(),
-          [&] { return fmt::format("{} holds no claims: {}", origin, violations[0]); });
+          [&] { return fmt::format("{} is not a file of claims: {}", origin, violations[0]); });
   std::vector<Claim> claims;
   for (const Json& json : file.at("claims"))
     claims.push_back(claim_from(catalog, rates, json, file.at("name")));

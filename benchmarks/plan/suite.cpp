@@ -168,7 +168,7 @@ Suite suite_from_json(const Json& json, const std::string& origin) {
   const Json schema = parse_json(std::string(builtin_schemas().at("suite")), "suite schema");
   const auto violations = schema_violations(json, schema);
   require(violations.empty(),
-          [&] { return fmt::format("{} is no suite: {}", origin, violations[0]); });
+          [&] { return fmt::format("{} is not a suite: {}", origin, violations[0]); });
   Suite suite{.name = json.at("name"), .title = json.value("title", ""), .blocks = {}};
   for (const Json& block : json.at("matrix")) suite.blocks.push_back(block_from(block));
   return suite;

@@ -127,7 +127,7 @@ Census census_of(const fs::path& whole, std::int64_t now, const Listener& listen
   Cells cells;
   const Predicted predicted = add_predicted(whole, cells);
   require(predicted.is_there || !folders.empty(),
-          [&] { return fmt::format("{}: no result folder, and no plan of one", whole.string()); });
+          [&] { return fmt::format("{} is not a result folder and has no plan", whole.string()); });
   if (!predicted.is_there)  // else they name the same cells
     for (const fs::path& folder : folders) add_planned(folder, cells);
   add_records(folders, cells, listener);
