@@ -1,5 +1,5 @@
-// The audit's measurements. Every oracle is granted, and counted; what a method declares is
-// compared with what it asked.
+// The audit's measurements. It grants and counts every oracle, and compares the declarations of a
+// method with its calls.
 #include "benchmarks/audit/audit.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ class Subject {
   // As far as it comes: a method that throws has gone as far as its trace.
   Path run(const Problem& problem, std::int64_t iterations) const;
 
-  // The first step that is one; nothing where there is none.
+  // The first step that changes θ; nothing if there is no such step.
   std::optional<Vector> first_step(const Problem& problem) const;
 
  private:
@@ -63,7 +63,7 @@ OracleSet every_oracle() {
   return all;
 }
 
-// Keeps θ after every step; of a library's solver the trace keeps as many as there is room for.
+// Keeps θ after every step; for the solver of a library, as many steps as the trace can store.
 class Recorded final : public Optimizer {
  public:
   Recorded(Optimizer& method, std::vector<Vector>& path) : method_(method), path_(path) {}

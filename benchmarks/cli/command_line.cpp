@@ -39,8 +39,8 @@ constexpr const char* kExamples =
 
 std::string refuse_empty(std::string& text) { return text.empty() ? "it must not be empty" : ""; }
 
-// One function per type keeps CLI11's templates out of the verbs, where they would be laid out anew
-// at each call.
+// One function per type keeps CLI11's templates out of the verbs, where each call would instantiate
+// them again.
 template <class Value>
 [[gnu::noinline]] CLI::Option* option(CLI::App& verb, const char* name, Value& value,
                                       const char* about) {
@@ -184,7 +184,7 @@ void CommandLine::declare(const Verb& verb) {
   });
 }
 
-// By the formatter: App::help() would tell of the verb `help` itself.
+// Uses the formatter, since App::help() would print the help of the verb `help`.
 std::string CommandLine::help_text() const {
   const CLI::App& of = helped_.empty() ? app_ : *app_.get_subcommand(helped_);
   const std::string name = helped_.empty() ? program_ : program_ + " " + helped_;
@@ -365,7 +365,7 @@ void VerbArguments::memory(const char* name, std::int64_t& bytes, const char* ab
 
 void VerbArguments::plugins() {
   texts("--plugin", session_.plugins(),
-        "Shared library whose problems and optimizers join those of `isoline list`; may be given "
+        "Shared library with further problems and optimizers; may be used "
         "more than once")
       .one_each();
 }

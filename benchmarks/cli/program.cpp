@@ -21,7 +21,7 @@
 namespace isoline::benchmarks {
 namespace {
 
-// Once in a process of its own: what crashes while it is loaded is told, and costs nothing else.
+// Loads it once in another process first, so that a crash while loading becomes a message.
 void require_loadable(const std::string& path) {
   constexpr double kSeconds = 30;
   const auto load = [&] {
@@ -68,7 +68,7 @@ std::string command_of(const std::string& program, int count, char** arguments) 
 int left_with(int code, const std::string& program, const char* what) {
   try {
     say(stderr, program + ": " + what + "\n");
-  } catch (const std::exception&) {  // there is nobody to tell
+  } catch (const std::exception&) {  // no caller remains to report this to
   }
   return code;
 }

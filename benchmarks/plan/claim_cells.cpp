@@ -39,7 +39,7 @@ std::string problem_of(const Expansion& from, const Json& term, const Json& bloc
   return block["problems"][0];
 }
 
-// One way to fill a term: the cells of an optimizer on a problem, a digest a seed.
+// One alternative for a term: the cells of an optimizer on a problem, one digest per seed.
 Json alternative(const Expansion& from, const std::string& problem, const std::string& optimizer,
                  Json block, const std::set<std::string>& known) {
   block["problems"] = {problem};

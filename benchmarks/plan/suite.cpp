@@ -94,7 +94,7 @@ class RatedOptimizers {
   RatedOptimizers(const Catalog& catalog, const MatrixBlock& block, const Rates& rates)
       : catalog_(catalog), rates_(rates), table_(block.rates) {}
 
-  // The row for the problem; null where there is none, or defaults are wanted.
+  // The row for the problem; null if it does not exist, or if the suite uses defaults.
   const Rates::Row* row_for(const Component& problem, const std::string& optimizer) const {
     return table_ == "none" ? nullptr : rates_.find(problem, optimizer, table_);
   }

@@ -1,4 +1,4 @@
-// Records found by their names, which tell cell and build.
+// Records found by their file names, which contain cell and build.
 #include "benchmarks/shard/census.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// False where it is gone, or is none: then the cell is run.
+// False if the file is missing or not a record: then the cell runs.
 bool adopt(const fs::path& from, const fs::path& to) {
   try {
     if (const fs::path fields = field_path(from); is_there(fields))

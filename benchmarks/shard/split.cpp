@@ -25,7 +25,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastSeconds = 1e-2;  // a fork, a record, its fsync: on a busy machine
 
-// Of no run in seconds: what a step costs at least in forward solves is the same for all.
+// In forward solves, not in seconds: the smallest cost of a step is the same for all methods.
 double declared_work(const Request& request) {
   constexpr double kWorkPerIteration = 3;
   return std::min(static_cast<double>(request.budget.work),
@@ -129,7 +129,7 @@ std::vector<double> weights_of(const std::vector<Request>& requests, const fs::p
   return weights;
 }
 
-// Shards: asked for, weighed and dealt.
+// Shards: parsed, weighed and assigned.
 
 namespace {
 
@@ -154,7 +154,7 @@ std::optional<Shard> shard_in(const std::string& text) {
   return Shard{*index, *count};
 }
 
-// The place of this task in its array, whose indices may begin anywhere and leave some out evenly.
+// The position of this task in its array, whose indices may begin anywhere and have even gaps.
 Shard shard_of_array(const Environment& environment) {
   std::string told;
   for (const char* variable : kVariables)

@@ -164,7 +164,7 @@ int run(const NewArguments& given, Session& session) {
   drafts.push_back(begun.file);
   for (const Draft& draft : drafts) {
     if (is_there(draft.path)) continue;
-    std::error_code error;  // which the writing tells
+    std::error_code error;  // the write below reports it
     if (draft.path.has_parent_path()) fs::create_directories(draft.path.parent_path(), error);
     write_text(draft.path, draft.text);
     say(stdout, fmt::format("wrote {}\n", draft.path.string()));

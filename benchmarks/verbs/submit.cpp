@@ -135,7 +135,7 @@ Submission submission_of(const SubmitArguments& given, const RunArguments& run,
   return all_of_it;
 }
 
-// The number of a job, of "123" or "123;cluster"; empty where there is none.
+// The number of a job, from "123" or "123;cluster", or empty.
 std::string job_from(const Answer& answer) {
   if (!answer.is_good) return "";
   return answer.text.substr(0, answer.text.find_first_not_of("0123456789"));
@@ -180,8 +180,8 @@ RunArguments run_arguments(const std::vector<std::string>& words, Session& sessi
   return run;
 }
 
-// Of all cells, one at a time, those that no earlier run tells of as the mean of the others;
-// infinite where none is known.
+// For all cells, one at a time; cells without a prediction count as the mean of the others;
+// infinite if no cell has a prediction.
 double seconds_of(const Preview& shown) {
   double seconds = 0, known = 0;
   for (const PreviewedCell& cell : shown.cells) {
@@ -210,10 +210,9 @@ int run(const SubmitArguments& given, Session& session) {
   const auto about = [](double each) {
     return std::isfinite(each) ? " of about " + duration_text(each) : "";
   };
-  say(stderr,
-      fmt::format("{}{}: {}{}{}\n", counted(all.requests.size(), "cell"), about(seconds),
-                  counted(shards, "task"), about(seconds / static_cast<double>(shards)),
-                  std::isfinite(seconds) ? "" : "; no earlier run tells how long they take"));
+  say(stderr, fmt::format("{}{}: {}{}{}\n", counted(all.requests.size(), "cell"), about(seconds),
+                          counted(shards, "task"), about(seconds / static_cast<double>(shards)),
+                          std::isfinite(seconds) ? "" : "; no earlier run predicts their time"));
   if (given.is_agreed) return submit(submission);
   say(stdout,
       fmt::format("array=$({})\n{}\n", array_command(submission), merge_command(submission)));

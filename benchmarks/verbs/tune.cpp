@@ -115,7 +115,7 @@ Json joined(const Json& old_rows, const Json& new_rows) {
   return all;
 }
 
-// Rows stand one a line, so that a change of one reads as one.
+// One row per line, so that a diff shows one row per change.
 std::string rates_text(const Json& grid, const Json& rows) {
   std::string text = fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [",
                                  json_text(grid));

@@ -38,7 +38,7 @@ void declare(VerbArguments& verb, ValidateArguments& given) {
   verb.texts("PATH", given.paths, "Files, or folders to search for *.json").required();
 }
 
-// The schema of that name, read once a thread.
+// The schema of that name, read once per thread.
 const Schema* schema_of(const std::string& name) {
   static thread_local std::map<std::string, Schema> known;
   if (const auto at = known.find(name); at != known.end()) return &at->second;
@@ -47,7 +47,7 @@ const Schema* schema_of(const std::string& name) {
   return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
 }
 
-// What is wrong with a file; and what it is known by, where it is a record.
+// The errors in a file; for a record, also its cell and build.
 struct Examined {
   std::vector<std::string> violations;
   std::optional<RecordIdentity> identity;
@@ -84,8 +84,8 @@ Examined examined_document(const Json& document, const std::string& path) {
   return {std::move(violations), {}};
 }
 
-// Of a record most is columns, and the schema's laws are on their elements alone: its outline is
-// sound where it is. Whatever is wrong is told of the whole.
+// Most of a record are columns, and the schema constrains only their elements: a record is valid if
+// and only if its outline is. Errors are reported for the complete record.
 Examined examined(const std::string& path) {
   try {
     const std::string text = read_text(path);
