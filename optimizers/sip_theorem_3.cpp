@@ -72,9 +72,9 @@ void register_sip_theorem_3(OptimizerRegistry& registry) {
        .formula = "x̃ = x + U;  θ ← steps on (1/B) Σ ½‖x − x̃‖² until L ≤ (1 − τ/2) L(x),  "
                   "τ = 1 − L(x + U)/L(x)",
        .source = "Holl, Koltun, Thuerey (2022), theorem 3",
-       .note = "All samples of a batch are stopped together. Traced are τ, K = ‖U‖/‖y − "
+       .note = "All samples of a batch stop together. The trace contains τ, K = ‖U‖/‖y − "
                "y*‖, the length of U as a root mean square over the samples, and the "
-               "network's steps. Each check of the loss is a forward solve, counted.",
+               "network's steps. Each check of the loss counts as a forward solve.",
        .needs = {Oracle::forward, Oracle::network},
        .is_input_scale_invariant = true,
        .tunable = {.option = "step", .below = 5},

@@ -73,7 +73,8 @@ void register_best(VerbRegistry& registry) {
        .summary = "Write the lowest losses of runs, for problems that declare no least loss",
        .examples = "  isoline best results/quick --out benchmarks/best.json",
        .notes =
-           "If a problem declares no least loss, targets are relative to the lowest known loss. This table is\n"
+           "If a problem declares no least loss, targets are relative to the lowest known loss. "
+           "This table is\n"
            "compiled into the program, and part of the build that a record names."},
       declare, run));
 }

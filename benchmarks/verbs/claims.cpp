@@ -128,11 +128,14 @@ void register_claims(VerbRegistry& registry) {
            "  isoline claims --list                        the claims and their sources\n"
            "  isoline claims exponential                   one group of claims\n"
            "  isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence\n"
-           "  isoline claims --no-run --out results/quick      the claims that the runs of a suite decide",
+           "  isoline claims --no-run --out results/quick      the claims that the runs of a "
+           "suite decide",
        .notes =
-           "A claim is reproduced if the measured value lies within the error of reading of the source,\n"
+           "A claim is reproduced if the measured value lies within the error of reading of the "
+           "source,\n"
            "and partly reproduced if only the direction is right.\n"
-           "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 no claim can be compared."},
+           "Exit codes: 0 good, 2 a claim is not reproduced or a run failed, 4 no claim can be "
+           "compared."},
       declare, run));
 }
 

@@ -78,12 +78,17 @@ void register_compare(VerbRegistry& registry) {
            "  isoline compare baseline.json results/quick --tolerance 1e-6 --all\n"
            "  isoline compare results/old results/new --markdown     for the summary of a job",
        .notes =
-           "Exit codes: 0 neither worse nor better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
-           "4 not comparable: a clock ended a cell, its record is in doubt, or another build computed it\n"
-           "and --tolerance is not set. Cells are paired by their requests, seeds and budgets, so that a\n"
+           "Exit codes: 0 neither worse nor better; 2 worse, or NEW lacks a cell of BASE; 3 "
+           "better only;\n"
+           "4 not comparable: a clock ended a cell, its record is in doubt, or another build "
+           "computed it\n"
+           "and --tolerance is not set. Cells are paired by their requests, seeds and budgets, so "
+           "that a\n"
            "changed default is compared and named.\n"
-           "Times are compared if both sides have 9 repetitions (run --repeat 9): Mann-Whitney with\n"
-           "Benjamini-Hochberg at 0.05, and the 95 % interval of the ratio entirely outside the noise of\n"
+           "Times are compared if both sides have 9 repetitions (run --repeat 9): Mann-Whitney "
+           "with\n"
+           "Benjamini-Hochberg at 0.05, and the 95 % interval of the ratio entirely outside the "
+           "noise of\n"
            "the repetitions. The default of --time-cells is the 20 slowest such cells of BASE."},
       declare, run));
 }

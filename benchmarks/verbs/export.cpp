@@ -35,10 +35,10 @@ struct ExportArguments {
 
 void declare(VerbArguments& verb, ExportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.text(
-          "--format", given.format,
-          "csv: one row per stored point; coco: data folders for its post-processing; bencher: Bencher "
-          "Metric Format")
+  verb.text("--format", given.format,
+            "csv: one row per stored point; coco: data folders for its post-processing; bencher: "
+            "Bencher "
+            "Metric Format")
       .one_of({reports::kExportNames.begin(), reports::kExportNames.end()})
       .shown();
   verb.text("--out", given.out, "Output: a file; for coco, a new folder").required();
@@ -84,11 +84,14 @@ void register_export(VerbRegistry& registry) {
        .summary = "Write curves as CSV, as COCO data, or as Bencher metrics",
        .examples =
            "  isoline export results/quick --out curves.csv             one row per stored point\n"
-           "  isoline export results/quick --format coco --out exdata   for COCO's post-processing\n"
+           "  isoline export results/quick --format coco --out exdata   for COCO's "
+           "post-processing\n"
            "  isoline export results.tar.gz --format bencher --out metrics.json",
        .notes =
-           "Numbers survive the round trip exactly, including inf, -inf and nan. Bencher's format has no\n"
-           "infinity: it omits values that half of the runs do not reach; reached-1e-6 counts those that do."},
+           "Numbers survive the round trip exactly, including inf, -inf and nan. Bencher's format "
+           "has no\n"
+           "infinity: it omits values that half of the runs do not reach; reached-1e-6 counts "
+           "those that do."},
       declare, run));
 }
 

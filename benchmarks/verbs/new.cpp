@@ -181,11 +181,13 @@ void register_new(VerbRegistry& registry) {
        .help_position = 180,
        .summary = "Write a file to start your own problem or optimizer from",
        .examples =
-           "  isoline new problem my-chain                 problems/my_chain.cpp, for a program of your own\n"
+           "  isoline new problem my-chain                 problems/my_chain.cpp, for a program "
+           "of your own\n"
            "  isoline new optimizer my-method --c          my_method.c, for a library\n"
            "  isoline new problem my-simulator --python    my_simulator.py, for a process",
        .notes =
-           "The file builds and passes its checks as it is; nothing is overwritten. `new` also writes\n"
+           "The file builds and passes its checks as it is; nothing is overwritten. `new` also "
+           "writes\n"
            "CMakeLists.txt or isoline.h if it is missing."},
       declare, run));
 }

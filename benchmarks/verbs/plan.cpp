@@ -112,13 +112,16 @@ void register_plan(VerbRegistry& registry) {
        .summary = "Show what a run would do, how long it may take, and how it divides into shards",
        .examples =
            "  isoline plan quick                           cells, finished cells, predicted time\n"
-           "  isoline plan quick --shards 16 --from results/before     sixteen shards of equal time\n"
+           "  isoline plan quick --shards 16 --from results/before     sixteen shards of equal "
+           "time\n"
            "  isoline plan quick --shards 16 --json        for the matrix of a workflow",
        .notes =
-           "The prediction of a cell is its time, or that of the same cell with other seeds, in records of the\n"
+           "The prediction of a cell is its time, or that of the same cell with other seeds, in "
+           "records of the\n"
            "result folder and of --from; other cells have no prediction.\n"
            "--shards writes the predictions to predicted.json once. `isoline run --shard` divides\n"
-           "the plan by this file only, so that every task finds the same shards whenever it begins."},
+           "the plan by this file only, so that every task finds the same shards whenever it "
+           "begins."},
       declare, run));
 }
 

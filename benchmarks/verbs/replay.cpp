@@ -129,10 +129,13 @@ void register_replay(VerbRegistry& registry) {
        .summary = "Run the cell of a record again, and compare both bit for bit",
        .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json",
        .notes =
-           "The cell runs in its own process, with the problem, options, seed, budget and threads of\n"
-           "the record. Nothing is written. A record that a clock or a kill ended is compared up to the last\n"
+           "The cell runs in its own process, with the problem, options, seed, budget and threads "
+           "of\n"
+           "the record. Nothing is written. A record that a clock or a kill ended is compared up "
+           "to the last\n"
            "common iteration. Exit codes: 0 equal; 2 different, with the first difference named;\n"
-           "4 not comparable: another build computed it, with its parts named, or the record's component is\n"
+           "4 not comparable: another build computed it, with its parts named, or the record's "
+           "component is\n"
            "not there."},
       declare, run));
 }

@@ -99,9 +99,12 @@ void register_report(VerbRegistry& registry) {
        .examples = "  isoline report results/quick\n"
                    "  isoline report results/a results/b --out report --by cost --tolerance 1e-3",
        .notes =
-           "Results contain 51 tolerances, five per decade from 1 to 1e-10; others are rounded to the\n"
-           "next stricter one. Work is oracle calls at nominal cost, equal on every machine; cost is\n"
-           "the same calls at measured cost. Times are comparable in runs with --exclusive: others are\n"
+           "Results contain 51 tolerances, five per decade from 1 to 1e-10; others are rounded to "
+           "the\n"
+           "next stricter one. Work is oracle calls at nominal cost, equal on every machine; cost "
+           "is\n"
+           "the same calls at measured cost. Times are comparable in runs with --exclusive: "
+           "others are\n"
            "marked ≈."},
       declare, run));
 }

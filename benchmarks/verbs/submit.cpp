@@ -228,12 +228,16 @@ void register_submit(VerbRegistry& registry) {
        .help_position = 80,
        .summary = "Submit a run to a cluster's scheduler, as two jobs",
        .examples =
-           "  isoline submit --slurm --array 16 --time 2h -- quick --seeds 20      prints two jobs\n"
+           "  isoline submit --slurm --array 16 --time 2h -- quick --seeds 20      prints two "
+           "jobs\n"
            "  isoline submit --slurm --partition long --yes -- sip-paper           submits them",
        .notes =
-           "The first job is an array with one task per shard; the second merges and reports after all tasks.\n"
-           "The program, the kernels of its libraries and the predictions for the division are stored in\n"
-           "the result folder, which all nodes must see. A task that the scheduler stops saves the state of\n"
+           "The first job is an array with one task per shard; the second merges and reports "
+           "after all tasks.\n"
+           "The program, the kernels of its libraries and the predictions for the division are "
+           "stored in\n"
+           "the result folder, which all nodes must see. A task that the scheduler stops saves "
+           "the state of\n"
            "its cells, returns to the queue and continues.\n"
            "Exit codes: 0 good, 1 wrong usage, 2 the scheduler refused."},
       declare, run));

@@ -270,10 +270,11 @@ void register_tune(VerbRegistry& registry) {
        .examples = "  isoline tune rosenbrock,heat --optimizer gd,adam --table rates.json\n"
                    "  isoline tune square --optimizer gd --grid rate=1e-3..1x7 --unit cauchy\n"
                    "  isoline tune --suite quick --optimizer adam --json",
-       .notes =
-           "The best value has the least median work to the target; among equals, the least remainder, "
-           "then\nthe distance from the default. The output names ties and best values at the edge of "
-           "the grid."},
+       .notes = "The best value has the least median work to the target; among equals, the least "
+                "remainder, "
+                "then\nthe distance from the default. The output names ties and best values at the "
+                "edge of "
+                "the grid."},
       declare, run));
 }
 
