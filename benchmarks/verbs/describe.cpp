@@ -114,17 +114,17 @@ void print(const Sheet& sheet) {
   if (!sheet.note.empty()) say(stdout, fmt::format("Note        {}\n", sheet.note));
   if (is_problem)
     say(stdout,
-        fmt::format("Size        {} unknowns, {} residuals\nInverse     {}\nAim         {}\n",
+        fmt::format("Size        {} unknowns, {} residuals\nInverse     {}\nCriterion   {}\n",
                     sheet.unknowns, sheet.residuals, sheet.inverse,
                     aim_text(sheet.aim.value_or(Aim::loss))));
   else
     say(stdout, fmt::format("Family      {}\n", sheet.family));
   say(stdout,
-      fmt::format("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", ")));
+      fmt::format("{:11} {}\n", is_problem ? "Offers" : "Requires", fmt::join(sheet.oracles, ", ")));
   if (!is_problem)
     say(stdout, fmt::format("Tuned by    {}\n", sheet.tunable.empty() ? "nothing" : sheet.tunable));
   if (!is_problem)
-    say(stdout, fmt::format("Privileges  {}\n",
+    say(stdout, fmt::format("Extra info  {}\n",
                             sheet.privileges.empty()
                                 ? "none"
                                 : fmt::format("{}", fmt::join(sheet.privileges, "; "))));

@@ -220,12 +220,12 @@ TEST(Describe, TellsTheGivenValueBesideTheDefault) {
 TEST(Describe, TellsEveryPrivilegeThatAMethodCanHave) {
   const Shell shell;
   EXPECT_TRUE(contains(shell("./isoline describe sip").out,
-                       "Privileges  exact inverse of the physics; damped inverse of the physics; "
+                       "Extra info  exact inverse of the physics; damped inverse of the physics; "
                        "approximate inverse of the physics; "
-                       "estimate by how the data were made\n"));
+                       "estimate from how the data were made\n"));
   EXPECT_TRUE(contains(shell("./isoline describe 'sip[inverse=newton]'").out,
-                       "Privileges  exact Hessian\n"));
-  EXPECT_TRUE(contains(shell("./isoline describe adam").out, "Privileges  none\n"));
+                       "Extra info  exact Hessian\n"));
+  EXPECT_TRUE(contains(shell("./isoline describe adam").out, "Extra info  none\n"));
 }
 
 TEST(List, NamesEverythingInWordsAndInJson) {
