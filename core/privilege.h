@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, 6> kPrivilegeNames = {
     "exact inverse of the physics",
     "damped inverse of the physics",
     "approximate inverse of the physics",
-    "estimate from how the data were made",
+    "estimate by how the data were made",
     "ground truth"};
 inline std::string_view name_of(Privilege privilege) {
   return kPrivilegeNames[static_cast<std::size_t>(privilege)];

@@ -161,7 +161,7 @@ bool has_layers(const Meter& f) { return f.is_granted(Oracle::layer_factors); }
 
 void SpectralStep::start(Meter& f) const {
   if (wanted_ == Way::lanczos)
-    f.name_series({"Krylov vectors per step", "estimated relative error per step"});
+    f.name_series({"Krylov vectors of a step", "estimated relative error of a step"});
 }
 
 Way SpectralStep::choose(const Meter& f, const SpectralFilter& filter, bool is_wide) const {

@@ -222,7 +222,7 @@ TEST(Describe, TellsEveryPrivilegeThatAMethodCanHave) {
   EXPECT_TRUE(contains(shell("./isoline describe sip").out,
                        "Extra info  exact inverse of the physics; damped inverse of the physics; "
                        "approximate inverse of the physics; "
-                       "estimate from how the data were made\n"));
+                       "estimate by how the data were made\n"));
   EXPECT_TRUE(contains(shell("./isoline describe 'sip[inverse=newton]'").out,
                        "Extra info  exact Hessian\n"));
   EXPECT_TRUE(contains(shell("./isoline describe adam").out, "Extra info  none\n"));
