@@ -72,13 +72,13 @@ std::string json_text(const Json& value, int indent) {
 
 Json parse_json(const std::string& text, const std::string& origin) {
   require(nesting_of(text) <= kMostNesting, [&] {
-    return fmt::format("{} is no JSON of ours: it nests deeper than {} levels", origin,
+    return fmt::format("{} is nested deeper than {} levels, the limit for JSON", origin,
                        kMostNesting);
   });
   try {
     return Json::parse(text);
   } catch (const Json::exception& error) {  // also of numbers that are out of range
-    throw UsageError(fmt::format("{} is no JSON: {}", origin, error.what()));
+    throw UsageError(fmt::format("{} is not JSON: {}", origin, error.what()));
   }
 }
 

@@ -109,7 +109,7 @@ const OptionValue* OptionValues::find(std::string_view name) const {
 
 const OptionValue& OptionValues::at(std::string_view name) const {
   const OptionValue* found = find(name);
-  require(found != nullptr, [&] { return fmt::format("there is no option {}", name); });
+  require(found != nullptr, [&] { return fmt::format("unknown option {}", name); });
   return *found;
 }
 
@@ -196,7 +196,7 @@ OptionValue option_from(const std::string& name, const Json& json) {
   if (json.is_number_integer()) return json.get<Index>();
   if (json.is_number()) return json.get<Real>();
   require(json.is_string(), [&] {
-    return fmt::format("the option {} is neither number, truth nor text: {}", name,
+    return fmt::format("the option {} must be a number, a truth value or a text, got {}", name,
                        json_text(json));
   });
   return json.get<std::string>();
@@ -211,7 +211,7 @@ Json to_json(const OptionValues& options) {
 }
 
 OptionValues option_values_from(const Json& json) {
-  require(json.is_object(), [&] { return "options are an object, got " + json_text(json); });
+  require(json.is_object(), [&] { return "options must be an object, got " + json_text(json); });
   OptionValues options;
   for (const auto& [name, value] : json.items()) options.set(name, option_from(name, value));
   return options;

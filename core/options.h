@@ -130,7 +130,7 @@ class OptionReader {
   template <class Value>
   void read(const char* name, Value& value) const {
     const Value* complete = std::get_if<Value>(&values_.at(name));
-    require(complete != nullptr, [&] { return std::string(name) + ": not of the option's type"; });
+    require(complete != nullptr, [&] { return std::string(name) + ": wrong type for the option"; });
     value = *complete;
   }
 

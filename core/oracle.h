@@ -89,14 +89,15 @@ inline constexpr std::array kOracleTable = {
     OracleRow{Oracle::layer_factors, "layer_factors", "inputs and cotangents of each dense layer",
               // a pullback that keeps what passes
               [](const OracleSizes&) -> std::int64_t { return 1; },
-              "there is no network of dense layers", false, false},
+              "the problem has no network of dense layers", false, false},
     OracleRow{Oracle::layer_moments, "layer_moments",
               "second moments of the inputs and cotangents of each convolution",
               // a pullback that sums the squares of what passes
               [](const OracleSizes&) -> std::int64_t { return 1; },
-              "there is no network of dense layers or of convolutions", false, false},
+              "the problem has no network of dense layers or convolutions", false, false},
     OracleRow{Oracle::truth, "truth", "the x* that produced y* (extra information)",
-              [](const OracleSizes&) -> std::int64_t { return 0; }, "the problem knows no true x"}};
+              [](const OracleSizes&) -> std::int64_t { return 0; },
+              "the problem has no known true x"}};
 inline constexpr std::size_t kOracles = kOracleTable.size();
 
 inline constexpr auto kOracleNames = [] {

@@ -25,7 +25,7 @@ void gemm(CBLAS_TRANSPOSE a, CBLAS_TRANSPOSE b, int m, int n, int k, const Compl
 }
 
 void require_fit(bool do_fit) {  // `require` would make its text
-  if (!do_fit) throw UsageError("the matrices of a product do not fit");
+  if (!do_fit) throw UsageError("the shapes of the matrices of a product do not match");
 }
 
 int as_int(Index n) { return static_cast<int>(n); }

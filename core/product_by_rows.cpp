@@ -115,7 +115,7 @@ void multiply(Form form, typename Gemm<Scalar>::In A, typename Gemm<Scalar>::In 
   const Index rows = A.rows(), depth = A.cols(), width = is_across ? B.rows() : B.cols();
   if (form == Form::AH_B || C.rows() != rows || C.cols() != width ||
       depth != (is_across ? B.cols() : B.rows()) || rows % kLanes<Scalar> != 0)
-    throw UsageError("the matrices of a product by rows do not fit");
+    throw UsageError("the shapes of the matrices of a product by rows do not match");
   const Panel<Scalar> right{B.data(), is_across ? B.outerStride() : 1,
                             is_across ? 1 : B.outerStride()};
   const auto some_rows = [&](Index first, Index count) {

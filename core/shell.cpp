@@ -46,7 +46,7 @@ class WordReader {
   static constexpr std::string_view kSpace = " \t\r\n";
 
   char take() {
-    require(!rest_.empty(), "a command ends within a quote or behind a backslash");
+    require(!rest_.empty(), "a command must not end inside a quote or after a backslash");
     const char letter = rest_.front();
     rest_.remove_prefix(1);
     return letter;
@@ -85,7 +85,7 @@ std::vector<std::string> shell_words(std::string_view command) {
   WordReader reader(command);
   std::vector<std::string> words;
   for (std::string word; reader.read(word);) words.push_back(word);
-  require(!words.empty(), "a command has at least one word");
+  require(!words.empty(), "a command must have at least one word");
   return words;
 }
 

@@ -19,7 +19,7 @@ namespace {
 std::size_t end_of_quoted(std::string_view text, std::size_t begin) {
   std::size_t at = begin + 1;
   while (at < text.size() && text[at] != '"') at += text[at] == '\\' ? 2 : 1;
-  require(at < text.size(), [&] { return fmt::format("'{}' leaves a quote open", text); });
+  require(at < text.size(), [&] { return fmt::format("'{}' has an unclosed quote", text); });
   return at + 1;
 }
 
@@ -31,15 +31,14 @@ std::vector<std::string> split(std::string_view text, char separator) {
     const char letter = text[at];
     const std::size_t end = letter == '"' ? end_of_quoted(text, at) : at + 1;
     depth += (letter == '[') - (letter == ']');
-    require(depth >= 0,
-            [&] { return fmt::format("'{}' closes a bracket that it did not open", text); });
+    require(depth >= 0, [&] { return fmt::format("'{}' has a ] without a [", text); });
     if (letter == separator && depth == 0)
       parts.emplace_back();
     else
       parts.back() += text.substr(at, end - at);
     at = end;
   }
-  require(depth == 0, [&] { return fmt::format("'{}' leaves a bracket open", text); });
+  require(depth == 0, [&] { return fmt::format("'{}' has a [ without a ]", text); });
   return parts;
 }
 
@@ -51,7 +50,7 @@ std::string trim(std::string_view text) {
 
 // Without a zero byte, which ends a text for the system and in the message that would name it.
 std::string clean(std::string_view text) {
-  require(text.find('\0') == text.npos, "a specification holds a zero byte, which ends any text");
+  require(text.find('\0') == text.npos, "a specification must not contain a zero byte");
   return valid_utf8(text);
 }
 
@@ -70,7 +69,7 @@ struct Sweep {
 Sweep sweep_of(const std::string& text) {
   const auto open = text.find('[');
   Sweep sweep{.name = trim(text.substr(0, open)), .options = {}};
-  require(!sweep.name.empty(), [&] { return fmt::format("'{}' names nothing", text); });
+  require(!sweep.name.empty(), [&] { return fmt::format("'{}' has no name", text); });
   if (open == std::string::npos) return sweep;
   require(text.ends_with(']'), [&] { return fmt::format("'{}' does not end with ]", text); });
   const std::string inner = text.substr(open + 1, text.size() - open - 2);
@@ -78,7 +77,7 @@ Sweep sweep_of(const std::string& text) {
   for (const std::string& option : split(inner, ',')) {
     const auto equals = option.find('=');
     require(equals != std::string::npos,
-            [&] { return fmt::format("'{}' in '{}' is no key=value", option, text); });
+            [&] { return fmt::format("'{}' in '{}' must be key=value", option, text); });
     std::vector<std::string> values = split(option.substr(equals + 1), '|');
     for (std::string& value : values) value = unquoted(trim(value));
     sweep.options.emplace_back(trim(option.substr(0, equals)), std::move(values));
@@ -161,7 +160,8 @@ SeedSpan span_of(std::string_view part, std::string_view whole) {
     return {0, count - 1};
   }
   const SeedSpan span{number(part.substr(0, dots)), number(part.substr(dots + 2))};
-  if (span.first > span.second) throw UsageError(fmt::format("seeds must rise, got '{}'", whole));
+  if (span.first > span.second)
+    throw UsageError(fmt::format("the first seed must not exceed the last, got '{}'", whole));
   return span;
 }
 
@@ -220,7 +220,7 @@ std::vector<std::uint64_t> parse_seeds(std::string_view text, std::uint64_t most
     count = sum_of(count, sum_of(spans.back().second - spans.back().first, 1));
   }
   require(count <= most, [&] {
-    return fmt::format("'{}' are {} seeds, at most {} can be given", text, count_text(count),
+    return fmt::format("'{}' means {} seeds; at most {} are allowed", text, count_text(count),
                        count_text(most));
   });
   std::vector<std::uint64_t> seeds;

@@ -137,19 +137,19 @@ void set_text(char (&out)[Trace::kText], std::string_view text) {
 }
 
 std::string defect_of(const Trace& trace) {
-  if (!are_choices_sound(trace)) return "a choice that there is not";
-  if (!are_points_sound(trace)) return "iterations, counts or times that cannot be";
-  if (!are_hits_sound(trace)) return "targets met in an order that cannot be";
+  if (!are_choices_sound(trace)) return "an invalid choice";
+  if (!are_points_sound(trace)) return "invalid iterations, counts or times";
+  if (!are_hits_sound(trace)) return "targets reached in an invalid order";
   if (!is_within(trace.path_inputs, Trace::kInputs) ||
       !is_within(trace.path_outputs, Trace::kOutputs))
-    return "a path of a size that cannot be";
-  if (!are_exhibits_sound(trace)) return "samples of a size that cannot be";
-  if (!are_frames_sound(trace.frames)) return "fields of a size or at iterations that cannot be";
-  if (!are_spectra_sound(trace.spectra)) return "spectra of a size or at iterations that cannot be";
-  if (!are_texts_sound(trace)) return "a text without an end";
+    return "a path of an invalid size";
+  if (!are_exhibits_sound(trace)) return "samples of an invalid size";
+  if (!are_frames_sound(trace.frames)) return "fields of an invalid size or at invalid iterations";
+  if (!are_spectra_sound(trace.spectra))
+    return "spectra of an invalid size or at invalid iterations";
+  if (!are_texts_sound(trace)) return "an unterminated text";
   if (!are_series_sound(trace)) return "more series than the trace has room for";
-  if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps))
-    return "counts that cannot be";
+  if (!are_amounts(trace.prices) || !is_amount(trace.rejected_steps)) return "invalid counts";
   return "";
 }
 

@@ -171,7 +171,7 @@ void register_fno(NetworkRegistry& registry) {
                           "(2021)",
                 .note =
                     "The two-dimensional operator of the authors' code with one field as input; "
-                    "single precision, its modes by dense products.",
+                    "single precision; dense products compute the modes.",
                 .options = option_table<Options>(),
                 .make = make_fno});
 }

@@ -74,7 +74,7 @@ void register_unet(NetworkRegistry& registry) {
   registry.add({.name = "unet",
                 .title = "U-net",
                 .source = "Ronneberger, Fischer, Brox 2015, fig. 1; as in PhiFlow 2.2 u_net",
-                .note = "parameters and grids are kept in single precision within",
+                .note = "Uses single precision for parameters and grids.",
                 .options = option_table<UnetOptions>(),
                 .make = [](const OptionValues& options, const NetworkShape& shape) {
                   return std::make_unique<Unet>(read_options<UnetOptions>(options), shape);

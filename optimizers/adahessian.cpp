@@ -89,7 +89,7 @@ void register_adahessian(OptimizerRegistry& registry) {
        .formula = "D = z ⊙ ∇²L z,  m ← β₁ m + (1−β₁) ∇L,  v ← β₂ v + (1−β₂) D²,  "
                   "θ ← θ − η m̂/(√v̂ᵖ + ε)",
        .source = "Yao et al. (2021)",
-       .note = "Defaults are those of torch_optimizer, p = ½ among them; the paper has p = 1. "
+       .note = "The defaults are those of torch_optimizer, including p = ½; the paper has p = 1. "
                "Products with the Hessian are exact. The probes are the same for every seed.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian_product},
        .tunable = {.option = "rate"}}));

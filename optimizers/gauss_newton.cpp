@@ -57,9 +57,9 @@ void register_gauss_newton(OptimizerRegistry& registry) {
        .kind = Kind::least_squares,
        .formula = "θ ← θ − η J⁺ (y − y*)",
        .source = "Gauss (1809); Nocedal, Wright (2006), eq. 10.23",
-       .note =
-           "Without safeguards. Acts on the residual y − y*, whatever the loss. The Jacobian of a "
-           "network in single precision is noise below some 1e-6 of its largest: see cutoff.",
+       .note = "Without safeguards. Acts on the residual y − y*, whatever the loss. In single "
+               "precision, singular values of a network's Jacobian below about 1e-6 of the largest "
+               "are noise: see cutoff.",
        .needs = {Oracle::forward},
        .is_input_scale_invariant = true,
        .most_rank = 2048,

@@ -162,10 +162,9 @@ void register_hessian_free(OptimizerRegistry& registry) {
        .kind = Kind::second_order,
        .formula = "(JᵀL''J + λI) d ≈ −∇L by conjugate gradients,  θ ← θ + α d",
        .source = "Martens (2010)",
-       .note =
-           "A step costs two products an iteration of the conjugate gradients. Everything within "
-           "a step is on the same samples. A step without sufficient decrease is rejected. The "
-           "Gauss-Newton matrix is that of network and physics together.",
+       .note = "A step costs two products per iteration of the conjugate gradients. All parts of a "
+               "step use the same samples. A step without sufficient decrease is rejected. The "
+               "Gauss-Newton matrix is that of network and physics together.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward},
        .tunable = {.option = "damping", .below = 4, .factor = 10}}));
 }

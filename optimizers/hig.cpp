@@ -103,9 +103,10 @@ void register_hig(OptimizerRegistry& registry) {
        .source = "Schnell, Holl, Thuerey (2022)",
        .note =
            "Scales with the loss as c, with y as s^(1−κ), with B equal samples as B^(−(1+κ)/2). "
-           "By a Gram matrix, of networks of dense layers formed layer by layer and where needed split "
-           "in two, if the cut-off is at least 1e-7 and the step loses no digits; else by QR, "
-           "and with small=clamp by the SVD of J. way=lanczos is for Jacobians too large for all "
+           "Uses a Gram matrix if the cut-off is at least 1e-7 and the step loses no digits (for "
+           "networks of dense layers formed layer by layer, and split in two if needed). "
+           "Otherwise uses QR, and with small=clamp the SVD of J. way=lanczos is for Jacobians "
+           "too large for all "
            "of these.",
        .needs = {Oracle::forward},
        .most_rank = 2048,
@@ -117,9 +118,10 @@ void register_hig(OptimizerRegistry& registry) {
        .kind = Kind::half_inverse,
        .formula = "θ ← θ − η V Λ (Λ² + μ)^(−(κ+1)/2) Uᵀ g,  J = U Λ Vᵀ,  g = ∂L/∂y",
        .source = "after Schnell, Holl, Thuerey (2022); μ as in Tikhonov's filter",
-       .note = "Our own: the half-inverse decays where singular values vanish, where the published "
-               "one grows up to its cut-off. With κ = 1 it is Levenberg-Marquardt's step of fixed "
-               "damping. Scales as hig does.",
+       .note =
+           "Our own: the half-inverse decays where singular values vanish, where the published "
+           "one grows up to its cut-off. With κ = 1 it is the Levenberg-Marquardt step with fixed "
+           "damping. Scales as hig does.",
        .needs = {Oracle::forward},
        .most_rank = 2048,
        .tunable = {.option = "rate", .below = 4}}));

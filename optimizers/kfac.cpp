@@ -235,12 +235,14 @@ void register_kfac(OptimizerRegistry& registry) {
        .kind = Kind::second_order,
        .formula = "[W b] ← [W b] − η (G + √λ/π I)⁻¹ ∇L (A + π√λ I)⁻¹,  A = ⟨ā āᵀ⟩, G = ⟨g gᵀ⟩",
        .source = "Martens, Grosse (2015); of convolutions Grosse, Martens (2016)",
-       .note = "For networks of dense layers or of convolutions. G is exact, by one pullback for "
-               "each output; of convolutions, and of more than 64 outputs, by one random cotangent "
-               "a step, the same for every seed. A convolution's A is the sum over places, its G "
-               "the mean: too little curvature where the physics correlates places. Batch norm's γ "
-               "and β step along their gradients, over the mean of their curvature's diagonal. "
-               "Without the paper's rescaling, momentum and adaptive damping.",
+       .note =
+           "For networks of dense layers or of convolutions. G is exact, with one pullback per "
+           "output. For convolutions, and for more than 64 outputs, it uses one random cotangent "
+           "per step, the same for every seed. A convolution's A is the sum over places, its G "
+           "the mean: this underestimates the curvature if the physics correlates places. Batch "
+           "norm's γ "
+           "and β step along their gradients, over the mean of their curvature's diagonal. "
+           "Without the paper's rescaling, momentum and adaptive damping.",
        .needs = {Oracle::forward, Oracle::pullback},
        .tunable = {.option = "rate", .below = 1},
        .needs_for = needs,

@@ -225,7 +225,7 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .kind = Kind::least_squares,
        .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
        .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
-       .note = "A rejected candidate is an iteration too. With damping=fixed every step is taken, "
+       .note = "A rejected candidate is an iteration, too. With damping=fixed every step is taken, "
                "D is 1, and μ a share of the mean diagonal of JJᵀ.",
        .needs = {Oracle::forward, Oracle::jacobian},
        .is_input_scale_invariant = true,

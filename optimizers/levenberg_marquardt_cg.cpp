@@ -109,9 +109,9 @@ void register_levenberg_marquardt_cg(OptimizerRegistry& registry) {
        .kind = Kind::least_squares,
        .formula = "θ ← θ + d,  d ≈ argmin ‖J d + r‖² + μ‖d‖² by conjugate gradients",
        .source = "Marquardt (1963); Paige, Saunders (1982), section 7.1; Nielsen (1999)",
-       .note = "Never forms J: a step costs a pushforward and a pullback an iteration of the "
-               "conjugate gradients. A rejected candidate is an iteration too. The damping sets "
-               "itself, and nothing is left to tune.",
+       .note = "Never forms J: a step costs a pushforward and a pullback per iteration of the "
+               "conjugate gradients. A rejected candidate is an iteration, too. The damping adapts "
+               "itself, so no option is tuned.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::pushforward}}));
 }
 

@@ -123,8 +123,8 @@ void register_muon(OptimizerRegistry& registry) {
        .kind = Kind::adaptive,
        .formula = "M ← μ M + ∇L,  W ← W − 0.2 η √max(rows, columns) (M Mᵀ)^(−½) M",
        .source = "Jordan (2024); Liu and others (2025), algorithm 1",
-       .note = "The inverse root by five steps of Newton-Schulz, so that singular values come near "
-               "to 1 only. Vectors are stepped by Adam. Without weight decay.",
+       .note = "Five Newton-Schulz steps approximate the inverse root, so that singular values are "
+               "only near 1. Adam updates vectors. Without weight decay.",
        .needs = {Oracle::forward, Oracle::pullback},
        .tunable = {.option = "rate", .below = 0},
        .objection = objection});

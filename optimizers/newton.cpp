@@ -40,7 +40,7 @@ void register_newton(OptimizerRegistry& registry) {
        .kind = Kind::second_order,
        .formula = "θ ← θ − η H⁻¹ ∇L,  H = ∇²L",
        .source = "Nocedal, Wright (2006), eq. 3.30",
-       .note = "Without safeguards: saddles and maxima attract it as minima do.",
+       .note = "Without safeguards: saddle points and maxima attract it, too.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
        .is_input_scale_invariant = true,
        .most_unknowns = 2048,

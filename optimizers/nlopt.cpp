@@ -126,7 +126,7 @@ struct Method {
 };
 
 constexpr const char* kFirstStepNote =
-    "Its first trial step is the whole gradient; it gives up where that is far too long.";
+    "The first trial step is the full gradient; the method stops if that is far too long.";
 
 const Method kByGradient[] = {
     {NLOPT_LD_LBFGS, Kind::quasi_newton, "nlopt-lbfgs", "Limited-memory BFGS (NLopt)",

@@ -44,7 +44,7 @@ std::string why_inapplicable(const OptimizerEntry& entry, const OptionValues& op
     return fmt::format("{} unknowns, and {} is limited to {}", problem.unknowns(), entry.name,
                        entry.most_unknowns);
   if (entry.kind == Kind::least_squares && !problem.is_least_squares())
-    return "the loss is no multiple of ‖y − y*‖², which least squares would descend instead";
+    return "the loss is not a multiple of ‖y − y*‖², which least squares minimizes";
   // A method that needs products only factorizes nothing.
   const bool factorizes = needs.contains(Oracle::jacobian) || needs.contains(Oracle::layer_factors);
   const Index rank = std::min(problem.unknowns(), problem.residuals());

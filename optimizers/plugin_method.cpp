@@ -31,7 +31,7 @@ struct Questions : isoline_oracles {
   Real root() const { return std::sqrt(static_cast<Real>(f.samples())); }
   // Products are of a point.
   Linearization& point() {
-    require(is_linearized, "the oracles but loss() and report() come after linearize()");
+    require(is_linearized, "all oracles except loss() and report() need linearize() first");
     return at;
   }
   bool is_over() const {
@@ -230,7 +230,7 @@ void add_plugin_method(OptimizerRegistry& registry, const PluginComponent& compo
   entry.introduce = [foreign = component.foreign](const OptionValues&) { return foreign; };
   entry.objection = [component](const OptionValues&, const Problem& problem) -> std::string {
     const bool fits = !component.can(ISOLINE_INVERSE) || problem.has_identity_network();
-    return fits ? "" : "a library's method inverts the physics and sees no network";
+    return fits ? "" : "a method of a library inverts the physics and does not support networks";
   };
   entry.make = [component](const OptionValues& options, const OptimizerRegistry&) {
     return std::make_unique<PluginMethod>(component, options);

@@ -111,7 +111,7 @@ class Service {
         f_.iterate(theta_);
         return reply(verb, {});
       default:
-        line_.fail("asks by verb " + std::to_string(head.verb) + ", which is not a request");
+        line_.fail("sent verb " + std::to_string(head.verb) + ", which is not a request");
     }
   }
 
@@ -239,7 +239,7 @@ Foreign introduce(const OptionValues& options) {
 
 std::string objection(const OptionValues& options, const Problem& problem) {
   if (!introduced(options).is_least_squares || problem.is_least_squares()) return "";
-  return "the loss is no multiple of ‖y − y*‖², which least squares would descend instead";
+  return "the loss is not a multiple of ‖y − y*‖², which least squares minimizes";
 }
 
 }  // namespace
@@ -249,7 +249,7 @@ void register_process(OptimizerRegistry& registry) {
                 .title = "An optimizer that another program runs",
                 .family = Family::foreign,
                 .formula = "θ as the program chooses it, from the oracles that it calls",
-                .source = "the program's own, which its record names",
+                .source = "see the record",
                 .needs = {Oracle::forward},
                 .needs_same_samples = true,
                 .options = option_table<ProcessOptions>(),

@@ -61,7 +61,7 @@ void register_rescaled(OptimizerRegistry& registry) {
        .title = "Rescaled gradients",
        .formula = "x̃ = x − d/‖d‖,  d = ∂L/∂x;  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 2",
-       .note = "by=truth has d = x − x*, as the published script does.",
+       .note = "by=truth uses d = x − x*, as in the published script.",
        .needs = {Oracle::forward, Oracle::network},
        .tunable = {.option = "network-optimizer", .below = 6},
        .needs_for = needs_for}));

@@ -51,7 +51,8 @@ void register_saddle_free_newton(OptimizerRegistry& registry) {
        .formula = "H = V diag(S) Vᵀ, g̃ = Vᵀ∇L;  θ ← θ − η V d,  dᵢ = sign(g̃ᵢ)·(|g̃ᵢ/Sᵢ| where "
                   "Sᵢ > S̄, else min(|g̃ᵢ/Sᵢ|, Δ/|g̃ᵢ|))",
        .source = "Holl, Koltun, Thuerey (2022), published script; Dauphin et al. (2014)",
-       .note = "S̄ is the geometric mean of |S|; directions without curvature stay.",
+       .note =
+           "S̄ is the geometric mean of |S|; there is no step along directions without curvature.",
        .needs = {Oracle::forward, Oracle::pullback, Oracle::hessian},
        .most_unknowns = 2048,
        .tunable = {.option = "rate", .below = 5}}));

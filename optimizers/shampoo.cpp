@@ -129,7 +129,7 @@ void register_shampoo(OptimizerRegistry& registry) {
                               .kind = Kind::adaptive,
                               .formula = "L ← L + G Gᵀ,  R ← R + Gᵀ G,  W ← W − η L^(−¼) G R^(−¼)",
                               .source = "Gupta, Koren, Singer (2018), algorithm 1",
-                              .note = "Of a vector AdaGrad with its full matrix.",
+                              .note = "For vectors, full-matrix AdaGrad.",
                               .needs = {Oracle::forward, Oracle::pullback},
                               .tunable = {.option = "rate", .below = 4},
                               .objection = objection}));

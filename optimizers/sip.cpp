@@ -20,7 +20,7 @@ void fields(Options& o, auto& field) {
   fields(o.inversion, field);
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
   field("proxy", o.proxy, Choices{"l2", "l1"}, "proxy loss: ½‖x − x̃‖² or Σ|x − x̃|");
-  field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion an update");
+  field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion per update");
   field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
 }
 
@@ -65,9 +65,9 @@ void register_sip(OptimizerRegistry& registry) {
        .formula = "x̃ = P⁻¹(y + η (y* − y); x);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 3",
        .note = "The inverse is the problem's own, a saddle-free Newton step with exact second "
-               "derivatives, or found by L-BFGS; where it is damped or an estimate, x̃ = x + "
+               "derivatives, or found by L-BFGS; if it is damped or an estimate, x̃ = x + "
                "η (P⁻¹(y*; x) − x), and for Newton x + η U. The problem's own inverse and its "
-               "second derivatives are privileges; L-BFGS is not.",
+               "second derivatives are extra information; L-BFGS is not.",
        .needs = {Oracle::forward, Oracle::network},
        .is_input_scale_invariant = true,
        .tunable = {.option = "step", .below = 5},

@@ -141,8 +141,8 @@ void register_soap(OptimizerRegistry& registry) {
        .formula =
            "W ← W − η Q_L (Q_LᵀMQ_R/(√V̂ + ε)) Q_Rᵀ,  ⟨GGᵀ⟩ = Q_L Λ Q_Lᵀ,  ⟨GᵀG⟩ = Q_R Λ Q_Rᵀ",
        .source = "Vyas and others (2024), algorithm 3",
-       .note = "Adam in the eigenbasis of Shampoo's preconditioner, which is renewed every ten "
-               "steps by all its eigenvectors. Vectors are stepped by Adam.",
+       .note = "Adam in the eigenbasis of Shampoo's preconditioner, which is recomputed every ten "
+               "steps. Adam updates vectors.",
        .needs = {Oracle::forward, Oracle::pullback},
        .tunable = {.option = "rate", .below = 1},
        .objection = objection}));

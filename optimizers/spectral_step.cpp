@@ -33,7 +33,7 @@ constexpr WayRow kWays[] = {
 Way way_named(std::string_view name) {
   for (const WayRow& row : kWays)
     if (row.name == name) return row.way;
-  throw UsageError(fmt::format("there is no way '{}' of a spectral step", name));
+  throw UsageError(fmt::format("unknown way '{}' of a spectral step", name));
 }
 
 std::string_view way_text(Way way) { return kWays[static_cast<std::size_t>(way)].words; }
@@ -78,7 +78,7 @@ OracleSet needs_of(Way way, const SpectralFilter& filter, const Problem& problem
 std::string objection_to(Way way, const Problem& problem) {
   const bool forms_K = way == Way::layers || way == Way::split;
   if (forms_K && problem.residuals() >= problem.unknowns())
-    return fmt::format("way={} forms JJᵀ, and J is not wide: {} residuals, {} unknowns",
+    return fmt::format("way={} forms JJᵀ and needs a wide J, got {} residuals and {} unknowns",
                        kWays[static_cast<std::size_t>(way)].name, problem.residuals(),
                        problem.unknowns());
   return "";
@@ -161,7 +161,7 @@ bool has_layers(const Meter& f) { return f.is_granted(Oracle::layer_factors); }
 
 void SpectralStep::start(Meter& f) const {
   if (wanted_ == Way::lanczos)
-    f.name_series({"Krylov vectors per step", "estimated relative error per step"});
+    f.name_series({"Krylov vectors of a step", "estimated relative error of a step"});
 }
 
 Way SpectralStep::choose(const Meter& f, const SpectralFilter& filter, bool is_wide) const {

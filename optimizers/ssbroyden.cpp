@@ -203,9 +203,10 @@ void register_ssbroyden(OptimizerRegistry& registry) {
        .kind = Kind::quasi_newton,
        .formula = "θ ← θ − α H ∇L,  H ← (H − Hy yᵀH/(yᵀHy) + φ v vᵀ)/τ + s sᵀ/(yᵀs)",
        .source = "Al-Baali, Khalfan (2005); Urbán, Stefanou, Pons (2025)",
-       .note = "The update is the authors' printed one. Dense, with a line search to the strong "
-               "Wolfe conditions. H is scaled before its first update as BFGS scales it, which "
-               "they leave as an option.",
+       .note =
+           "The update is as printed by the authors. Dense, with a line search to the strong "
+           "Wolfe conditions. H is scaled before its first update as in BFGS, which the authors "
+           "leave optional.",
        .needs = {Oracle::forward, Oracle::pullback},
        .needs_same_samples = true,
        .most_unknowns = 3000}));

@@ -40,8 +40,8 @@ void register_supervised(OptimizerRegistry& registry) {
        .title = "Supervised training",
        .formula = "θ ← one step on (1/B) Σ ½‖x − x*‖²",
        .source = "Holl, Koltun, Thuerey (2022)",
-       .note = "Sees the x* that made each y*. Where the inverse has several branches it "
-               "learns their mean. The forward pass is metered whole, physics included.",
+       .note = "Uses the x* that produced each y*. If the inverse has several branches, it "
+               "learns their mean. The forward pass counts completely, including the physics.",
        .needs = {Oracle::forward, Oracle::network, Oracle::truth},
        .is_input_scale_invariant = true,
        .tunable = {.option = "network-optimizer"},

@@ -84,8 +84,9 @@ void register_two_stage(OptimizerRegistry& registry) {
        .title = "Two-stage supervised training",
        .formula = "x̃ = P⁻¹(y*; x₀);  θ ← one step on (1/B) Σ ½‖x − x̃‖²",
        .source = "Holl, Koltun, Thuerey (2022)",
-       .note = "The labels are a solver's from a fixed x₀, not the x* that made y*; those "
-               "are for `supervised`. The solver is one of sip's, and its work counts.",
+       .note =
+           "A solver finds the labels from a fixed x₀; they are not the x* that produced y*, which "
+           "`supervised` uses. The solver is one of sip's, and its work counts.",
        .needs = {Oracle::forward, Oracle::network},
        .is_input_scale_invariant = true,
        .tunable = {.option = "network-optimizer"},

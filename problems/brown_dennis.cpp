@@ -72,7 +72,7 @@ void register_brown_dennis(ProblemRegistry& registry) {
        .group = Group::classical,
        .formula = "fᵢ = (x₁ + tᵢx₂ − exp tᵢ)² + (x₃ + x₄ sin tᵢ − cos tᵢ)²,  tᵢ = i/5,  L = ½Σfᵢ²",
        .source = "Moré, Garbow, Hillstrom (1981), problem 16; Brown and Dennis (1971)",
-       .note = "The residuals do not vanish. The minimum is given for m = 20 alone; the truth is "
+       .note = "The residuals do not vanish. The minimum is known for m = 20 only; the truth is "
                "the minimizer."},
       make_brown_dennis));
 }

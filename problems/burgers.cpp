@@ -99,7 +99,11 @@ void register_burgers(ProblemRegistry& registry) {
        .formula = "u̇ = −u ∂u + ν ∂²u,  x = u(0),  P(x) = u(T),  L = ½‖P(x) − y*‖²",
        .source = "Thuerey et al., Physics-based Deep Learning, chapters on Burgers’ equation",
        .note =
-           "x* is a sum of four waves with a largest speed of 1, from our own random streams for seed 0, too. By the time T its slopes have steepened, and viscosity has smoothed them. P is one to one but keeps less than a thousandth of the finest waves. Seeds from 1 on start with noise of 0.1 per cell, which the data hardly determine. The local inverse simulates backward without viscosity.",
+           "x* is a sum of four waves with a largest speed of 1, from our own random streams for "
+           "seed 0, too. By the time T its slopes have steepened, and viscosity has smoothed "
+           "them. P is one to one but keeps less than a thousandth of the finest waves. Seeds "
+           "from 1 on start with noise of 0.1 per cell, which the data hardly determine. The "
+           "local inverse simulates backward without viscosity.",
        .aim = Aim::x,
        .panels = {{.title = "Learning curves", .kind = "curve"}}},
       make_burgers));

@@ -61,10 +61,10 @@ inline void fields(Learning& o, auto& field) {
         "samples per step of mode=learn, new ones in each step");
   field(kDataOption, o.data, between(0, 1e6),
         "0: new samples in each step; N: the same N samples in every step of mode=learn");
-  field(
-      kWatchOption, o.watch, {"", "noise", "spectrum"},
-      "additional series of mode=learn: noise: differences of gradients between batches; spectrum, for grids: "
-      "the share of power by wave number");
+  field(kWatchOption, o.watch, {"", "noise", "spectrum"},
+        "additional series of mode=learn: noise: differences of gradients between batches; "
+        "spectrum, for grids: "
+        "the share of power by wave number");
 }
 
 // The published error of grids: |x − x*| summed over cells, the mean over samples.

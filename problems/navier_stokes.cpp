@@ -39,10 +39,10 @@ void fields(Options& o, auto& field) {
   field("steps", o.steps, between(1, 1000), "time steps");
   field("dt", o.dt, above(0), "time step Δt; a cell is 128/N wide");
   field("viscosity", o.viscosity, at_least(0), "viscosity ν, 0 as published");
-  field(
-      "ground-truth", o.ground_truth, {"staggered", "collocated"},
-      "the generator of the data: the solver itself, or one on a collocated grid, as published, whose "
-      "data cannot be fitted exactly");
+  field("ground-truth", o.ground_truth, {"staggered", "collocated"},
+        "the generator of the data: the solver itself, or one on a collocated grid, as published, "
+        "whose "
+        "data cannot be fitted exactly");
   field("rescale", o.rescale, {"component", "none"},
         "component: each component of the velocity is brought back to its energy after every step, "
         "as published");
@@ -179,13 +179,16 @@ void register_navier_stokes(ProblemRegistry& registry) {
                   "L = ½ Σ wₖ² |F (m(T) − m*)ₖ|²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 7",
        .note =
-           "The data come from our own random streams, for seed 0, too: no instance is published. As in the "
+           "The data come from our own random streams, for seed 0, too: no instance is published. "
+           "As in the "
            "published scripts ν is 0 and each component keeps its energy; the paper's equation has "
            "ν∇²v. By default the data are made by the solver itself, so that the truth is "
-           "reachable; the published ones use a collocated grid, ground-truth=collocated. The published loss "
+           "reachable; the published ones use a collocated grid, ground-truth=collocated. The "
+           "published loss "
            "is loss=amplitude. The share of cells with marker is sampled per sample, "
            "in the paper per batch. Where velocity and marker's gradient are orthogonal, the data "
-           "do not determine the velocity, and the low pass hides scales below a quarter of the domain. The "
+           "do not determine the velocity, and the low pass hides scales below a quarter of the "
+           "domain. The "
            "error is |v − v*| after the first projection, the mean over cells. inverse=generator "
            "uses knowledge of how the data were made (extra information); inverse=coarse does not.",
        .aim = Aim::x,

@@ -115,11 +115,12 @@ void register_quantum_dipole(ProblemRegistry& registry) {
        .formula = "iψ̇ = (−∂² + u(t) x) ψ on [0, 2],  ψ(0) = ψ₁,  L = 1 − |⟨a, ψ(T)⟩|²,  "
                   "a = f₁ψ₂ + f₂ψ₃",
        .source = "Schnell, Holl, Thuerey (2022), published scripts",
-       .note = "Published as a learning problem. mode=direct finds the 384 controls of one target, "
-               "from u = 1, for at u = 0 the gradient vanishes. loss=residual has the same loss as "
-               "the sum of squares ‖(I − aaᵀ)ψ‖², of which methods of least squares have "
-               "a use. The targets are real, as published: the phases that the scripts sample are "
-               "not used.",
+       .note =
+           "Published as a learning problem. mode=direct finds the 384 controls of one target, "
+           "from u = 1, since the gradient vanishes at u = 0. loss=residual has the same loss as "
+           "the sum of squares ‖(I − aaᵀ)ψ‖², which least-squares methods can use. The targets "
+           "are real, as published: the phases that the scripts sample are "
+           "not used.",
        .aim = Aim::loss,  // any control that arrives will do
        .in_all = false,
        .panels =

@@ -55,16 +55,18 @@ ProblemParts make_scaling(const Options& o, const Draw& draw) {
 }  // namespace
 
 void register_scaling(ProblemRegistry& registry) {
-  registry.add(problem_entry({.name = "scaling",
-                              .title = "One scaled coordinate",
-                              .group = Group::toy,
-                              .formula = "P(x) = (x₁, αx₂),  L = ½‖P(x)‖²",
-                              .source = "Thuerey et al., Physics-based Deep Learning, chapter "
-                                        "Scale-Invariance and Inversion",
-                              .note = "The book's loss is |P|², loss=square here; by default it "
-                                      "is half of that, and what η does there 2η does here.",
-                              .aim = Aim::x},  // P is one to one
-                             make_scaling));
+  registry.add(problem_entry(
+      {.name = "scaling",
+       .title = "One scaled coordinate",
+       .group = Group::toy,
+       .formula = "P(x) = (x₁, αx₂),  L = ½‖P(x)‖²",
+       .source = "Thuerey et al., Physics-based Deep Learning, chapter "
+                 "Scale-Invariance and Inversion",
+       .note =
+           "The book's loss is |P|², loss=square here; by default half of that, so that 2η here "
+           "equals η there.",
+       .aim = Aim::x},  // P is one to one
+      make_scaling));
 }
 
 }  // namespace isoline::problems

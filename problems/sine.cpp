@@ -144,8 +144,8 @@ void register_sine(ProblemRegistry& registry) {
        .formula = "P(x) = (sin(γz₁/ξ), γξz₂),  z = R_φ x,  L = ½‖P(x) − y*‖²",
        .source = "Holl, Koltun, Thuerey (2022), Fig. 5",
        .note =
-           "form=code is what the published scripts compute; form=paper, (sin(γz₁)/ξ, γξz₂), "
-           "is what the paper prints, its y₁* divided by ξ. Published as a learning problem; "
+           "form=code is as in the published scripts; form=paper, (sin(γz₁)/ξ, γξz₂), is as in "
+           "the paper, with y₁* divided by ξ. Published as a learning problem; "
            "the start (6, 3)/γ, half-way to the corner of the plotted region, is our own choice.",
        .aim = Aim::loss,  // infinitely many x give y*, and any of them will do
        .panels = {{.title = "Fig. 5b: ξ = 1, φ = 45°",

@@ -201,7 +201,12 @@ void register_wave_packet(ProblemRegistry& registry) {
                   "L = ½‖P(x) − y*‖²",
        .source = "after Holl, Koltun, Thuerey (2022), appendix",
        .note =
-           "The appendix was not available: formula, ranges, noise and the standard start, the centre of the ranges, are our own. x* is sampled for each seed. Levenberg-Marquardt ends near x* in 87 of the first 200 seeds, and gradient descent with rate 0.01 in 133; the packet’s periods trap the others. The least loss is that of the fit from x*. The distance of this fit from x* is the floor under the error in x, which ignores the signs of w and ω.",
+           "The appendix was not available: formula, ranges, noise and the standard start, the "
+           "centre of the ranges, are our own. x* is sampled for each seed. Levenberg-Marquardt "
+           "ends near x* in 87 of the first 200 seeds, and gradient descent with rate 0.01 in "
+           "133; the packet’s periods trap the others. The least loss is that of the fit from x*. "
+           "The distance of this fit from x* is the floor under the error in x, which ignores the "
+           "signs of w and ω.",
        .aim = Aim::x,
        .panels = {{.title = "Learning curves", .kind = "curve"}}},
       make_wave_packet));

@@ -1,5 +1,5 @@
-// The audit's measurements. Every oracle is granted, and counted; what a method declares is
-// compared with what it asked.
+// The audit's measurements. It grants and counts every oracle, and compares the declarations of a
+// method with its calls.
 #include "benchmarks/audit/audit.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ class Subject {
   // As far as it comes: a method that throws has gone as far as its trace.
   Path run(const Problem& problem, std::int64_t iterations) const;
 
-  // The first step that is one; nothing where there is none.
+  // The first step that changes θ; nothing if there is no such step.
   std::optional<Vector> first_step(const Problem& problem) const;
 
  private:
@@ -63,7 +63,7 @@ OracleSet every_oracle() {
   return all;
 }
 
-// Keeps θ after every step; of a library's solver the trace keeps as many as there is room for.
+// Keeps θ after every step; for the solver of a library, as many steps as the trace can store.
 class Recorded final : public Optimizer {
  public:
   Recorded(Optimizer& method, std::vector<Vector>& path) : method_(method), path_(path) {}
@@ -213,9 +213,9 @@ void count_oracles(const Subject& subject, const Problem& problem, AuditedOptimi
     if (is_declared) audited.declared.push_back(name);
     if (path.counts[kind] > 0) audited.counted[name] = path.counts[kind];
     if (is_declared && path.counts[kind] == 0)
-      audited.flags.push_back(fmt::format("declares that it needs {}, and never asked", name));
+      audited.flags.push_back(fmt::format("declares that it needs {}, but never called it", name));
     if (!is_declared && path.counts[kind] > 0)
-      audited.flags.push_back(fmt::format("asked for {}, and does not declare it", name));
+      audited.flags.push_back(fmt::format("called {} without declaring it", name));
   }
 }
 
@@ -225,7 +225,7 @@ void compare_invariance(bool is_declared, AuditedOptimizer& audited) {
   const Real found = audited.deviations.front();
   if (!is_declared || std::isnan(found) || found <= kInvariantDeviation) return;
   audited.flags.push_back(fmt::format(
-      "declares that rescaled inputs leave its path, and they move it by {:.2g}", found));
+      "declares that rescaled inputs do not change its path, but they move it by {:.2g}", found));
 }
 
 OptionValues options_without_floors(const OptimizerEntry& entry) {

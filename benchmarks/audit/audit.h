@@ -10,11 +10,11 @@
 
 namespace isoline::benchmarks {
 
-// At its defaults, but for floors that no law of scaling survives: options named `epsilon` and
-// `cutoff` are 0 where they may be. The spec in the result says so.
+// At its defaults, except for floors, which break every scaling law: options named `epsilon` and
+// `cutoff` are 0 if that is valid. The spec in the result shows this.
 AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name);
 
-// Each in a process of its own: one that crashes or hangs costs its own audit alone.
+// Each in its own process: a crash or a hang loses one audit only.
 std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
                                         const std::vector<std::string>& names);
 
@@ -22,8 +22,8 @@ std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
 std::string audit_text(const std::vector<AuditedOptimizer>& all);
 void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem::path& path);
 
-// Fits log10 value = exponent · log10 scale + constant; without a law where a value is not positive
-// and finite.
+// Fits log10 value = exponent · log10 scale + constant; no law if a value is not positive and
+// finite.
 PowerLaw power_law(const std::vector<Real>& scales, std::vector<Real> values);
 
 // The order at which errors fall, from those above `floor`, until one no longer falls.

@@ -147,7 +147,7 @@ Chain bent() {
           affine(Eigen::Matrix2d{{1.5, 0.5}, {-0.2, 1}}, Eigen::Vector2d(0.3, -0.7))};
 }
 
-// No minimum is told, so that nothing stops early.
+// No minimum is declared, so that no run stops early.
 Problem make(const Chain& chain, const Vector& start, const Vector& solution, Real weight = 1) {
   return Problem({.physics = std::make_unique<ChainPhysics>(chain, start.size()),
                   .start = start,

@@ -57,7 +57,7 @@ struct Vicinity {
 Vicinity regular_vicinity();
 Vicinity singular_vicinity();  // P(x) = (x₁ − x₁*, (x₂ − x₂*)²)
 
-// L(z(x)): the same loss asked in z, and in x through the stage z.
+// L(z(x)): the same loss as a function of z, and of x through the stage z.
 struct Composition {
   Chain stage;  // x ↦ z
   Problem inner, whole;

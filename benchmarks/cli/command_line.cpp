@@ -22,25 +22,25 @@ namespace {
 constexpr const char* kAbout =
     "Isoline compares optimizers on physical inverse problems: every problem of a registry "
     "against\n"
-    "every optimizer of a registry, one JSON record a run, and a report.";
+    "every optimizer of a registry, one JSON record per run, and a report.";
 constexpr const char* kExamples =
     "Examples:\n"
     "  isoline run                            the default suite, then its report\n"
     "  isoline run --problem 'sine[xi=1|32]' --optimizer 'adam[rate=1e-3],ceres-lm' --seeds 5\n"
     "  isoline run quick --optimizer adam     the cells of a suite that have this optimizer\n"
-    "  isoline describe sip                   formula, options, needs and source\n"
+    "  isoline describe sip                   formula, options, required derivatives, source\n"
     "  isoline check rosenbrock               are its derivatives right?\n"
     "  isoline audit gd adam sip              scaling, invariance, order: measured\n"
     "  isoline compare results/old results/new    what is worse than before?\n"
-    "  isoline claims notebook                is what the notebook prints reproduced?\n"
+    "  isoline claims notebook                are the notebook's numbers reproduced?\n"
     "  isoline help run                       the options of a verb, with examples\n\n"
     "Exit codes: 0 good, 1 wrong usage, 2 worse or failed, 3 better only, 4 not comparable,\n"
     "130 interrupted.";
 
 std::string refuse_empty(std::string& text) { return text.empty() ? "it must not be empty" : ""; }
 
-// One function per type keeps CLI11's templates out of the verbs, where they would be laid out anew
-// at each call.
+// One function per type keeps CLI11's templates out of the verbs, where each call would instantiate
+// them again.
 template <class Value>
 [[gnu::noinline]] CLI::Option* option(CLI::App& verb, const char* name, Value& value,
                                       const char* about) {
@@ -184,7 +184,7 @@ void CommandLine::declare(const Verb& verb) {
   });
 }
 
-// By the formatter: App::help() would tell of the verb `help` itself.
+// Uses the formatter, since App::help() would print the help of the verb `help`.
 std::string CommandLine::help_text() const {
   const CLI::App& of = helped_.empty() ? app_ : *app_.get_subcommand(helped_);
   const std::string name = helped_.empty() ? program_ : program_ + " " + helped_;
@@ -365,7 +365,7 @@ void VerbArguments::memory(const char* name, std::int64_t& bytes, const char* ab
 
 void VerbArguments::plugins() {
   texts("--plugin", session_.plugins(),
-        "Shared library whose problems and optimizers join those of `isoline list`; may be given "
+        "Shared library with further problems and optimizers; may be used "
         "more than once")
       .one_each();
 }

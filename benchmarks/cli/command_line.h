@@ -23,8 +23,8 @@ void read_arguments(const std::string& program, const Verb& verb,
 std::string verb_notes(const Verb& verb);
 std::string program_examples();
 
-// Numbers read whole: no sign is dropped, none is cut at the end of its type. UsageError, which
-// begins with `option`, where the text is not a number or is out of range.
+// Parses complete numbers: it drops no sign and does not clamp. UsageError, which begins with
+// `option`, if the text is not a number or is out of range.
 std::int64_t read_whole(const std::string& option, const std::string& text, WholeRange range);
 std::uint64_t read_seed(const std::string& option, const std::string& text);
 double read_real(const std::string& option, const std::string& text, const Range& range);

@@ -22,13 +22,12 @@ namespace fs = std::filesystem;
 void declare_what_is_kept(VerbArguments& verb, RunArguments& given) {
   verb.flag("--no-report", given.no_report, "Write no report");
   verb.flag("--keep-output", given.keeps_output,
-            "Keep in each record what its cell wrote to the terminal, up to 64 KiB");
-  verb.flag(
-      "--fields", given.keeps_fields,
-      "Keep x of problems on a grid, at six iterations, for every seed: else for seed 0 alone");
+            "Keep the output of each cell in its record, up to 64 KiB");
+  verb.flag("--fields", given.keeps_fields,
+            "Keep x of grid problems at six iterations for every seed (default: for seed 0 only)");
   verb.flag("--spectrum", given.keeps_spectra,
             "Keep the singular values of J = ∂y/∂θ at iterations 0, 1, 2, 4, 8, … and the last; "
-            "cells that are done without them are repeated");
+            "finished cells without them are repeated");
 }
 
 void override_blocks(const RunArguments& given, Suite& suite) {
@@ -48,16 +47,16 @@ void override_blocks(const RunArguments& given, Suite& suite) {
 void declare_cells(VerbArguments& verb, RunArguments& given) {
   verb.text("SUITE", given.suite,
             "Name of a suite, or path of one (default: quick); --problem and --optimizer keep the "
-            "cells that have these");
+            "cells with these");
   verb.text("--problem", given.problem, "Problems: 'sine[xi=1|32,phi=45],square'").joined();
   verb.text("--optimizer", given.optimizer, "Optimizers: 'adam[rate=1e-3],ceres-lm'").joined();
   verb.text("--seeds", given.seeds, "5 (0 to 4), 0..9, or =5");
-  verb.whole("--iterations", given.iterations, "Most iterations of a cell");
-  verb.whole("--work", given.work, "Most work of a cell, in forward solves");
+  verb.whole("--iterations", given.iterations, "Largest number of iterations of a cell");
+  verb.whole("--work", given.work, "Largest work of a cell, in forward solves");
   verb.time("--time", given.seconds,
-            "Most time of a cell: 10s, 2m; a cell that uses twice that of a processor is killed");
+            "Time limit of a cell: 10s, 2m; at twice this processor time, it is killed");
   verb.real("--target", given.target, between(0, 1),
-            "Stop at f_L + TARGET s, where s is the scale of the loss; where x is sought, at "
+            "Stop at f_L + TARGET s, with s the scale of the loss; if the criterion is x, at "
             "TARGET of its error (default: 1e-10)");
   verb.whole("--threads", given.threads, "Threads of the libraries within a cell", kThreads);
   verb.text("--rates", given.rates, "Table of tuned rates: builtin, none or a file").shown();
@@ -67,26 +66,25 @@ void declare_cells(VerbArguments& verb, RunArguments& given) {
 
 void declare_what_is_done(VerbArguments& verb, RunArguments& given) {
   verb.text("--out", given.out,
-            "Result folder (default: results/SUITE; for a matrix of your own or a part of a suite, "
-            "a name made of its cells, the same for the same plan)");
-  verb.flag("--force", given.force, "Repeat cells that are done");
-  verb.flag("--reuse", given.reuse, "Keep cells that another build has done");
-  verb.texts("--retry", given.retry,
-             "Repeat cells that ended with such a status: failed,crashed,timeout,memory")
+            "Result folder (default: results/SUITE; for your own matrix or a part of a suite, "
+            "a name that follows from the plan)");
+  verb.flag("--force", given.force, "Repeat finished cells");
+  verb.flag("--reuse", given.reuse, "Keep cells of another build");
+  verb.texts("--retry", given.retry, "Repeat cells with this status: failed,crashed,timeout,memory")
       .between_commas();
 }
 
 void declare_run(VerbArguments& verb, RunArguments& given) {
   declare_cells(verb, given);
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
-  verb.flag("--exclusive", given.exclusive, "One cell at a time, for tables of wall time");
-  verb.whole("--repeat", given.repeat, "Timings wanted of each cell", {1, 1000});
-  verb.memory("--memory", given.memory_bytes, "Most memory of a cell (default: 4GB)");
+  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
+  verb.flag("--exclusive", given.exclusive, "One cell at a time, for reliable times");
+  verb.whole("--repeat", given.repeat, "Timings per cell", {1, 1000});
+  verb.memory("--memory", given.memory_bytes, "Memory limit of a cell (default: 4GB)");
   declare_what_is_done(verb, given);
   declare_what_is_kept(verb, given);
   verb.text("--shard", given.shard,
-            "Run the third of sixteen parts, 3/16, into shards/3-of-16 of the result folder; auto: "
-            "the part of this task of a SLURM array, or what ISOLINE_SHARD says");
+            "Run one shard, such as 3/16, into shards/3-of-16 of the result folder; auto: "
+            "the shard of this task of a SLURM array, or of ISOLINE_SHARD");
   const Argument dry = verb.flag("--dry-run", given.is_dry,
                                  "Print the plan: cells, cached, inapplicable, predicted time");
   verb.flag("--all", given.lists_all, "With --dry-run: list every cell, not the first 20")
@@ -143,7 +141,7 @@ std::string preview_text(const PreviewCounts& counts, int jobs) {
       "{}: {} cached, {} inapplicable, {} to run{}", reports::counted(counts.cells, "cell"),
       counts.cached, counts.inapplicable, counts.missing,
       seconds ? fmt::format(", about {} with {} at a time", duration_text(*seconds / jobs), jobs)
-              : ", and no earlier run tells how long that takes");
+              : ", and no earlier run predicts the time");
 }
 
 void print_counts(const Preview& shown, int jobs) {

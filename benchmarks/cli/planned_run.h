@@ -1,5 +1,5 @@
-// What a command line asks to be run: its cells, under which name, where their records go, and how
-// they divide into shards. `run`, `plan` and `submit` read it alike.
+// The run that a command line requests: its cells, its name, the folder of its records, and its
+// division into shards. `run`, `plan` and `submit` parse it in the same way.
 #pragma once
 
 #include <filesystem>
@@ -52,7 +52,7 @@ std::string preview_text(const PreviewCounts& counts, int jobs);
 // That text, and how many settings were predicted from others of the same problem.
 void print_counts(const Preview& shown, int jobs);
 
-// The preview of a run, by the records below its folder and in other result folders.
+// The preview of a run, from the records in its folder and in other result folders.
 Preview preview_of(const PlannedRun& all, const RunArguments& given,
                    const std::vector<std::string>& earlier,
                    const std::vector<std::filesystem::path>& folders, Session& session);

@@ -20,7 +20,7 @@
 namespace isoline::benchmarks {
 namespace {
 
-// Once in a process of its own: what crashes while it is loaded is told, and costs nothing else.
+// Loads it once in another process first, so that a crash while loading becomes a message.
 void require_loadable(const std::string& path) {
   constexpr double kSeconds = 30;
   const auto load = [&] {
@@ -33,7 +33,7 @@ void require_loadable(const std::string& path) {
   };
   const IsolatedText loaded = isolated_text(load, kSeconds);
   require(loaded.text.has_value(),
-          [&] { return fmt::format("{}: it cannot be loaded: {}", path, loaded.failure); });
+          [&] { return fmt::format("{} cannot be loaded: {}", path, loaded.failure); });
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ std::string command_of(const std::string& program, int count, char** arguments) 
 int left_with(int code, const std::string& program, const char* what) {
   try {
     say(stderr, program + ": " + what + "\n");
-  } catch (const std::exception&) {  // there is nobody to tell
+  } catch (const std::exception&) {  // no caller remains to report this to
   }
   return code;
 }
@@ -86,7 +86,7 @@ int main(int count, char** arguments, const std::function<benchmarks::Catalog()>
   } catch (const UsageError& error) {
     return left_with(kUsage, program, error.what());
   } catch (const std::bad_alloc&) {
-    return left_with(kWorse, program, "there is not enough memory for this");
+    return left_with(kWorse, program, "out of memory");
   } catch (const std::exception& error) {
     return left_with(kWorse, program, error.what());
   }

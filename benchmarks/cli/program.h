@@ -21,9 +21,9 @@
 
 namespace isoline {
 
-// The repository that a program was built from, as its records name it; without a commit,
-// Isoline's own. `sources` are digests of its files, one a line: without them each build of the
-// program repeats the cells of the components that it brings.
+// The repository that a program was built from, which its records name; by default Isoline's.
+// `sources` are digests of its files, one per line. Without them, each build of the program runs
+// the cells of its own components again.
 struct SourceTree {
   std::string commit;
   bool is_dirty = false;

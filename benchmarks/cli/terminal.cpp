@@ -39,7 +39,7 @@ std::string debugging_advice(const Crash& crash, const fs::path& folder) {
                                           reports::rerun_arguments(crash.request));
   return fmt::format(
       "to debug {}:\n"
-      "  record      {}: \"message\" says how it ended, \"output\" what it wrote last\n"
+      "  record      {}: \"message\" is the cause, \"output\" its last output\n"
       "  alone       {}\n"
       "  debugger    gdb --args {}\n"
       "  core file   ulimit -c unlimited; {}\n"
@@ -72,7 +72,7 @@ void print_failures(const Outcome& outcome, const std::filesystem::path& folder)
 void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, bool quiet) {
   print_failures(outcome, folder);
   for (const std::string& name : outcome.conflicts)
-    say(stderr, fmt::format("{}: its repetition gave another result\n", name));
+    say(stderr, fmt::format("{}: its repetition has another result\n", name));
   for (const std::string& remark : outcome.remarks) say(stderr, remark + "\n");
   if (!outcome.missing.empty())
     say(stderr, fmt::format("{} of {} vanished during the run, the first that of {}; the same "
@@ -94,7 +94,7 @@ void print_outcome(const Outcome& outcome, const std::filesystem::path& folder, 
 
 int exit_code_of(const Outcome& outcome) {
   if (outcome.is_interrupted) {
-    say(stderr, "interrupted; the same command goes on where it stopped\n");
+    say(stderr, "interrupted; the same command continues where it stopped\n");
     return kInterrupted;
   }
   if (outcome.interrupted > 0) {

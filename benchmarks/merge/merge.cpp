@@ -122,7 +122,7 @@ class Merge {
     for (const fs::path& folder : folders_) try {
         std::error_code unknown;
         require(!fs::is_symlink(folder / part, unknown), [&] {
-          return fmt::format("{} is a symbolic link, which is not followed here",
+          return fmt::format("{} is a symbolic link, which merge does not follow",
                              (folder / part).string());
         });
         for (std::string& name : names_in(folder / part))

@@ -10,7 +10,7 @@
 
 namespace isoline::benchmarks {
 
-// A file, or an audit, of which folders hold different results.
+// A file or an audit with different results in several folders.
 struct Conflict {
   std::string optimizer;  // empty where it is not known
   std::string sentence;
@@ -22,14 +22,14 @@ struct MergeOutcome {
   std::size_t united = 0;               // of them, found in several folders with other timings
   std::vector<Conflict> conflicts;      // where there are any, nothing is written
   std::vector<std::string> unreadable;  // a sentence a damaged file; it is left out
-  bool is_interrupted = false;          // asked to end: nothing is written
+  bool is_interrupted = false;          // on request of the user: nothing is written
 };
 
-// Writes `out` whole or not at all; a UsageError where it holds results already. A file that one
-// folder has, or all have alike, is copied; records of equal results become one with the timings of
-// all (record_union.h); plans, rates and audits are united; of sheets the first stays. Anything
-// else is a conflict. Symbolic links in the folders are named and left out. Ctrl-C or a polite kill
-// leaves no trace of `out`.
+// Writes `out` completely or not at all; a UsageError if it has results already. Copies a file that
+// one folder has, or that is equal in all. Joins records with equal results, with the timings of
+// all (record_union.h), and plans, rates and audits; keeps the first component metadata. Anything
+// else is a conflict. Names symbolic links in the folders and leaves them out. After Ctrl-C or
+// SIGTERM, nothing of `out` remains.
 MergeOutcome merge_folders(const std::vector<std::filesystem::path>& folders,
                            const std::filesystem::path& out, const Listener& listener = {});
 

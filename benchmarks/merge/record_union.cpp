@@ -81,7 +81,7 @@ std::string unite_records(Json& record, const Json& other) {
     return first_differences(left, right);
   const bool is_other = rank_of(record) < rank_of(other);
   Json united = is_other ? other : record;
-  for (const char* asked : {"fields", "spectrum"})  // one was asked for them and the other was not
+  for (const char* asked : {"fields", "spectrum"})  // only one of the runs may have kept them
     if (const Json& from = is_other ? record : other;
         is_same && from.contains(asked) && !united.contains(asked))
       united[asked] = from.at(asked);

@@ -1,7 +1,7 @@
 // A forward pass and a pullback of the grid problems over the fastest FFTW transforms known for
 // them, which for Poisson's are real ones of the odd extensions of all lines, and over the sine
-// transforms of both dimensions that FFTW offers. FFTW is called past its door on purpose: the door
-// is part of what is measured.
+// transforms of both dimensions that FFTW offers. FFTW is called without its adapter on purpose:
+// the adapter is part of what is measured.
 #include <fftw3.h>
 #include <fmt/format.h>
 

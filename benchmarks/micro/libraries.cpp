@@ -1,6 +1,6 @@
 // Ceres and NLopt through us over their plain use, on the same problem without a meter, for the
 // same iterations. `recorded` is the time a record shows; `whole` includes what the harness does
-// off the clock. The libraries' headers are here, past their doors, for the plain side alone.
+// off the clock. Includes the libraries' headers without their adapters, for the plain side only.
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 #include <nlopt.h>

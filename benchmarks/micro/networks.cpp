@@ -1,6 +1,6 @@
 // A perceptron's forward pass and pullback over the matrix products they consist of, and its batch
 // Jacobian over those and writing the Jacobian once; 2-32-64-32-2, a batch of 100, as the sine
-// problem learns. OpenBLAS is called past its door on purpose.
+// problem learns. OpenBLAS is called without its adapter on purpose.
 #include <cblas.h>
 
 #include <array>
@@ -122,8 +122,8 @@ void register_precision(const std::string& precision) {
 
 // A training step of the U-net over the bare convolutions it contains, by oneDNN in the layouts
 // that it likes best, on two threads; and a step with second derivatives over one without. oneDNN
-// is called past its door on purpose: the door is part of what is measured. unet_pytorch.py beside
-// this file times the same step in PyTorch.
+// is called without its adapter on purpose: the measurement includes the adapter. unet_pytorch.py
+// beside this file times the same step in PyTorch.
 
 constexpr Index kN = 64, kBatch = 128, kThreads = 2;
 

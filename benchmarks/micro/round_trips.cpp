@@ -1,4 +1,4 @@
-// What the door of child processes adds to a frame that goes there and back: a forward of a program
+// The overhead of the process adapter for a round trip of a frame: a forward of a program
 // that returns its x, over the bare frames of one that sends them back.
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
-// What computes a run, as digests of sources: a record is found again by what was asked and by what
-// answered, and an edit of one component repeats its cells and no others.
+// Digests of the sources that compute a run. A record is found by its request and by these digests;
+// an edit of one component runs its own cells again, and no others.
 #pragma once
 
 #include <map>
@@ -17,11 +17,11 @@ const std::map<std::string, std::string>& tree_sources();
 // them.
 void set_program_sources(std::string_view lines);
 
-// Of the file that registers a component, and what it reaches. Of a file that nobody lists, that of
-// the whole program.
+// The digest for the file that registers a component, with all files that it reaches; for an
+// unlisted file, the digest of the whole program.
 std::string source_digest(const std::string& file);
 
-// Of a request whose components were completed by a catalog (benchmarks/plan/catalog.h).
+// For a request whose components a catalog has completed (benchmarks/plan/catalog.h).
 BuildParts build_parts(const Request& request);
 std::string build_digest(const Request& request);
 

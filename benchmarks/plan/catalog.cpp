@@ -64,7 +64,7 @@ bool can_learn(const ProblemEntry& entry) {
          entry.options.end();
 }
 
-// Whoever asks to learn would else be told of an unknown option.
+// Without this check, a request to learn would end as an unknown option.
 void require_learnable(const Catalog& catalog, const ProblemEntry& entry) {
   if (can_learn(entry)) return;
   std::string learnable;

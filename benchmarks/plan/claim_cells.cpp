@@ -39,7 +39,7 @@ std::string problem_of(const Expansion& from, const Json& term, const Json& bloc
   return block["problems"][0];
 }
 
-// One way to fill a term: the cells of an optimizer on a problem, a digest a seed.
+// One alternative for a term: the cells of an optimizer on a problem, one digest per seed.
 Json alternative(const Expansion& from, const std::string& problem, const std::string& optimizer,
                  Json block, const std::set<std::string>& known) {
   block["problems"] = {problem};
@@ -101,7 +101,7 @@ std::vector<Claim> claims_from_json(const Catalog& catalog, const Rates& rates, 
   const Json schema = parse_json(std::string(builtin_schemas().at("claims")), "claims schema");
   const auto violations = schema_violations(file, schema);
   require(violations.empty(),
-          [&] { return fmt::format("{} holds no claims: {}", origin, violations[0]); });
+          [&] { return fmt::format("{} is not a file of claims: {}", origin, violations[0]); });
   std::vector<Claim> claims;
   for (const Json& json : file.at("claims"))
     claims.push_back(claim_from(catalog, rates, json, file.at("name")));

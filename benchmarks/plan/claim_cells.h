@@ -19,13 +19,13 @@ struct Claim {
   std::shared_ptr<const Json> json;  // as reports/sections/evidence.h says, its cells by digests
   // One of each set of cells, the longest first.
   struct Cells {
-    bool is_long = false;  // hours: run only when asked for
+    bool is_long = false;  // takes hours: runs only with --long
     std::vector<Request> requests;
   };
   std::vector<Cells> cells;
 };
 
-// The claims of one file; UsageError where it is none, or a term is not among its cells.
+// The claims of one file; UsageError if it is invalid, or if a term is not among its cells.
 std::vector<Claim> claims_from_json(const Catalog& catalog, const Rates& rates, const Json& file,
                                     const std::string& origin);
 std::vector<Claim> builtin_claims_of(const Catalog& catalog);
@@ -33,7 +33,7 @@ std::vector<Claim> builtin_claims_of(const Catalog& catalog);
 // Those with these ids, or of these groups; all without any. UsageError names the nearest.
 std::vector<Claim> chosen_claims(std::vector<Claim> claims, const std::vector<std::string>& names);
 
-// The cells of these claims, the long ones only when asked for; each once.
+// The cells of these claims, each once; long ones only on request.
 std::vector<Request> cells_of(const std::vector<Claim>& claims, bool with_long);
 
 Json json_of(const std::vector<Claim>& claims);  // a list, for the report

@@ -67,7 +67,7 @@ Rates Rates::from_json(const Json& json, const std::string& origin) {
            row.contains("source") && row["source"].contains("grid")});
     }
   } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("{} is no table of rates: {}", origin, error.what()));
+    throw UsageError(fmt::format("{} is not a table of rates: {}", origin, error.what()));
   }
   return rates;
 }
@@ -110,7 +110,7 @@ BestLosses BestLosses::from_json(const Json& json, const std::string& origin) {
   const Json schema = parse_json(std::string(builtin_schemas().at("best")), "best schema");
   const auto violations = schema_violations(json, schema);
   require(violations.empty(),
-          [&] { return origin + " is no table of best losses: " + violations[0]; });
+          [&] { return origin + " is not a table of best losses: " + violations[0]; });
   BestLosses best;
   for (const Json& row : json.at("rows")) {
     Row& read = best.rows_.emplace_back();

@@ -41,9 +41,9 @@ class Rates {
   std::map<std::pair<std::string, std::string>, std::vector<Row>> rows_;  // by names
 };
 
-// The best losses known, f_L of problems that declare none or whose bound nobody attains: by
-// problem, all its options and seed, in benchmarks/best.json. Runs read it when their problem is
-// made; no report changes it.
+// The best known losses: f_L of problems that declare no f_L or an unattained bound, by problem,
+// options and seed, in benchmarks/best.json. Runs read it when they create their problem; reports
+// do not change it.
 
 class BestLosses {
  public:

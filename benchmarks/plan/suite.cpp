@@ -101,7 +101,7 @@ class RatedOptimizers {
   RatedOptimizers(const Catalog& catalog, const MatrixBlock& block, const Rates& rates)
       : catalog_(catalog), rates_(rates), table_(block.rates) {}
 
-  // The row for the problem; null where there is none, or defaults are wanted.
+  // The row for the problem; null if it does not exist, or if the suite uses defaults.
   const Rates::Row* row_for(const Component& problem, const std::string& optimizer) const {
     return table_ == "none" ? nullptr : rates_.find(problem, optimizer, table_);
   }
@@ -175,7 +175,7 @@ Suite suite_from_json(const Json& json, const std::string& origin) {
   const Json schema = parse_json(std::string(builtin_schemas().at("suite")), "suite schema");
   const auto violations = schema_violations(json, schema);
   require(violations.empty(),
-          [&] { return fmt::format("{} is no suite: {}", origin, violations[0]); });
+          [&] { return fmt::format("{} is not a suite: {}", origin, violations[0]); });
   Suite suite{.name = json.at("name"), .title = json.value("title", ""), .blocks = {}};
   for (const Json& block : json.at("matrix")) suite.blocks.push_back(block_from(block));
   return suite;

@@ -52,9 +52,9 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
 // factorization of size n) and "@derivative-free" by what a step costs.
 bool is_selected(const OptimizerEntry& entry, const std::string& selector);
 
-// The cells whose problem and optimizer are among those named: specs, of which a component must
-// have the options that are given, or selectors of optimizers; an empty text names all. UsageError
-// where a name is unknown, or no cell is left.
+// The cells whose problem and optimizer match one of the names: specs, whose options a component
+// must have, or selectors of optimizers. An empty text matches all. UsageError if a name is
+// unknown, or if no cell is left.
 std::vector<Request> filtered(const Catalog& catalog, std::vector<Request> requests,
                               const std::string& problems, const std::string& optimizers);
 

@@ -1,4 +1,4 @@
-// Records found by their names, which tell cell and build.
+// Records found by their file names, which contain cell and build.
 #include "benchmarks/shard/census.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// False where it is gone, or is none: then the cell is run.
+// False if the file is missing or not a record: then the cell runs.
 bool adopt(const fs::path& from, const fs::path& to) {
   try {
     if (const fs::path fields = field_path(from); is_there(fields))
@@ -127,7 +127,7 @@ Census census_of(const fs::path& whole, std::int64_t now, const Listener& listen
   Cells cells;
   const Predicted predicted = add_predicted(whole, cells);
   require(predicted.is_there || !folders.empty(),
-          [&] { return fmt::format("{}: no result folder, and no plan of one", whole.string()); });
+          [&] { return fmt::format("{} is not a result folder and has no plan", whole.string()); });
   if (!predicted.is_there)  // else they name the same cells
     for (const fs::path& folder : folders) add_planned(folder, cells);
   add_records(folders, cells, listener);

@@ -1,4 +1,5 @@
-// How far a plan is, told from what stands in its result folders, while runs go on in them or not.
+// The progress of a plan, from the files in its result folders, whether or not runs continue in
+// them.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +18,16 @@ namespace isoline::benchmarks {
 std::size_t adopt_records(const std::vector<Request>& requests, const std::filesystem::path& whole,
                           const std::filesystem::path& shard);
 
-// How far a plan is, told from what stands in its result folders, while runs go on in them or not.
+// The progress of a plan, from the files in its result folders, whether or not runs continue in
+// them.
 
 struct Census {
   std::size_t planned = 0;
-  std::size_t done = 0;                // with a record that stays: failed ones too
-  std::size_t failed = 0;              // of them
-  std::size_t running = 0;             // held by a run just now, as far as the file system tells
-  std::size_t left = 0;                // neither done nor running
-  std::optional<double> left_seconds;  // predicted of all that are not done, one at a time
+  std::size_t done = 0;     // with a record that stays: failed ones too
+  std::size_t failed = 0;   // of them
+  std::size_t running = 0;  // locked by a run at the moment, according to the file system
+  std::size_t left = 0;     // neither done nor running
+  std::optional<double> left_seconds;       // predicted of all that are not done, one at a time
   std::optional<double> remaining_seconds;  // until the end, at the pace of the last hour
 };
 

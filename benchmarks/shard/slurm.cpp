@@ -27,10 +27,10 @@ std::string exports_of(const Submission& given) {
   return text + "\n";
 }
 
-// Around the run of a shard. The signal of --signal=B: comes to this shell alone, which passes it
-// on and waits until the run has kept its state. What a signal ended goes back into the queue:
-// without end where the scheduler asked for it, three times where something else killed it, and
-// never where its user has cancelled it, since its state is another then.
+// Runs a shard. The signal of --signal=B: reaches this shell only, which forwards it and waits
+// until the run has saved its state. A task that a signal ended returns to the queue: always if the
+// scheduler sent it, three times if something else did, and never if the user cancelled the task,
+// whose state differs then.
 constexpr const char* kBefore = R"(stopped= run=
 trap 'stopped=yes; kill -TERM $run' TERM
 )";

@@ -25,7 +25,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastSeconds = 1e-2;  // a fork, a record, its fsync: on a busy machine
 
-// Of no run in seconds: what a step costs at least in forward solves is the same for all.
+// In forward solves, not in seconds: the smallest cost of a step is the same for all methods.
 double declared_work(const Request& request) {
   constexpr double kWorkPerIteration = 3;
   return std::min(static_cast<double>(request.budget.work),
@@ -43,7 +43,7 @@ std::unordered_map<std::string, double> predictions_for(const std::vector<const 
       requests, [&](const Request* request) { return seconds.contains(request->cell); }));
   require(known == requests.size(), [&] {
     return fmt::format(
-        "{} predicts another plan: it has {} of this one's {} cells; give this plan another --out",
+        "{} predicts another plan: it has {} of this plan's {} cells; use another --out",
         predicted_file(folder).string(), known, requests.size());
   });
   return seconds;
@@ -68,16 +68,17 @@ std::vector<PredictedCell> predicted_from_text(const std::string& text, const st
   JsonReader reader;
   const JsonView json = reader.parse(text, origin);
   try {
-    require(json.at("schema").get<std::string>() == kPredictedSchema, "its schema is another");
+    require(json.at("schema").get<std::string>() == kPredictedSchema, "it has another schema");
     std::vector<PredictedCell> cells;
     for (const JsonView& one : json.at("cells").values()) {
       const JsonView seconds = one.at("seconds");
       cells.push_back({one.at("cell"), seconds.is_null() ? kUnknown : real_of(seconds)});
-      require(!(cells.back().seconds <= 0), "a cell takes no time");
+      require(!(cells.back().seconds <= 0), "the time of a cell must be positive");
     }
     return cells;
   } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: no {}: {}", origin, kPredictedSchema, error.what()));
+    throw UsageError(
+        fmt::format("{} is not a valid {}: {}", origin, kPredictedSchema, error.what()));
   }
 }
 
@@ -128,7 +129,7 @@ std::vector<double> weights_of(const std::vector<Request>& requests, const fs::p
   return weights;
 }
 
-// Shards: asked for, weighed and dealt.
+// Shards: parsed, weighed and assigned.
 
 namespace {
 
@@ -153,7 +154,7 @@ std::optional<Shard> shard_in(const std::string& text) {
   return Shard{*index, *count};
 }
 
-// The place of this task in its array, whose indices may begin anywhere and leave some out evenly.
+// The position of this task in its array, whose indices may begin anywhere and have even gaps.
 Shard shard_of_array(const Environment& environment) {
   std::string told;
   for (const char* variable : kVariables)
@@ -165,7 +166,7 @@ Shard shard_of_array(const Environment& environment) {
   const bool is_one = id && least && count && step > 0 && *id >= *least &&
                       (*id - *least) % step == 0 && (*id - *least) / step < *count;
   require(is_one, [&] {
-    return fmt::format("--shard auto: this is no task of an array with even steps: {}", told);
+    return fmt::format("--shard auto needs a task of an array with even steps, got {}", told);
   });
   return {(*id - *least) / step + 1, *count};
 }
@@ -188,7 +189,7 @@ Shard shard_of(const std::string& asked, const Environment& environment) {
   const std::string own = environment("ISOLINE_SHARD");
   if (is_automatic && own.empty()) {
     require(!environment(kVariables[0]).empty(),
-            "--shard auto: neither ISOLINE_SHARD nor SLURM_ARRAY_TASK_ID is set here");
+            "--shard auto needs ISOLINE_SHARD or SLURM_ARRAY_TASK_ID, and neither is set");
     return shard_of_array(environment);
   }
   const std::string& text = is_automatic ? own : asked;

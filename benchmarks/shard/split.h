@@ -1,5 +1,5 @@
-// A plan divided into shards of about the same predicted time, and which of them a command line
-// asks for.
+// A plan divided into shards of about equal predicted time, and the shard that a command line
+// selects.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ inline constexpr const char* kPredictedSchema = "isoline.predicted/1";
 
 struct PredictedCell {
   std::string cell;
-  double seconds = 0;  // nan: no earlier run tells
+  double seconds = 0;  // NaN: no earlier run predicts it
 };
 
 std::filesystem::path predicted_file(const std::filesystem::path& folder);
@@ -33,9 +33,9 @@ std::optional<std::vector<PredictedCell>> read_predicted(const std::filesystem::
 // How the shards of a folder are to be divided.
 enum class Weights { written, kept, declared };
 
-// Writes the predictions of a plan's cells, unless the folder has some, which then take the place
-// of those shown; or unless shards were run there without any: these are divided by declared work,
-// and stay so. UsageError where the predictions that are there are of another plan.
+// Writes the predictions of a plan's cells, unless the folder has some, which then replace the
+// arguments, or unless shards ran there without predictions: these are divided by nominal cost, and
+// remain so. UsageError if existing predictions belong to another plan.
 Weights keep_predictions(const std::filesystem::path& folder, Preview& shown);
 
 // A weight a request, which is all that a split depends on: its predicted seconds; where there are
@@ -55,8 +55,8 @@ struct Shard {
 using Environment = std::function<std::string(const char* variable)>;  // empty: not set
 std::string of_this_process(const char* variable);
 
-// "3/16"; or "auto": what ISOLINE_SHARD says, which reads so too, else the place of this task in
-// SLURM's array. UsageError, which says what was given, where there is neither.
+// "3/16"; or "auto": the text in ISOLINE_SHARD, or else the position of this task in SLURM's array.
+// UsageError, with the text, if both are missing.
 Shard shard_of(const std::string& asked, const Environment& environment = of_this_process);
 
 // Of each cell its shard, from 0. The heaviest first, each to the shard that has least (Graham,

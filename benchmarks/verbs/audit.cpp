@@ -21,8 +21,8 @@ struct AuditArguments {
 
 void declare(VerbArguments& verb, AuditArguments& given) {
   verb.texts("OPTIMIZER", given.names, "Names of optimizers (default: all)");
-  verb.text("--out", given.out, "Folder to write audit.json to, as reports read it");
-  verb.flag("--all", given.lists_all, "Print every table whole, not the first 20 lines");
+  verb.text("--out", given.out, "Folder for audit.json, which reports read");
+  verb.flag("--all", given.lists_all, "Print all lines of every table, not the first 20");
   verb.flag("--json", given.as_json, "Print JSON");
   verb.plugins();
 }

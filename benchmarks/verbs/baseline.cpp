@@ -28,7 +28,7 @@ void declare(VerbArguments& verb, BaselineArguments& given) {
   verb.text("--out", given.out, "The file (default: standard output)");
   verb.whole("--perturbations", given.perturbations,
              "Runs of each cell from a start that differs in the last bit", {0, 100});
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
   verb.plugins();
 }
 
@@ -74,14 +74,18 @@ void register_baseline(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "baseline",
        .help_position = 50,
-       .summary = "Keep what later results are compared with, as one small file",
+       .summary = "Write a small file that later results are compared with",
        .examples = "  isoline baseline results/quick --out baseline.json\n"
                    "  isoline compare baseline.json results/quick",
        .notes =
-           "A line a cell: status, digest of the trace, final figures, work to 1e-1, 1e-3 and 1e-6.\n"
-           "Each cell is run again from starts that differ in the last bit. A cell whose figures then\n"
-           "move by more than a tenth of the tolerance of a comparison is chaotic: it is judged by status and\n"
-           "by which of 1e-1, 1e-3 and 1e-6 it reaches, so that rounding alone makes nothing worse.\n"
+           "The file has one line per cell: status, digest of the trace, final values, work to "
+           "1e-1, 1e-3 and\n1e-6.\n"
+           "Each cell runs again from starts that differ in the last bit. A cell is chaotic if "
+           "its values then\n"
+           "move by more than a tenth of a comparison's tolerance. `compare` compares such cells "
+           "by status and\n"
+           "by the targets 1e-1, 1e-3 and 1e-6 that they reach, so that rounding alone is not a "
+           "regression.\n"
            "Runs of the portable preset (ISOLINE_PRESET=portable) give the same baseline on every\n"
            "x86-64-v3 machine."},
       declare, run));

@@ -25,7 +25,7 @@ struct BestArguments {
 
 void declare(VerbArguments& verb, BestArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.text("--out", given.out, "Table of best losses; of two losses the lesser is kept").shown();
+  verb.text("--out", given.out, "Table of best losses; it keeps the lower of two losses").shown();
 }
 
 std::vector<Record> records_under(const std::vector<std::string>& folders) {
@@ -39,7 +39,7 @@ std::vector<Record> records_under(const std::vector<std::string>& folders) {
   return records;
 }
 
-// Rows stand each on a line, so that a change of the table is read in its difference.
+// One row per line, so that a diff of the table is readable.
 std::string best_losses_text(const Json& table) {
   std::string rows;
   for (const Json& row : table.at("rows")) rows += (rows.empty() ? "" : ",\n") + json_text(row);
@@ -70,11 +70,12 @@ void register_best(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "best",
        .help_position = 100,
-       .summary = "Keep the best losses of runs, where no least loss is declared",
+       .summary = "Write the lowest losses of runs, for problems that declare no least loss",
        .examples = "  isoline best results/quick --out benchmarks/best.json",
        .notes =
-           "Runs measure their targets from the best loss known where a problem declares none. The table\n"
-           "is built into the program, and is part of the build that a record names."},
+           "If a problem declares no least loss, targets are relative to the lowest known loss. "
+           "This table is\n"
+           "compiled into the program, and part of the build that a record names."},
       declare, run));
 }
 

@@ -51,7 +51,7 @@ Json isolated_findings(const Catalog& catalog, const Component& component, std::
   const auto [text, failure] = isolated_text(
       [&] { return json_text(findings_of(catalog, component, seed)); }, kCheckSeconds);
   if (text) return parse_json(*text, component.spec);
-  return Json::array({{{"property", "the problem can be made and examined"},
+  return Json::array({{{"property", "the problem can be created and checked"},
                        {"figure", "nan"},
                        {"limit", 0},
                        {"reason", failure},

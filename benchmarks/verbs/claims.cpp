@@ -40,7 +40,7 @@ struct ClaimArguments {
 void declare(VerbArguments& verb, ClaimArguments& given) {
   verb.texts("ID", given.names, "Claims, or groups of them (default: all)");
   verb.text("--out", given.out, "Result folder that holds the runs").shown();
-  verb.whole("--jobs", given.jobs, "Cells at a time (default: one a core)", kJobs);
+  verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
   verb.flag("--list", given.is_list, "List the claims, and run nothing");
   verb.flag("--all", given.lists_all, "List every claim, not the first 20");
   verb.flag("--json", given.as_json, "Print JSON");
@@ -95,7 +95,7 @@ std::string terminal_text_of(const std::vector<Judgement>& judgements, bool list
   if (judgements.size() == 1) return terminal_claim(claim_section(judgements[0]));
   const std::string text = lists_all ? terminal_section(claims_section(judgements))
                                      : terminal_section(claims_summary(judgements), kFewRows);
-  return text + "`isoline claims ID` shows one of them with the figures that decide it.\n";
+  return text + "`isoline claims ID` shows the evidence of one claim.\n";
 }
 
 std::string papers_page(const std::vector<Judgement>& judgements) {
@@ -134,12 +134,13 @@ void register_claims(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "claims",
        .help_position = 110,
-       .summary = "Judge what papers claim by runs; what is missing is run first",
+       .summary = "Check the claims of papers; runs missing cells first",
        .examples =
-           "  isoline claims --list                        what is claimed, and where\n"
+           "  isoline claims --list                        the claims and their sources\n"
            "  isoline claims exponential                   one group of claims\n"
-           "  isoline claims sip-better-in-x-worse-in-loss     one claim, with all that decides it\n"
-           "  isoline claims --no-run --out results/quick      what the runs of a suite decide",
+           "  isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence\n"
+           "  isoline claims --no-run --out results/quick      the claims that the runs of a "
+           "suite decide",
        .notes =
            "A claim is reproduced where what is measured lies within the source's own error of reading,\n"
            "partly where only the direction holds; of fewer than six seeds it is consistent or at odds.\n"

@@ -22,9 +22,9 @@ void declare(VerbArguments& verb, CompareArguments& given) {
   verb.text("BASE", given.before, "Result folder or baseline").required();
   verb.text("NEW", given.after, "Result folder").required();
   verb.real("--tolerance", given.tolerance, between(0, 1),
-            "Relative tolerance of figures (default: equal bit for bit)");
+            "Relative tolerance of values (default: bit for bit)");
   verb.texts("--time-cells", given.timed,
-             "Cells (digests, or their beginnings) whose time is judged, 20 at most")
+             "Cells (digests or prefixes) whose times are compared, at most 20")
       .between_commas();
   verb.real("--noise", given.noise, between(0, 10),
             "Least band of noise of times, relative (default: 0.1)");

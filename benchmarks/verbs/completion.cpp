@@ -80,7 +80,7 @@ int run(const CompletionArguments&, Session&) {
 void register_completion(VerbRegistry& registry) {
   registry.add(verb_of({.name = "completion",
                         .help_position = 240,
-                        .summary = "Print the completion script of a shell",
+                        .summary = "Print the completion script for a shell",
                         .examples = "  isoline completion bash > ~/.isoline-completion"},
                        declare, run));
 }

@@ -29,7 +29,7 @@ void declare(VerbArguments& verb, DescribeArguments& given) {
   verb.plugins();
 }
 
-// What was asked for, found in the catalog.
+// The requested component in the catalog.
 struct Described {
   Sheet sheet;
   OptionTable table;
@@ -50,7 +50,8 @@ Described described_as_optimizer(const Catalog& catalog, const Spec& spec) {
 Described described(const Catalog& catalog, const Spec& spec) {
   const bool is_problem = catalog.problems.contains(spec.name);
   const bool is_optimizer = catalog.optimizers.contains(spec.name);
-  if (is_problem && is_optimizer) try {  // a door has one name for both, and the other side knows
+  if (is_problem && is_optimizer)
+    try {  // an adapter has one name for both; the external program knows its role
       return described_as_optimizer(catalog, spec);
     } catch (const UsageError&) {
       return described_as_problem(catalog, spec);
@@ -102,8 +103,8 @@ void print(const NetworkEntry& network, const OptionValues& options, bool as_jso
 }
 
 const char* aim_text(Aim aim) {
-  return aim == Aim::x ? "x: a run is solved where it finds the x that was sought"
-                       : "loss: a run is solved where its loss is small, whatever its x";
+  return aim == Aim::x ? "x: a run is solved if it finds the true x"
+                       : "loss: a run is solved if its loss is small, whatever its x is";
 }
 
 void print(const Sheet& sheet) {
@@ -113,17 +114,17 @@ void print(const Sheet& sheet) {
   if (!sheet.note.empty()) say(stdout, fmt::format("Note        {}\n", sheet.note));
   if (is_problem)
     say(stdout,
-        fmt::format("Size        {} unknowns, {} residuals\nInverse     {}\nAim         {}\n",
+        fmt::format("Size        {} unknowns, {} residuals\nInverse     {}\nCriterion   {}\n",
                     sheet.unknowns, sheet.residuals, sheet.inverse,
                     aim_text(sheet.aim.value_or(Aim::loss))));
   else
     say(stdout, fmt::format("Family      {}\n", sheet.family));
   say(stdout,
-      fmt::format("{:11} {}\n", is_problem ? "Offers" : "Needs", fmt::join(sheet.oracles, ", ")));
+      fmt::format("{:11} {}\n", is_problem ? "Offers" : "Requires", fmt::join(sheet.oracles, ", ")));
   if (!is_problem)
     say(stdout, fmt::format("Tuned by    {}\n", sheet.tunable.empty() ? "nothing" : sheet.tunable));
   if (!is_problem)
-    say(stdout, fmt::format("Privileges  {}\n",
+    say(stdout, fmt::format("Extra info  {}\n",
                             sheet.privileges.empty()
                                 ? "none"
                                 : fmt::format("{}", fmt::join(sheet.privileges, "; "))));
@@ -149,12 +150,12 @@ int run(const DescribeArguments& given, Session& session) {
 }  // namespace
 
 void register_describe(VerbRegistry& registry) {
-  registry.add(
-      verb_of({.name = "describe",
-               .help_position = 150,
-               .summary = "Show the formula, options, needs and source of a component",
-               .examples = "  isoline describe sip\n  isoline describe 'sine[xi=32]' --json"},
-              declare, run));
+  registry.add(verb_of(
+      {.name = "describe",
+       .help_position = 150,
+       .summary = "Show the formula, options, required derivatives and source of a component",
+       .examples = "  isoline describe sip\n  isoline describe 'sine[xi=32]' --json"},
+      declare, run));
 }
 
 }  // namespace isoline::benchmarks

@@ -24,11 +24,12 @@ struct ExportArguments {
 void declare(VerbArguments& verb, ExportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--format", given.format,
-            "csv: a row a kept point; coco: data folders for its post-processing; bencher: Bencher "
+            "csv: one row per stored point; coco: data folders for its post-processing; bencher: "
+            "Bencher "
             "Metric Format")
       .one_of({reports::kExportNames.begin(), reports::kExportNames.end()})
       .shown();
-  verb.text("--out", given.out, "Where to write: a file; of coco a new folder").required();
+  verb.text("--out", given.out, "Output: a file; for coco, a new folder").required();
 }
 
 void write_file(const fs::path& out, const std::string& text) {
@@ -69,14 +70,17 @@ void register_export(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "export",
        .help_position = 120,
-       .summary = "Write curves as CSV, as data of COCO, or as metrics of Bencher",
+       .summary = "Write curves as CSV, as COCO data, or as Bencher metrics",
        .examples =
-           "  isoline export results/quick --out curves.csv             a row a kept point of each run\n"
-           "  isoline export results/quick --format coco --out exdata   for COCO's post-processing\n"
+           "  isoline export results/quick --out curves.csv             one row per stored point\n"
+           "  isoline export results/quick --format coco --out exdata   for COCO's "
+           "post-processing\n"
            "  isoline export results.tar.gz --format bencher --out metrics.json",
        .notes =
-           "Numbers read back as the same numbers; inf, -inf and nan are written so. Bencher's format has no\n"
-           "infinity: what half of the runs never reach is left out there, and reached-1e-6 tells how many do."},
+           "Numbers survive the round trip exactly, including inf, -inf and nan. Bencher's format "
+           "has no\n"
+           "infinity: it omits values that half of the runs do not reach; reached-1e-6 counts "
+           "those that do."},
       declare, run));
 }
 

@@ -20,12 +20,13 @@ struct InferArguments {
 
 void declare(VerbArguments& verb, InferArguments& given) {
   verb.text("NETWORK", given.network, "File of the trained network").required();
-  verb.text("--input", given.input,
-            "Observations, one a row: .npy of shape (samples, numbers) or (samples, N, N), or .csv")
+  verb.text(
+          "--input", given.input,
+          "Observations, one per row: .npy of shape (samples, numbers) or (samples, N, N), or .csv")
       .required();
-  verb.text("--output", given.output, "Where to write the inferred x: .npy or .csv").required();
-  verb.time("--time", given.seconds, "Most time: 10s, 2m (default: 10m)");
-  verb.memory("--memory", given.memory_bytes, "Most memory (default: 4GB)");
+  verb.text("--output", given.output, "Output file for the inferred x: .npy or .csv").required();
+  verb.time("--time", given.seconds, "Time limit: 10s, 2m (default: 10m)");
+  verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
 }
 
 // Reads, infers and writes; the sentence about it.
@@ -35,7 +36,7 @@ std::string inferred(const InferArguments& given, const Catalog& catalog) {
   const Component component =
       complete_problem(catalog, network.problem.name, network.problem.options);
   require(component.is_learned,
-          [&] { return given.network + " is no trained network: its problem has none"; });
+          [&] { return given.network + " is not a trained network: its problem has no network"; });
   const Problem problem = make_problem(catalog, component, network.seed);
   try {
     require_fitting(network, problem);
@@ -50,7 +51,7 @@ std::string inferred(const InferArguments& given, const Catalog& catalog) {
                      reports::counted(std::size_t(network.iterations), "iteration"));
 }
 
-// How the process that infers tells its parent whose fault it was.
+// How the child process reports to its parent whether the user made a mistake.
 constexpr char kSaid = '+', kMistaken = '-';
 
 // In a process of its own, under limits: whatever a file holds costs that process alone.
@@ -67,7 +68,7 @@ int run(const InferArguments& given, Session& session) {
   const auto [text, failure] = isolated_text(work, given.seconds, memory);
   if (!text || text->empty()) {
     say(stderr, fmt::format("isoline: {} was not written: {}\n", given.output,
-                            text ? "the process gave no answer" : failure));
+                            text ? "the process did not answer" : failure));
     return kWorse;
   }
   require(text->front() != kMistaken, [&] { return text->substr(1); });

@@ -25,7 +25,7 @@ void declare(VerbArguments& verb, ListArguments& given) {
       .one_of({"problems", "networks", "optimizers", "suites", "all"})
       .shown();
   verb.flag("--json", given.as_json, "Print JSON");
-  verb.flag("--names", given.names_only, "Print names only, one a line");
+  verb.flag("--names", given.names_only, "Print names only, one per line");
   verb.plugins();
 }
 
@@ -67,7 +67,7 @@ void print(const Json& all, bool names_only) {
     }
     if (!names_only) say(stdout, "\n");
   }
-  if (!names_only) say(stdout, "`isoline describe NAME` shows one of them in full.\n");
+  if (!names_only) say(stdout, "`isoline describe NAME` shows the details.\n");
 }
 
 int run(const ListArguments& given, Session& session) {

@@ -25,7 +25,7 @@ int run(const MergeArguments& given, Session&) {
   const std::vector<std::filesystem::path> folders(given.folders.begin(), given.folders.end());
   const MergeOutcome outcome = merge_folders(folders, given.out, progress_on_terminal("files"));
   if (outcome.is_interrupted) {
-    say(stderr, fmt::format("interrupted; nothing is left of {}\n", given.out));
+    say(stderr, fmt::format("interrupted; {} was not written\n", given.out));
     return kInterrupted;
   }
   for (const std::string& sentence : outcome.unreadable)
@@ -50,12 +50,14 @@ void register_merge(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "merge",
        .help_position = 70,
-       .summary = "Unite result folders into a new one",
+       .summary = "Merge result folders into a new one",
        .examples = "  isoline merge results/a results/b --out results/both",
        .notes =
-           "Records of the same cell and build become one with the timings of all. Where they differ in\n"
-           "anything but timings and provenance nothing is written, the cells are named on standard error,\n"
-           "the optimizer with most of them first, and the exit code is 2. Remove the wrong records, or\n"
+           "Records of the same cell and build become one with the timings of all. If they differ "
+           "in anything\n"
+           "but timings and provenance, merge writes nothing, names the cells on standard error, "
+           "the optimizer\n"
+           "with most of them first, and exits with 2. Remove the wrong records, or\n"
            "--force their runs, and merge again."},
       declare, run));
 }

@@ -35,7 +35,7 @@ struct NewArguments {
 
 void declare(VerbArguments& verb, NewArguments& given) {
   verb.text("KIND", given.kind, "problem or optimizer").one_of({"problem", "optimizer"}).required();
-  verb.text("NAME", given.name, "Its name: lower-case letters, digits and hyphens").required();
+  verb.text("NAME", given.name, "Name: lower-case letters, digits and hyphens").required();
   const Argument c = verb.flag("--c", given.is_c, "In C, for --plugin");
   verb.flag("--python", given.is_python, "In Python, for process[command=…]").excludes(c);
 }
@@ -92,11 +92,11 @@ void require_name(const std::string& name, const Catalog& catalog) {
         kMost, name);
   });
   require(!catalog.problems.contains(name) && !catalog.optimizers.contains(name), [&] {
-    return fmt::format("there is a '{0}' already; `isoline describe {0}` shows it", name);
+    return fmt::format("'{0}' exists already; `isoline describe {0}` shows it", name);
   });
 }
 
-// A file that is written where there is none.
+// A file that is written unless it exists.
 struct Draft {
   fs::path path;
   std::string text;
@@ -121,7 +121,7 @@ Beginning begin_c(const std::string& kind, const Spelling& to) {
                               to.identifier, use)};
 }
 
-// A process needs nothing besides: its door tells Python where isoline.py is.
+// A script needs no other file: the process adapter sets the path of isoline.py.
 Beginning begin_python(const std::string& kind, const Spelling& to) {
   const bool is_problem = kind == "problem";
   const std::string_view start =
@@ -158,13 +158,13 @@ int run(const NewArguments& given, Session& session) {
                           : given.is_python ? begin_python(given.kind, to)
                                             : begin_cpp(given.kind, to);
   require(!is_there(begun.file.path), [&] {
-    return fmt::format("{} is there already, and is not overwritten", begun.file.path.string());
+    return fmt::format("{} exists already and is not overwritten", begun.file.path.string());
   });
   std::vector<Draft> drafts = begun.besides;
   drafts.push_back(begun.file);
   for (const Draft& draft : drafts) {
     if (is_there(draft.path)) continue;
-    std::error_code error;  // which the writing tells
+    std::error_code error;  // the write below reports it
     if (draft.path.has_parent_path()) fs::create_directories(draft.path.parent_path(), error);
     write_text(draft.path, draft.text);
     say(stdout, fmt::format("wrote {}\n", draft.path.string()));
@@ -179,14 +179,16 @@ void register_new(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "new",
        .help_position = 180,
-       .summary = "Write the file that a problem or optimizer of your own starts from",
+       .summary = "Write a file to start your own problem or optimizer from",
        .examples =
-           "  isoline new problem my-chain                 problems/my_chain.cpp, for a program of your own\n"
+           "  isoline new problem my-chain                 problems/my_chain.cpp, for a program "
+           "of your own\n"
            "  isoline new optimizer my-method --c          my_method.c, for a library\n"
            "  isoline new problem my-simulator --python    my_simulator.py, for a process",
        .notes =
-           "What it writes builds and passes its checks as it is; nothing is overwritten. Beside it goes what\n"
-           "it is built with, where that is missing: CMakeLists.txt, or isoline.h."},
+           "The file builds and passes its checks as it is; nothing is overwritten. `new` also "
+           "writes\n"
+           "CMakeLists.txt or isoline.h if it is missing."},
       declare, run));
 }
 

@@ -26,13 +26,13 @@ struct PlanArguments {
 
 void declare(VerbArguments& verb, PlanArguments& given) {
   declare_cells(verb, given.run);
-  verb.whole("--jobs", given.run.jobs, "Cells at a time (default: one a core)", kJobs);
+  verb.whole("--jobs", given.run.jobs, "Cells at a time (default: one per core)", kJobs);
   declare_what_is_done(verb, given.run);
   verb.whole("--shards", given.shards,
-             "Divide the plan into so many parts of about the same time, and keep the predictions "
-             "that they go by in predicted.json of the result folder",
+             "Divide the plan into this many shards of about equal time, and write the predictions "
+             "to predicted.json in the result folder",
              kShards);
-  verb.texts("--from", given.earlier, "Earlier result folders, whose times predict these")
+  verb.texts("--from", given.earlier, "Earlier result folders, for the prediction of times")
       .between_commas();
   verb.flag("--all", given.run.lists_all, "List every shard, not the first 20");
   verb.flag("--json", given.as_json, "Print JSON");
@@ -59,14 +59,14 @@ std::string weights_text(Weights weights, const PlannedRun& all, std::size_t tim
   const std::string file = predicted_file(all.folder).string();
   switch (weights) {
     case Weights::written:
-      return fmt::format("predictions: {}, {} by earlier runs and {} by declared work", file, timed,
-                         all.requests.size() - timed);
+      return fmt::format("predictions: {}, {} from earlier runs and {} from nominal costs", file,
+                         timed, all.requests.size() - timed);
     case Weights::kept:
-      return fmt::format("predictions: {}, as it was written before", file);
+      return fmt::format("predictions: {}, written earlier", file);
     case Weights::declared:
       break;
   }
-  return "predictions: none, since shards were run here without; they are divided by declared work";
+  return "predictions: none, since shards ran here without; the shards are divided by nominal cost";
 }
 
 void print_shards(const PlannedRun& all, const Preview& shown, const ShardPlan& plan,
@@ -109,16 +109,19 @@ void register_plan(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "plan",
        .help_position = 20,
-       .summary = "Tell what a run would do, how long it may take, and how it divides into shards",
+       .summary = "Show what a run would do, how long it may take, and how it divides into shards",
        .examples =
-           "  isoline plan quick                           cells, what of them is done, predicted time\n"
-           "  isoline plan quick --shards 16 --from results/before     sixteen parts of the same time\n"
+           "  isoline plan quick                           cells, finished cells, predicted time\n"
+           "  isoline plan quick --shards 16 --from results/before     sixteen shards of equal "
+           "time\n"
            "  isoline plan quick --shards 16 --json        for the matrix of a workflow",
        .notes =
-           "A cell is predicted by what it, or its like with other seeds, took in the records below the\n"
-           "result folder and those of --from; of others nothing is predicted.\n"
-           "With --shards the predictions are written to predicted.json, once: `isoline run --shard` divides\n"
-           "the plan by it alone, so that every task finds the same parts whenever it begins."},
+           "The prediction of a cell is its time, or that of the same cell with other seeds, in "
+           "records of the\n"
+           "result folder and of --from; other cells have no prediction.\n"
+           "--shards writes the predictions to predicted.json once. `isoline run --shard` divides\n"
+           "the plan by this file only, so that every task finds the same shards whenever it "
+           "begins."},
       declare, run));
 }
 

@@ -49,7 +49,7 @@ double most_seconds_of(const Record& record) {
 // Why the two were not made by the same program on the same platform; empty where they were.
 std::string difference_of_builds(const Record& record, const Request& request) {
   if (record.cell != request.cell)
-    return "the request is another cell to this program: options were added";
+    return "this program has other options: the request is another cell";
   if (record.build == build_digest(request)) return "";
   std::string parts;
   for (const auto& [part, digest] : build_parts(request)) {
@@ -57,10 +57,10 @@ std::string difference_of_builds(const Record& record, const Request& request) {
     if (stored != record.build_parts.end() && stored->second == digest) continue;
     parts += (parts.empty() ? "" : ", ") + part;
   }
-  return "another build answered, which differs in: " + parts;
+  return "another build computed it, which differs in: " + parts;
 }
 
-// One run of the request; no record where the user stopped it, or somebody ended it.
+// One run of the request; no record if it was stopped or killed.
 struct Rerun {
   std::optional<Record> record;
   bool is_interrupted = false;
@@ -108,7 +108,7 @@ int replay(const std::string& path, const ReplayArguments& given, Session& sessi
     return kNotComparable;
   }
   Record same_asked = *again;
-  same_asked.cell = record.cell;  // told apart above
+  same_asked.cell = record.cell;  // compared above
   same_asked.request = record.request;
   const Comparison found = compare_results(record, same_asked);
   say(stdout,
@@ -169,10 +169,13 @@ void register_replay(VerbRegistry& registry) {
        .examples = "  isoline replay results/quick/runs/03a4d51c22cbf199-821e62446af5cbbe.json\n"
                    "  isoline replay results/quick --sample 1%",
        .notes =
-           "The cell is run in a process of its own, with the problem, options, seed, budget and threads of\n"
-           "the record, and written nowhere. A record that a clock or a kill ended is compared up to the last\n"
-           "iteration that both have. Exit codes: 0 equal; 2 another result, whose first difference is named;\n"
-           "4 not comparable: another build answered, whose parts are named, or the record's component is\n"
+           "The cell runs in its own process, with the problem, options, seed, budget and threads "
+           "of\n"
+           "the record. Nothing is written. A record that a clock or a kill ended is compared up "
+           "to the last\n"
+           "common iteration. Exit codes: 0 equal; 2 different, with the first difference named;\n"
+           "4 not comparable: another build computed it, with its parts named, or the record's "
+           "component is\n"
            "not there."},
       declare, run));
 }

@@ -28,35 +28,36 @@ struct ReportArguments {
 
 void declare(VerbArguments& verb, ReportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
-  verb.text("--out", given.out, "Where to write (default: report/ in the first DIR)");
-  verb.text("--by", given.by, "What is counted, in orders, tables and plots")
+  verb.text("--out", given.out, "Output folder (default: report/ in the first DIR)");
+  verb.text("--by", given.by, "Measure of rankings, tables and plots")
       .one_of({reports::kMeasureNames.begin(), reports::kMeasureNames.end()})
       .shown();
   verb.real("--tolerance", given.tolerance, between(1e-10, 1),
-            "Relative loss gap, or relative error in x, below which a problem counts as solved")
+            "Relative loss or error in x at which a problem counts as solved")
       .shown("1e-6");
-  verb.flag("--open", given.opens, "Open the page in the browser of the desktop");
+  verb.flag("--open", given.opens, "Open the page in the desktop browser");
 }
 
-// The tolerance asked for, or the next stricter one that results know.
+// The requested tolerance, or the next stricter one of the 51.
 reports::Yardstick yardstick_of(const ReportArguments& given) {
   const reports::Yardstick yardstick =
       reports::yardstick_at(*reports::measure_of(given.by), given.tolerance);
   const reports::Tolerance& taken = yardstick.tightest();
   constexpr double kRounding = 1e-9;
   if (taken.tau < given.tolerance * (1 - kRounding))
-    say(stderr, fmt::format("--tolerance {}: taken as {}, the next stricter one of the 51\n",
+    say(stderr, fmt::format("--tolerance {}: rounded to {}, the next stricter one of the 51\n",
                             given.tolerance, taken.name));
   return yardstick;
 }
 
-// By the desktop's own program, which goes on after this one; where there is none, that is told.
+// By the desktop's program, which outlives this one; prints a message if it is missing.
 void open_page(const fs::path& page) {
   std::string program = "xdg-open", path = page.string();
   std::array<char*, 3> words = {program.data(), path.data(), nullptr};
   pid_t opened = 0;
   if (posix_spawnp(&opened, program.c_str(), nullptr, nullptr, words.data(), environ) != 0)
-    say(stderr, fmt::format("--open: there is no xdg-open; open {} yourself\n", path));
+    say(stderr,
+        fmt::format("--open needs xdg-open, which is not installed; open {} yourself\n", path));
 }
 
 // What it writes: "index.html, report.csv, …"
@@ -95,9 +96,12 @@ void register_report(VerbRegistry& registry) {
        .examples = "  isoline report results/quick\n"
                    "  isoline report results/a results/b --out report --by cost --tolerance 1e-3",
        .notes =
-           "Results know 51 tolerances, five a decade from 1 to 1e-10: one between two of them counts as the\n"
-           "next stricter one. Work is oracle calls at declared prices, which any machine repeats; cost is\n"
-           "the same calls at measured prices. Times are comparable in runs with --exclusive: others are\n"
+           "Results contain 51 tolerances, five per decade from 1 to 1e-10; others are rounded to "
+           "the\n"
+           "next stricter one. Work is oracle calls at nominal cost, equal on every machine; cost "
+           "is\n"
+           "the same calls at measured cost. Times are comparable in runs with --exclusive: "
+           "others are\n"
            "marked ≈."},
       declare, run));
 }

@@ -121,19 +121,22 @@ void register_run(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "run",
        .help_position = 10,
-       .summary = "Run a suite or a matrix of your own; what is done already is not repeated",
+       .summary = "Run a suite or your own matrix; finished cells are not repeated",
        .examples =
            "  isoline run                                  the suite quick, then its report\n"
            "  isoline run notebook --seeds 5 --jobs 4      another suite, on five seeds\n"
            "  isoline run --problem 'sine[xi=1|32],heat' --optimizer 'adam[rate=1e-3],ceres-lm'\n"
-           "  isoline run quick --optimizer adam --dry-run     what of it would be run, and how long\n"
-           "  isoline run quick --retry failed,crashed     what went wrong, once more\n"
-           "  isoline run quick --shard 3/16               a part of it; `isoline merge` unites them\n"
-           "  isoline run --problem square --optimizer gd --seeds =3 --in-process     for a debugger",
+           "  isoline run quick --optimizer adam --dry-run     which cells would run, and how "
+           "long\n"
+           "  isoline run quick --retry failed,crashed     failed cells again\n"
+           "  isoline run quick --shard 3/16               one shard; `isoline merge` joins them\n"
+           "  isoline run --problem square --optimizer gd --seeds =3 --in-process     for a "
+           "debugger",
        .notes =
-           "The same command goes on where it was stopped. A cell that crashes costs no other one: each has "
-           "a\nprocess of its own, but with --in-process.\n"
-           "Exit codes: 0 good, 2 cells failed or records vanished, 130 interrupted."},
+           "The same command continues where it was stopped. A crash ends one cell only: each has "
+           "its "
+           "own\nprocess, except with --in-process.\n"
+           "Exit codes: 0 good, 2 cells failed or records disappeared, 130 interrupted."},
       declare_run, run));
 }
 

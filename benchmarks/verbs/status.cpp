@@ -20,7 +20,7 @@ struct StatusArguments {
 };
 
 void declare(VerbArguments& verb, StatusArguments& given) {
-  verb.text("DIR", given.folder, "Result folder, of a run or of one in shards").required();
+  verb.text("DIR", given.folder, "Result folder of a run, with or without shards").required();
   verb.flag("--json", given.as_json, "Print JSON");
 }
 
@@ -45,12 +45,12 @@ std::string census_text(const Census& census, std::int64_t now) {
                                  census.failed, census.running, census.left);
   if (census.done == census.planned) return text;
   if (census.left_seconds)
-    text += fmt::format("predicted of what is not done: {}, one at a time\n",
+    text += fmt::format("predicted time of the rest: {}, one cell at a time\n",
                         duration_text(*census.left_seconds));
   if (!census.remaining_seconds)
-    return text + "no cell ended in the last hour: there is no pace to predict an end by\n";
+    return text + "no cell ended in the last hour, so the end cannot be predicted\n";
   return text +
-         fmt::format("at the pace of the last hour the end is in {}, at {}\n",
+         fmt::format("at the pace of the last hour, the run ends in {}, at {}\n",
                      duration_text(*census.remaining_seconds),
                      instant_text(now + static_cast<std::int64_t>(*census.remaining_seconds)));
 }
@@ -65,15 +65,14 @@ int run(const StatusArguments& given, Session&) {
 }  // namespace
 
 void register_status(VerbRegistry& registry) {
-  registry.add(verb_of(
-      {.name = "status",
-       .help_position = 90,
-       .summary = "Tell how far a run is, while it goes on",
-       .examples = "  isoline status results/quick\n  isoline status results/quick --json",
-       .notes =
-           "It reads the records alone, with the plan and the predictions beside them, and starts nothing.\n"
-           "Exit codes: 0 good so far, 2 cells failed."},
-      declare, run));
+  registry.add(
+      verb_of({.name = "status",
+               .help_position = 90,
+               .summary = "Show the progress of a run",
+               .examples = "  isoline status results/quick\n  isoline status results/quick --json",
+               .notes = "Reads the records, the plan and the predictions, and starts nothing.\n"
+                        "Exit codes: 0 good so far, 2 cells failed."},
+              declare, run));
 }
 
 }  // namespace isoline::benchmarks

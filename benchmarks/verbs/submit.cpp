@@ -34,18 +34,18 @@ struct SubmitArguments {
 };
 
 void declare(VerbArguments& verb, SubmitArguments& given) {
-  verb.texts("RUN", given.run, "After --, what would stand after `isoline run`");
-  verb.flag("--slurm", given.is_slurm, "By SLURM, which this machine can reach");
+  verb.texts("RUN", given.run, "After --, the arguments of `isoline run`");
+  verb.flag("--slurm", given.is_slurm, "Use SLURM, which this machine must reach");
   verb.whole("--array", given.tasks,
-             "Most tasks; fewer where SLURM's MaxArraySize or --least has it", kShards);
+             "Largest number of tasks; MaxArraySize and --least may lower it", kShards);
   verb.time("--time", given.seconds,
-            "Most time of a task: 2h; one that is not done by then goes on in the next "
+            "Time limit of a task: 2h; an unfinished task continues in the next one "
             "(default: the partition's)");
-  verb.time("--least", given.least_seconds, "Least predicted time of a task (default: 5m)");
+  verb.time("--least", given.least_seconds, "Smallest predicted time of a task (default: 5m)");
   verb.text("--partition", given.partition, "Partition (default: the cluster's)");
   verb.texts("--sbatch", given.options, "A further option of sbatch: --sbatch=--account=physics")
       .one_each();
-  verb.flag("--yes", given.is_agreed, "Submit the two jobs; else they are printed");
+  verb.flag("--yes", given.is_agreed, "Submit the two jobs instead of printing them");
 }
 
 struct Answer {
@@ -66,8 +66,8 @@ std::size_t array_size_here() {
   const auto told = most_array_size(answer_of("scontrol show config 2>/dev/null").text);
   if (told) return *told;
   const std::size_t standard = ShardLimits().array_size;
-  say(stderr, fmt::format("scontrol tells no MaxArraySize here; SLURM's default, {}, is taken\n",
-                          standard));
+  say(stderr,
+      fmt::format("scontrol reports no MaxArraySize; using SLURM's default, {}\n", standard));
   return standard;
 }
 
@@ -133,7 +133,7 @@ Submission submission_of(const SubmitArguments& given, const RunArguments& run,
   return all_of_it;
 }
 
-// The number of a job, of "123" or "123;cluster"; empty where there is none.
+// The number of a job, from "123" or "123;cluster", or empty.
 std::string job_from(const Answer& answer) {
   if (!answer.is_good) return "";
   return answer.text.substr(0, answer.text.find_first_not_of("0123456789"));
@@ -142,15 +142,16 @@ std::string job_from(const Answer& answer) {
 int submit(const Submission& submission) {
   const std::string array = job_from(answer_of(array_command(submission)));
   if (array.empty()) {
-    say(stderr, "sbatch refused the array, and nothing was submitted\n");
+    say(stderr, "sbatch refused the array; nothing was submitted\n");
     return kWorse;
   }
   setenv("array", array.c_str(), 1);
   const std::string merge = job_from(answer_of(merge_command(submission)));
   if (merge.empty()) {
-    say(stderr, fmt::format("sbatch took the array, job {}, and refused the merge: `isoline merge` "
-                            "does it by hand\n",
-                            array));
+    say(stderr,
+        fmt::format("sbatch accepted the array, job {}, but refused the merge: `isoline merge` "
+                    "does it by hand\n",
+                    array));
     return kWorse;
   }
   const std::string folder = submission.folder.string();
@@ -164,8 +165,8 @@ int submit(const Submission& submission) {
 void warn_of_build() {
   if (library_kernel().chosen_by == "portable") return;
   say(stderr,
-      "this program was compiled for this machine's processor: on a node with another it may not "
-      "start; the preset `portable` runs on all of them\n");
+      "this program was compiled for this machine's processor: it may not start on other nodes; "
+      "the preset `portable` runs on all of them\n");
 }
 
 // What would stand after `isoline run`, read as it reads it.
@@ -177,8 +178,8 @@ RunArguments run_arguments(const std::vector<std::string>& words, Session& sessi
   return run;
 }
 
-// Of all cells, one at a time, those that no earlier run tells of as the mean of the others;
-// infinite where none is known.
+// For all cells, one at a time; cells without a prediction count as the mean of the others;
+// infinite if no cell has a prediction.
 double seconds_of(const Preview& shown) {
   double seconds = 0, known = 0;
   for (const PreviewedCell& cell : shown.cells) {
@@ -189,9 +190,9 @@ double seconds_of(const Preview& shown) {
 }
 
 int run(const SubmitArguments& given, Session& session) {
-  require(given.is_slurm, "name the scheduler: --slurm is the one there is");
+  require(given.is_slurm, "name the scheduler: --slurm is the only one");
   const RunArguments run = run_arguments(given.run, session);
-  require(run.shard.empty(), "--shard is each task's own: leave it out after --");
+  require(run.shard.empty(), "--shard differs for each task: leave it out after --");
   require(!run.is_dry && !run.in_process, "a task writes records: no --dry-run, no --in-process");
   const PlannedRun all = planned_run(run, session.catalog());
   Preview shown = preview_of(all, run, {}, result_folders(all.folder), session);
@@ -224,15 +225,19 @@ void register_submit(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "submit",
        .help_position = 80,
-       .summary = "Hand a run to a cluster's scheduler, as two jobs",
+       .summary = "Submit a run to a cluster's scheduler, as two jobs",
        .examples =
-           "  isoline submit --slurm --array 16 --time 2h -- quick --seeds 20      prints two jobs\n"
+           "  isoline submit --slurm --array 16 --time 2h -- quick --seeds 20      prints two "
+           "jobs\n"
            "  isoline submit --slurm --partition long --yes -- sip-paper           submits them",
        .notes =
-           "The first job is an array with a task a shard, the second merges and reports when all have ended.\n"
-           "The program, the kernels of its libraries and the predictions that divide the plan are kept in\n"
-           "the result folder, which all nodes must see. A task that the scheduler stops keeps the state of\n"
-           "its cells, goes back into the queue and goes on.\n"
+           "The first job is an array with one task per shard; the second merges and reports "
+           "after all tasks.\n"
+           "The program, the kernels of its libraries and the predictions for the division are "
+           "stored in\n"
+           "the result folder, which all nodes must see. A task that the scheduler stops saves "
+           "the state of\n"
+           "its cells, returns to the queue and continues.\n"
            "Exit codes: 0 good, 1 wrong usage, 2 the scheduler refused."},
       declare, run));
 }

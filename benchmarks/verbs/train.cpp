@@ -33,15 +33,14 @@ struct TrainArguments {
 
 void declare(VerbArguments& verb, TrainArguments& given) {
   verb.text("PROBLEM", given.problem, "Problem: 'sine[xi=32]'; mode=learn is implied").required();
-  verb.text("--out", given.out, "Where to write it: .json, or any other name for raw numbers")
-      .required();
+  verb.text("--out", given.out, "Output file: .json, or any other name for raw numbers").required();
   verb.text("--optimizer", given.optimizer, "Training method").shown();
   verb.whole("--iterations", given.iterations, "Steps of training");
   verb.seed("--seed", given.seed, "Seed of the start and of the samples");
   verb.whole("--threads", given.threads, "Threads of the libraries", kThreads);
   verb.time("--time", given.seconds,
-            "Most time of training: 10s, 2m; training that takes twice that is killed");
-  verb.memory("--memory", given.memory_bytes, "Most memory (default: 4GB)");
+            "Time limit of training: 10s, 2m; at twice that, it is killed");
+  verb.memory("--memory", given.memory_bytes, "Memory limit (default: 4GB)");
   verb.flag("--quiet", given.quiet, "Show no progress");
   verb.plugins();
 }

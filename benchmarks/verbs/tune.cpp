@@ -35,32 +35,32 @@ struct TuneArguments {
 
 void declare(VerbArguments& verb, TuneArguments& given) {
   verb.text("SPEC,--problem", given.problem,
-            "Problems, as in `isoline run`; with --suite those to keep");
+            "Problems, as in `isoline run`; with --suite, a filter");
   verb.text("--suite", given.suite, "The pairs of this suite, with its budgets");
   verb.text("--optimizer", given.optimizer,
-            "Names of optimizers (default: all that have an option to tune)")
+            "Names of optimizers (default: all with a tunable option)")
       .joined();
   verb.text("--grid", given.grid,
-            "Option and its values, low..high x count (default: the option that a method "
-            "declares, at seven values around its default and more at an edge)");
+            "Option and its values, low..high x count (default: the method's tunable option "
+            "at seven values around its default, and more at an edge)");
   verb.text("--unit", given.unit,
-            "Unit of the grid: one, the problem's Cauchy step, or the published rate")
+            "Unit of the grid: 1, the problem's Cauchy step, or the published rate")
       .one_of({"one", "cauchy", "published"})
       .shown();
-  verb.text("--tuning-seeds", given.seeds, "Seeds, apart from those that judge").shown();
-  verb.whole("--work", given.work, "Most work of a run");
-  verb.whole("--iterations", given.iterations, "Most iterations of a run");
-  verb.whole("--jobs", given.jobs, "Runs at a time (default: one a core)", kJobs);
+  verb.text("--tuning-seeds", given.seeds, "Seeds, different from those of results").shown();
+  verb.whole("--work", given.work, "Largest work per run");
+  verb.whole("--iterations", given.iterations, "Largest number of iterations per run");
+  verb.whole("--jobs", given.jobs, "Runs at a time (default: one per core)", kJobs);
   verb.text("--out", given.folder, "Folder of the records").shown();
-  verb.text("--table", given.table, "Table of rates to write or to add to");
+  verb.text("--table", given.table, "Table of rates to write or to extend");
   verb.flag("--all", given.lists_all, "List every pair, not the first 20");
   verb.flag("--json", given.as_json, "Print the rows of the table as JSON");
   verb.plugins();
 }
 
 constexpr const char* kScore =
-    "median work to 1e-6 of the loss, or of x where the problem's aim is x; then the median of what "
-    "is left of it at the end";
+    "median work to 1e-6 of the success criterion, the loss or the error in x; then the median "
+    "remainder at the end";
 
 // The cells of a suite, but for the blocks that name their own table of rates.
 std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given) {
@@ -70,8 +70,7 @@ std::vector<Request> cells_of(const Catalog& catalog, const TuneArguments& given
 }
 
 std::vector<Request> cells_named(const Catalog& catalog, const TuneArguments& given) {
-  require(!given.problem.empty(),
-          "tune: name the problems, as SPEC or by --problem, or a --suite of them");
+  require(!given.problem.empty(), "tune: name problems, as SPEC or with --problem, or a --suite");
   const MatrixBlock block{.problems = {given.problem},
                           .optimizers = {given.optimizer.empty() ? "*" : given.optimizer},
                           .budget = {.iterations = given.iterations, .work = given.work}};
@@ -108,7 +107,7 @@ Json joined(const Json& old_rows, const Json& new_rows) {
   return all;
 }
 
-// Rows stand one a line, so that a change of one reads as one.
+// One row per line, so that a diff shows one row per change.
 std::string rates_text(const Json& grid, const Json& rows) {
   std::string text = fmt::format("{{\"schema\": \"isoline.rates/1\",\n\"grid\": {},\n\"rows\": [",
                                  json_text(grid));
@@ -173,7 +172,7 @@ std::vector<reports::TableCell> tuning_row(const TunedOption& tuned) {
   if (tuned.is_at_edge) remark = fmt::format("at the edge: the {} value tried", edge_name(tuned));
   if (const auto ties = tied_values(tuned); !ties.empty())
     remark += (remark.empty() ? "ties with " : "; ties with ") + reports::joined(ties);
-  if (is_failed(best)) remark = "every value failed: the one nearest to the default stays";
+  if (is_failed(best)) remark = "every value failed; the one nearest to the default is used";
   return {tuned.problem,
           tuned.optimizer,
           tuned.option,
@@ -230,8 +229,8 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       .align = "lllrlrrl",
       .names = 2};
   table.caption =
-      "Grid: a bar a value from the lowest to the highest, the best highest, · failed. Work: median "
-      "to the target, ✗ not reached; left: median of the loss, or of the error in x, at the end.";
+      "Grid: one bar per value from low to high, the best is the highest, · failed. Work: median "
+      "to the target, ✗ not reached; left: median loss or error in x at the end.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
   std::string text =
@@ -262,14 +261,15 @@ void register_tune(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "tune",
        .help_position = 200,
-       .summary = "Choose one option of each method for each problem, with an equal budget for all",
+       .summary = "Tune one option of each method for each problem, with equal budgets",
        .examples = "  isoline tune rosenbrock,heat --optimizer gd,adam --table rates.json\n"
                    "  isoline tune square --optimizer gd --grid rate=1e-3..1x7 --unit cauchy\n"
                    "  isoline tune --suite quick --optimizer adam --json",
-       .notes =
-           "The best value has the least median work to the target; of equals the one that leaves least, "
-           "then\nthe one nearest to the default. Values that tie with the best and a best value at the edge of "
-           "its\ngrid are named."},
+       .notes = "The best value has the least median work to the target; among equals, the least "
+                "remainder, "
+                "then\nthe distance from the default. The output names ties and best values at the "
+                "edge of "
+                "the grid."},
       declare, run));
 }
 

@@ -1,4 +1,5 @@
-// isoline validate PATH...: are the records, plans, sheets, suites and rates what they claim to be?
+// isoline validate PATH...: do records, plans, component metadata, suites and rates satisfy their
+// schemas?
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ void declare(VerbArguments& verb, ValidateArguments& given) {
   verb.texts("PATH", given.paths, "Files, or folders to search for *.json").required();
 }
 
-// The schema of that name, read once a thread.
+// The schema of that name, read once per thread.
 const Schema* schema_of(const std::string& name) {
   static thread_local std::map<std::string, Schema> known;
   if (const auto at = known.find(name); at != known.end()) return &at->second;
@@ -45,7 +46,7 @@ const Schema* schema_of(const std::string& name) {
   return &known.try_emplace(name, parse_json(std::string(found->second), name)).first->second;
 }
 
-// What is wrong with a file; and what it is known by, where it is a record.
+// The errors in a file; for a record, also its cell and build.
 struct Examined {
   std::vector<std::string> violations;
   std::optional<RecordIdentity> identity;
@@ -82,8 +83,8 @@ Examined examined_document(const Json& document, const std::string& path) {
   return {std::move(violations), {}};
 }
 
-// Of a record most is columns, and the schema's laws are on their elements alone: its outline is
-// sound where it is. Whatever is wrong is told of the whole.
+// Most of a record are columns, and the schema constrains only their elements: a record is valid if
+// and only if its outline is. Errors are reported for the complete record.
 Examined examined(const std::string& path) {
   try {
     const std::string text = read_text(path);
@@ -189,7 +190,7 @@ void register_validate(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "validate",
        .help_position = 190,
-       .summary = "Validate records, suites and all other JSON files of Isoline by their schemas",
+       .summary = "Check records, suites and all other JSON files of Isoline against their schemas",
        .examples = "  isoline validate results/quick my-suite.json"},
       declare, run));
 }

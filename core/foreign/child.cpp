@@ -112,7 +112,7 @@ struct Pipe {
 
   Pipe() {
     int ends[2];
-    require(pipe2(ends, O_CLOEXEC) == 0, "there is no pipe left for another program");
+    require(pipe2(ends, O_CLOEXEC) == 0, "cannot create another pipe for a program");
     read_end = ends[0];
     write_end = ends[1];
   }
@@ -217,9 +217,9 @@ void ChildProgram::await_end(double seconds) {
 
 std::string ChildProgram::end_in_words() {
   await_end(kEndingSeconds);
-  if (!end_) return "it still runs";
-  if (end_->is_exit) return fmt::format("it left with exit code {}", end_->number);
-  return fmt::format("it was ended by signal {} ({})", end_->number, strsignal(end_->number));
+  if (!end_) return "it is still running";
+  if (end_->is_exit) return fmt::format("it exited with code {}", end_->number);
+  return fmt::format("signal {} ({}) ended it", end_->number, strsignal(end_->number));
 }
 
 std::string ChildProgram::last_words() const {

@@ -19,7 +19,7 @@ namespace isoline {
 
 ChildProgram::Start door_to(const std::string& command) {
   require(!command.empty(),
-          "process needs a command, as in process[command=\"python3 mine.py\"], and got none");
+          "process needs a command, such as process[command=\"python3 mine.py\"], got none");
   const char* const theirs = std::getenv("PYTHONPATH");
   const std::string ours = client_folder("python").string();
   return {.command = command,
@@ -42,7 +42,7 @@ constexpr std::int64_t kMostPrice = std::int64_t{1} << 31;
 constexpr std::array<std::string_view, 4> kInverses = {"exact", "damped", "estimate",
                                                        "approximate"};
 constexpr std::size_t kMostQuoted = 80;  // bytes
-constexpr const char* kOutside = "Outside its bounds on x it has no value.";
+constexpr const char* kOutside = "It has no value outside its bounds on x.";
 
 // The members of one answer.
 class Said {
@@ -52,7 +52,7 @@ class Said {
     if (!json_.is_object()) fail("answers with", json_, "an object");
     const std::int64_t protocol = whole("protocol", 0, 1'000'000, {});
     require(protocol == kWireProtocol, [&] {
-      return fmt::format("{} speaks protocol {}, and this program {}", who_, protocol,
+      return fmt::format("{} uses protocol {}, but this program needs {}", who_, protocol,
                          kWireProtocol);
     });
   }
@@ -111,7 +111,7 @@ class Said {
   }
   OracleSet oracles(const char* name, std::initializer_list<Oracle> known) const {
     OracleSet set{Oracle::forward};
-    std::string law = "a list of some of";
+    std::string law = "a list of";
     for (const Oracle oracle : known) law += fmt::format(" {}", name_of(oracle));
     if (!has(name) || !json_[name].is_array()) refuse(name, law);
     for (const Json& each : json_[name]) {
@@ -137,8 +137,8 @@ class Said {
   std::pair<std::vector<Real>, std::vector<Real>> bounds(std::int64_t count) const {
     const char* name = "bounds";
     if (!has(name)) return {};
-    const std::string law = fmt::format(
-        "two lists of {} numbers, each of the first less than its like in the second", count);
+    const std::string law =
+        fmt::format("two lists of {} numbers, the lower bounds below the upper ones", count);
     const Json& both = json_[name];
     if (!both.is_array() || both.size() != 2) refuse(name, law);
     std::pair found(reals(both[0], count, name, law), reals(both[1], count, name, law));
@@ -168,7 +168,7 @@ class Said {
         fmt::format("{} {} {}, which must be {}", who_, what, quoted(json_text(value)), law));
   }
   [[noreturn]] void refuse(const char* name, const std::string& law) const {
-    if (!has(name)) throw UsageError(fmt::format("{} does not say {}, {}", who_, name, law));
+    if (!has(name)) throw UsageError(fmt::format("{} lacks {}, {}", who_, name, law));
     fail(fmt::format("says {} =", name), json_[name], law);
   }
 

@@ -22,9 +22,9 @@ struct ProcessOptions {
 };
 
 void fields(ProcessOptions& o, auto& field) {
-  field("command", o.command, {}, "what is started: words as of a shell, nothing expanded");
-  field("label", o.label, {}, "what tables call it; empty: what it calls itself");
-  field("startup", o.startup, above(0), "seconds in which it must have introduced itself");
+  field("command", o.command, {}, "command to start, quoted as for a shell, without expansions");
+  field("label", o.label, {}, "name in tables; empty: the name that it sends");
+  field("startup", o.startup, above(0), "seconds until it must introduce itself");
 }
 
 // What programs said of themselves: each is started once for it, and not again while its command

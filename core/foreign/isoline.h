@@ -1,10 +1,10 @@
 // Problems and optimizers for Isoline in C, or in any language that has C's calling convention. A
-// shared library exports the one function isoline_plugin(), and `isoline run --plugin ./libmine.so`
-// knows what it brings by its name, as every other verb does that takes --plugin.
+// shared library exports one function, isoline_plugin(). `isoline run --plugin ./libmine.so` then
+// knows its components by their names, and so does every other verb with --plugin.
 //
-// Numbers are doubles, matrices lie column by column. A function returns 0, and anything else where
-// it has no answer: what it was to write then counts as not a number. It keeps no pointer that it
-// is given. Calls come one at a time; each run has a process of its own.
+// Numbers are doubles, and matrices are stored column by column. A function returns 0, or another
+// value if it has no answer: its output then counts as NaN. It must not keep pointers from its
+// arguments. Calls are not concurrent; each run has its own process.
 #pragma once
 
 #include <stdint.h>
@@ -22,36 +22,36 @@ enum {
   ISOLINE_PULLBACK = 1 << 2,     // Jᵀ u
   ISOLINE_JACOBIAN = 1 << 3,     // J, (m, k)
   ISOLINE_INVERSE = 1 << 4,      // an x near x0 with P(x) = y
-  ISOLINE_TRUTH = 1 << 5,        // of a problem alone: the x* that made the target
-  ISOLINE_STEP = 1 << 8,         // of an optimizer alone: step() is one iteration,
-  ISOLINE_SOLVE = 1 << 9,        // or the whole solve, which reports each iteration itself
-  ISOLINE_COMPARES = 1 << 10     // besides: it compares losses from step to step
+  ISOLINE_TRUTH = 1 << 5,        // only of a problem: the x* that produced the target
+  ISOLINE_STEP = 1 << 8,         // only of an optimizer: step() is one iteration,
+  ISOLINE_SOLVE = 1 << 9,        // or the complete solve, which reports each iteration itself
+  ISOLINE_COMPARES = 1 << 10     // in addition: it compares losses of different steps
 };
 
-// How far an inverse can be trusted.
+// The kind of an inverse.
 enum { ISOLINE_EXACT = 1, ISOLINE_DAMPED, ISOLINE_ESTIMATE, ISOLINE_APPROXIMATE };
 
-// What step() returns.
+// The values that step() returns.
 enum { ISOLINE_RUNNING = 0, ISOLINE_CONVERGED, ISOLINE_STALLED, ISOLINE_FAILED };
 
 // A number that a user may set: `mine[rate=0.1]`.
 typedef struct isoline_option {
   const char *name, *about;
-  double standard, low, high;  // its default, and the range that it is held to
+  double standard, low, high;  // its default, and its valid range
   uint32_t is_tuned;           // of an optimizer: `isoline tune` chooses this one
 } isoline_option;
 
-// What a problem says of an instance. It comes as zeros, and `minimum` as not a number.
+// The sizes of an instance. Initially all are 0, and `minimum` is NaN.
 typedef struct isoline_sizes {
   uint64_t inputs, outputs;  // k, m
-  uint64_t kept;             // doubles that forward() leaves for the products at the same x
-  double minimum;            // the least loss that can be attained, where that is known
-  uint32_t inverse;          // ISOLINE_EXACT, …, where there is an inverse
+  uint64_t kept;             // doubles that forward() stores for the products at the same x
+  double minimum;            // the least attainable loss, if known
+  uint32_t inverse;          // ISOLINE_EXACT, …, if there is an inverse
 } isoline_sizes;
 
 // The problem as an optimizer sees it: r = (y − y*)/√B over its B samples, J = ∂r/∂θ, and y*. The
-// functions return 0, and anything else where the run is over: step() then returns at once, with
-// any value. All but loss() and report() are of the θ that was linearized last.
+// functions return 0, or another value if the run is over: step() must then return at once, with
+// any value. All except loss() and report() refer to the θ that was linearized last.
 typedef struct isoline_oracles isoline_oracles;
 struct isoline_oracles {
   uint64_t unknowns, residuals;  // n, m
@@ -64,11 +64,12 @@ struct isoline_oracles {
   int (*pullback)(isoline_oracles* f, const double* u, double* JTu);
   int (*jacobian)(isoline_oracles* f, double* J);  // (m, n)
   int (*inverse)(isoline_oracles* f, const double* y, double* x);
-  int (*report)(isoline_oracles* f, const double* theta);  // of ISOLINE_SOLVE: an iteration
+  int (*report)(isoline_oracles* f,
+                const double* theta);  // for ISOLINE_SOLVE: the end of an iteration
 };
 
-// A problem or an optimizer. Functions that its capabilities do not name may be null, and so may
-// `note`, `open`, `close` and `start`.
+// A problem or an optimizer. Functions outside its capabilities may be NULL, and so may `note`,
+// `open`, `close` and `start`.
 typedef struct isoline_component {
   uint32_t version, bytes;  // ISOLINE_VERSION, sizeof(isoline_component)
   uint64_t capabilities;    // ISOLINE_FORWARD | …
@@ -100,7 +101,7 @@ typedef struct isoline_component {
   int (*step)(void* self, isoline_oracles* f, double* theta);
 } isoline_component;
 
-// What a library exports: its components by number, from 0; null behind the last.
+// The function that a library exports: its components by number, from 0; NULL after the last.
 const isoline_component* isoline_plugin(uint64_t which);
 
 #ifdef __cplusplus

@@ -82,7 +82,7 @@ struct Line::Deadline {
 Line::Line(ChildProgram::Start start) : who_("`" + start.command + "`") {
   int ends[2];
   require(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0,
-          "there is no socket left for another program");
+          "cannot create another socket for a program");
   socket_ = ends[0];
   start.descriptor = ends[1];
   start.environment.emplace_back("ISOLINE_FD", std::to_string(ends[1]));
@@ -194,7 +194,7 @@ FrameHead Line::receive_head(void* room, std::size_t most, std::size_t& got,
     read += receive_some(std::span(parts).first(most > 0 ? 2 : 1), deadline);
   }
   got = read - sizeof head;
-  if (got > head.bytes) fail("sends more than the head of its frame says");
+  if (got > head.bytes) fail("sent more than the header of its frame says");
   return head;
 }
 
@@ -210,7 +210,7 @@ void Line::receive_rest(char* bytes, std::size_t count, const Deadline& deadline
 std::string Line::message_text(const FrameHead& head, std::string begun, std::uint64_t most,
                                const Deadline& deadline) {
   if (head.bytes > most)
-    fail(fmt::format("sends a text of {} bytes, and at most {} are taken", head.bytes, most));
+    fail(fmt::format("sent a text of {} bytes; at most {} are allowed", head.bytes, most));
   const std::size_t got = begun.size();
   begun.resize(head.bytes);
   receive_rest(begun.data() + got, begun.size() - got, deadline);
@@ -223,7 +223,7 @@ FrameHead Line::receive(std::span<Real> room, double seconds) {
   std::size_t got = 0;
   const FrameHead head = receive_head(bytes.data(), bytes.size(), got, deadline);
   if (head.bytes > bytes.size())
-    fail(fmt::format("sends a frame of {} bytes, and at most {} are taken here", head.bytes,
+    fail(fmt::format("sent a frame of {} bytes; at most {} are allowed here", head.bytes,
                      bytes.size()));
   receive_rest(bytes.data() + got, head.bytes - got, deadline);
   return head;
@@ -235,12 +235,12 @@ void Line::receive_answer(Verb verb, std::span<Real> numbers, double seconds) {
   std::size_t got = 0;
   const FrameHead head = receive_head(bytes.data(), bytes.size(), got, deadline);
   if (head.verb != static_cast<std::uint32_t>(verb))
-    fail(fmt::format("answers {} with a frame of verb {}", name_of(verb), head.verb));
+    fail(fmt::format("answered {} with a frame of verb {}", name_of(verb), head.verb));
   if (head.status != static_cast<std::uint32_t>(Answer::done))
     fail(fmt::format("failed at {}: {}", name_of(verb),
                      message_text(head, {bytes.data(), got}, kMostWireText, deadline)));
   if (head.bytes != bytes.size())
-    fail(fmt::format("answers {} with {} bytes, where {} are the answer", name_of(verb), head.bytes,
+    fail(fmt::format("answered {} with {} bytes instead of {}", name_of(verb), head.bytes,
                      bytes.size()));
   receive_rest(bytes.data() + got, bytes.size() - got, deadline);
 }
@@ -250,7 +250,7 @@ std::string Line::receive_text(Verb verb, std::uint64_t most_bytes, double secon
   std::size_t got = 0;
   const FrameHead head = receive_head(nullptr, 0, got, deadline);
   if (head.verb != static_cast<std::uint32_t>(verb))
-    fail(fmt::format("answers {} with a frame of verb {}", name_of(verb), head.verb));
+    fail(fmt::format("answered {} with a frame of verb {}", name_of(verb), head.verb));
   const std::string text = message_text(head, "", most_bytes, deadline);
   if (head.status != static_cast<std::uint32_t>(Answer::done))
     fail(fmt::format("failed at {}: {}", name_of(verb), text));

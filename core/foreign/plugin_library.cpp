@@ -64,7 +64,7 @@ class Reader {
 
   void check_version(const isoline_component& given) const {
     hold(given.version == ISOLINE_VERSION, [&] {
-      return fmt::format("a component must be of version {} of isoline.h, got {}",
+      return fmt::format("a component must have version {} of isoline.h, got {}",
                          static_cast<int>(ISOLINE_VERSION), given.version);
     });
     hold(given.bytes == sizeof given, [&] {
@@ -100,13 +100,13 @@ class Reader {
   template <class Function>
   void require_function(bool is_promised, const char* name, Function function) const {
     hold(!is_promised || function != nullptr,
-         [&] { return fmt::format("its capabilities promise {}(), which is null", name); });
+         [&] { return fmt::format("its capabilities include {}(), which is null", name); });
   }
 
   void check_problem(const isoline_component& given) const {
     const std::uint64_t can = given.capabilities;
     hold((can & ~kOfProblems) == 0, [&] {
-      return fmt::format("capabilities {:#x} are none of a problem's", can & ~kOfProblems);
+      return fmt::format("capabilities {:#x} are not valid for a problem", can & ~kOfProblems);
     });
     hold(has(can, ISOLINE_FORWARD),
          "a problem must have ISOLINE_FORWARD, an optimizer "
@@ -123,10 +123,10 @@ class Reader {
   void check_optimizer(const isoline_component& given) const {
     const std::uint64_t can = given.capabilities;
     hold((can & ~kOfOptimizers) == 0, [&] {
-      return fmt::format("capabilities {:#x} are none of an optimizer's", can & ~kOfOptimizers);
+      return fmt::format("capabilities {:#x} are not valid for an optimizer", can & ~kOfOptimizers);
     });
     hold(!has(can, ISOLINE_STEP | ISOLINE_SOLVE),
-         "an optimizer has either ISOLINE_STEP or ISOLINE_SOLVE, got both");
+         "an optimizer must have either ISOLINE_STEP or ISOLINE_SOLVE, got both");
     require_function(true, "step", given.step);
   }
 
@@ -140,8 +140,8 @@ class Reader {
       OptionField field = field_of(option);
       const bool is_new =
           std::ranges::find(made.options, field.name, &OptionField::name) == made.options.end();
-      hold(is_new, [&] { return fmt::format("option '{}' is given twice", field.name); });
-      hold(option.is_tuned == 0 || made.tuned.empty(), "one option at most is tuned");
+      hold(is_new, [&] { return fmt::format("option '{}' occurs twice", field.name); });
+      hold(option.is_tuned == 0 || made.tuned.empty(), "at most one option may be tuned");
       if (option.is_tuned != 0) made.tuned = field.name;
       made.options.push_back(std::move(field));
     }
@@ -167,7 +167,7 @@ void* opened(const std::string& path) {
   void* library = dlopen(whole.c_str(), RTLD_NOW | RTLD_LOCAL);
   require(library != nullptr, [&] {
     const char* reason = dlerror();
-    return fmt::format("{}: no library that can be loaded: {}", path,
+    return fmt::format("{} cannot be loaded as a library: {}", path,
                        valid_utf8(reason == nullptr ? "" : reason));
   });
   return library;
@@ -185,13 +185,13 @@ std::vector<PluginComponent> load_plugin(const std::string& path) {
   const std::string contents = digest(read_text(path));  // a regular file, or it says what it is
   void* entry = dlsym(opened(path), "isoline_plugin");
   require(entry != nullptr, [&] {
-    return fmt::format("{}: it exports no isoline_plugin(), which isoline.h declares", path);
+    return fmt::format("{} does not export isoline_plugin(), which isoline.h declares", path);
   });
   const auto plugin = reinterpret_cast<decltype(&isoline_plugin)>(entry);
   std::vector<PluginComponent> all;
   for (std::uint64_t which = 0; const isoline_component* given = plugin(which); ++which) {
     require(which < kMostComponents, [&] {
-      return fmt::format("{}: isoline_plugin() must return null behind the last component, got {}",
+      return fmt::format("{}: isoline_plugin() must return null after the last component, got {}",
                          path, kMostComponents);
     });
     all.push_back(Reader(path, contents, which).read(*given));

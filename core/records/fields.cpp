@@ -51,7 +51,7 @@ void Form<OptionValues>::read(const JsonView& json, OptionValues& options) {
 void Form<Status>::read(const JsonView& json, Status& status) {
   const auto found = status_of(json.get<std::string>());
   require(found.has_value(), [&] { return "unknown status " + json.get<std::string>(); });
-  require(found != Status::running, "its run had not ended when it was written");
+  require(found != Status::running, "it was written before its run ended");
   status = *found;
 }
 

@@ -98,7 +98,7 @@ class FieldReader {
   explicit FieldReader(const JsonView& in) : in_(in) {}
 
   void constant(const char* name, const char* value) {
-    require(in_.at(name).get<std::string>() == value, "its schema is another");
+    require(in_.at(name).get<std::string>() == value, "it has another schema");
   }
   template <class Value>
   void operator()(const char* name, Value&& value, const char* = "") {

@@ -264,7 +264,7 @@ JsonView JsonReader::parse(const std::string& text, const std::string& origin) {
   const simdjson::error_code error = parser_->parser.parse(text).get(root);
   if (error == simdjson::SUCCESS) return view_of(root);
   parse_json(text, origin);
-  throw UsageError(fmt::format("{} is no JSON: {}", origin, simdjson::error_message(error)));
+  throw UsageError(fmt::format("{} is not JSON: {}", origin, simdjson::error_message(error)));
 }
 
 }  // namespace isoline

@@ -38,15 +38,15 @@ class HeaderReader {
   HeaderReader(std::string_view text, Header& out) : text_(text), out_(out) {}
 
   void read() {
-    require(takes('{'), "its header is no dictionary");
+    require(takes('{'), "its header is not a dictionary");
     while (!takes('}')) {
-      read_entry(quoted("its header has a key that is no text"));
+      read_entry(quoted("its header has a key that is not a text"));
       if (takes(',')) continue;
-      require(takes('}'), "its header is no dictionary");
+      require(takes('}'), "its header is not a dictionary");
       break;
     }
     skip_spaces();
-    require(text_.empty(), "its header goes on behind its end");
+    require(text_.empty(), "its header continues after its end");
     require(has_type_, "its header names no supported type of numbers");
     require(has_order_, "its header names no order of indices");
     require(has_shape_, "its header names no shape");

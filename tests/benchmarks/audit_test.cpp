@@ -232,9 +232,9 @@ Catalog catalog_with_liars() {
 TEST(Audit, FlagsAFalseDeclaration) {
   const AuditedOptimizer found = audit_optimizer(catalog_with_liars(), "boaster");
   ASSERT_EQ(found.flags.size(), 3U);
-  EXPECT_EQ(found.flags[0], "asked for pullback, and does not declare it");
-  EXPECT_EQ(found.flags[1], "declares that it needs hessian, and never asked");
-  EXPECT_TRUE(found.flags[2].starts_with("declares that rescaled inputs leave its path"));
+  EXPECT_EQ(found.flags[0], "called pullback without declaring it");
+  EXPECT_EQ(found.flags[1], "declares that it needs hessian, but never called it");
+  EXPECT_TRUE(found.flags[2].starts_with("declares that rescaled inputs do not change its path"));
 }
 
 TEST(Audit, ACrashOrALeaveCostsItsOwnAuditAlone) {

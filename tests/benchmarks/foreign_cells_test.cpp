@@ -52,12 +52,12 @@ class ForeignCells : public testing::Test {
 };
 
 TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
-  expect_failed("closes", "closed its socket; it still runs");
+  expect_failed("closes", "closed its socket; it is still running");
   expect_failed("leaves", "left with exit code 3, and last printed: I have had enough");
-  expect_failed("half-a-frame", "closed its socket; it left with exit code 0");
-  expect_failed("a-huge-frame", "answers linearize with 9223372036854775808 bytes, where 16 are");
-  expect_failed("a-huge-complaint", "sends a text of 9223372036854775808 bytes, and at most 65536");
-  expect_failed("another-verb", "answers linearize with a frame of verb 99");
+  expect_failed("half-a-frame", "closed its socket; it exited with code 0");
+  expect_failed("a-huge-frame", "answered linearize with 9223372036854775808 bytes instead of 16");
+  expect_failed("a-huge-complaint", "sent a text of 9223372036854775808 bytes; at most 65536");
+  expect_failed("another-verb", "answered linearize with a frame of verb 99");
   expect_failed("two-answers", "sent an unsolicited frame");
   expect_failed("raises", "failed at linearize: ValueError: the mesh is tangled");
 }
@@ -198,7 +198,7 @@ TEST_F(ForeignCells, OfAnOptimizerFailWithWhatItDid) {
             "the method called the oracle 'jacobian', which it does not declare as needed");
   EXPECT_NE(record_of_method("raises").message.find("ValueError: the step is no number"),
             std::string::npos);
-  EXPECT_NE(record_of_method("leaves").message.find("it left with exit code 4"), std::string::npos);
+  EXPECT_NE(record_of_method("leaves").message.find("it exited with code 4"), std::string::npos);
 }
 
 TEST_F(ForeignCells, OfAnOptimizerThatDoesNotStopEndAllTheSame) {

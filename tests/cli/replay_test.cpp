@@ -71,7 +71,7 @@ TEST_F(Replay, OfAnotherBuildIsNotComparableAndStillTold) {
   });
   const Finished other = replay();
   EXPECT_EQ(other.exit_code, 4) << other.out;
-  EXPECT_TRUE(contains(other.out, "another build answered, which differs in: optimizer; equal"))
+  EXPECT_TRUE(contains(other.out, "another build computed it, which differs in: optimizer; equal"))
       << other.out;
 }
 

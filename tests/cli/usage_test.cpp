@@ -75,7 +75,7 @@ const std::vector<Mistake> kMistakes = {
     {"run --seeds 3 --seeds 4", "--seeds is given more than once"},
     {"describe adan", "no problem, optimizer or network 'adan'; did you mean 'adam'?"},
     {"describe zzzz", "`isoline list` names them all"},
-    {"audit zzzz", "unknown optimizer 'zzzz', which is like none of the "},
+    {"audit zzzz", "unknown optimizer 'zzzz'; none of the "},
     {"report . --by tim", "did you mean 'time'"},
     {"infer absent.json --input x.csv --output y.csv", "isoline: absent.json: no such file"},
     {"train rosenbrock --out net.json",
@@ -87,10 +87,10 @@ const std::vector<Mistake> kMistakes = {
     {"claims zzzz", "unknown claim 'zzzz'; `isoline claims --list --all` lists them"},
     {"run quick --in-process --dry-run", "--dry-run"},
     {"run quick --shard 5/4", "--shard must be I/N with 1 ≤ I ≤ N"},
-    {"run quick --shard auto", "neither ISOLINE_SHARD nor SLURM_ARRAY_TASK_ID is set here"},
+    {"run quick --shard auto", "needs ISOLINE_SHARD or SLURM_ARRAY_TASK_ID"},
     {"plan quick --shards 0", "--shards"},
     {"status absent", "absent: no result folder"},
-    {"submit -- quick", "--slurm is the one there is"},
+    {"submit -- quick", "--slurm is the only one"},
     {"submit --slurm -- quick --shard 1/2", "leave it out after --"},
     {"submit --slurm -- quick --dry-run", "no --dry-run"},
     {"submit --slurm -- --problm sine", "unknown option --problm; did you mean --problem?"},
@@ -100,7 +100,7 @@ const std::vector<Mistake> kMistakes = {
     {"run --problem square --optimizer 'adam[beta3=1]'", "did you mean 'beta"},
     {"run --problem 'sine[xi=-3]' --optimizer gd", "sine: xi must be in"},
     {"run --problem 'sine[xi=two]' --optimizer gd", "xi"},
-    {"run --problem 'sine[xi=1' --optimizer gd", "leaves a bracket open"},
+    {"run --problem 'sine[xi=1' --optimizer gd", "has a [ without a ]"},
     {"run --problem square --optimizer gd --seeds 5..3", "5..3"},
     {"run --problem square --optimizer gd --seeds many", "many"},
     {"run --problem square --optimizer gd --time soon", "soon"},
@@ -148,7 +148,7 @@ const std::vector<Mistake> kMistakes = {
     {"run notebook --problem brown-dennis", "brown-dennis"},
     {"run notebook --optimizer adma", "did you mean 'adam'"},
     {"run quick --all", "--dry-run"},
-    {"tune", "name the problems, as SPEC or by --problem"},
+    {"tune", "name problems, as SPEC or with --problem"},
     {"tune square --problem square", "--problem"},
     {"report .", "no records in .: `isoline run"},
     {"run --rates nowhere.json", "nowhere.json"},
@@ -220,12 +220,12 @@ TEST(Describe, TellsTheGivenValueBesideTheDefault) {
 TEST(Describe, TellsEveryPrivilegeThatAMethodCanHave) {
   const Shell shell;
   EXPECT_TRUE(contains(shell("./isoline describe sip").out,
-                       "Privileges  exact inverse of the physics; damped inverse of the physics; "
+                       "Extra info  exact inverse of the physics; damped inverse of the physics; "
                        "approximate inverse of the physics; "
                        "estimate by how the data were made\n"));
   EXPECT_TRUE(contains(shell("./isoline describe 'sip[inverse=newton]'").out,
-                       "Privileges  exact Hessian\n"));
-  EXPECT_TRUE(contains(shell("./isoline describe adam").out, "Privileges  none\n"));
+                       "Extra info  exact Hessian\n"));
+  EXPECT_TRUE(contains(shell("./isoline describe adam").out, "Extra info  none\n"));
 }
 
 TEST(List, NamesEverythingInWordsAndInJson) {

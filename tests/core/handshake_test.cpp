@@ -62,9 +62,9 @@ TEST(Handshakes, ThatBreakTheLawAreQuoted) {
             "`mine` says start = [1,2,3], which must be a list of 2 numbers");
   EXPECT_EQ(complaint("target", {1, 2, "three"}),
             "`mine` says target = [1,2,\"three\"], which must be a list of 3 numbers");
-  EXPECT_EQ(complaint("target", nullptr), "`mine` does not say target, a list of 3 numbers");
+  EXPECT_EQ(complaint("target", nullptr), "`mine` lacks target, a list of 3 numbers");
   EXPECT_EQ(complaint("oracles", {"forward", "gradient"}),
-            "`mine` says oracles = [\"forward\",\"gradient\"], which must be a list of some of "
+            "`mine` says oracles = [\"forward\",\"gradient\"], which must be a list of "
             "forward pushforward pullback jacobian inverse");
   EXPECT_EQ(complaint("name", {1}), "`mine` says name = [1], which must be text");
   EXPECT_EQ(complaint("packages", {{"numpy", 1}}),
@@ -77,7 +77,7 @@ TEST(Handshakes, ThatBreakTheLawAreQuoted) {
 }
 
 TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
-  EXPECT_EQ(complaint("protocol", 2), "`mine` speaks protocol 2, and this program 1");
+  EXPECT_EQ(complaint("protocol", 2), "`mine` uses protocol 2, but this program needs 1");
   EXPECT_EQ(complaint("role", "optimizer"), "`mine` is an optimizer, but is used as a problem");
   for (const char* text : {"", "[]", "{", "nonsense", "3"})
     EXPECT_THROW(problem_handshake(text, "`mine`"), UsageError) << text;
@@ -86,7 +86,7 @@ TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
 
 TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
   const std::string law =
-      ", which must be two lists of 2 numbers, each of the first less than its like in the second";
+      ", which must be two lists of 2 numbers, the lower bounds below the upper ones";
   for (const Json& wrong : {Json{{0, 1}, {0, 1}}, Json{{0, 0}, {1, "nan"}}, Json{{0, 0}},
                             Json{{0}, {1}}, Json("none"), Json{{0, 0}, {1, "one"}}})
     EXPECT_EQ(complaint("bounds", wrong), "`mine` says bounds = " + json_text(wrong) + law);
@@ -96,7 +96,7 @@ TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
   const ProblemHandshake said = problem_handshake(json_text(json), "`mine`");
   EXPECT_EQ(said.lower, (std::vector<Real>{-std::numeric_limits<Real>::infinity(), 2}));
   EXPECT_EQ(said.upper, (std::vector<Real>{1, std::numeric_limits<Real>::infinity()}));
-  EXPECT_TRUE(said.foreign.note.ends_with("Outside its bounds on x it has no value."));
+  EXPECT_TRUE(said.foreign.note.ends_with("It has no value outside its bounds on x."));
   json["truth"] = {2, 2};
   try {
     problem_handshake(json_text(json), "`mine`");

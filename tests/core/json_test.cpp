@@ -94,7 +94,7 @@ TEST(Json, ThatNestsWithoutEndIsRefused) {
   for (const std::string opening : {"[", "{\"a\":"}) {
     std::string text;
     for (int i = 0; i < 200'000; ++i) text += opening;
-    EXPECT_NE(complaint_of_json(text).find("nests deeper"), std::string::npos);
+    EXPECT_NE(complaint_of_json(text).find("nested deeper"), std::string::npos);
   }
   EXPECT_EQ(complaint_of_json("[\"[[[[\\\"[[[[\"]" + std::string(1000, ' ')), "");
   EXPECT_EQ(complaint_of_json(std::string(150, '[') + std::string(150, ']')), "");

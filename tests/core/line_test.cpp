@@ -110,10 +110,10 @@ TEST(Line, WhatBreaksTheLawOfFramesIsRefused) {
   expect_said(frame(4, 0, 16, "").substr(0, 9), "closed its socket");
   expect_said(frame(4, 0, 16, "12345678"), "closed its socket");
   expect_said(frame(4, 0, std::uint64_t{1} << 63, bytes_of(kNumbers)),
-              "answers pullback with 9223372036854775808 bytes, where 16 are the answer");
+              "answered pullback with 9223372036854775808 bytes instead of 16");
   expect_said(frame(4, 0, 8, "12345678"), "with 8 bytes, where 16 are");
-  expect_said(frame(4, 0, 8, bytes_of(kNumbers)), "sends more than the head of its frame says");
-  expect_said(frame(99, 0, 16, bytes_of(kNumbers)), "answers pullback with a frame of verb 99");
+  expect_said(frame(4, 0, 8, bytes_of(kNumbers)), "sent more than the header of its frame says");
+  expect_said(frame(99, 0, 16, bytes_of(kNumbers)), "answered pullback with a frame of verb 99");
 }
 
 TEST(Line, AComplaintIsQuotedWithinBounds) {
@@ -121,7 +121,7 @@ TEST(Line, AComplaintIsQuotedWithinBounds) {
               "failed at pullback: the mesh is \uFFFD");
   expect_said(frame(4, 1, 2, "no"), "failed at pullback: no");
   expect_said(frame(4, 1, std::uint64_t{1} << 63, "long"),
-              "sends a text of 9223372036854775808 bytes, and at most 65536 are taken");
+              "sent a text of 9223372036854775808 bytes; at most 65536 are allowed");
 }
 
 TEST(Line, ADeadlineIsKept) {
@@ -139,7 +139,7 @@ TEST(Line, AQuestionLongerThanItsRoomIsRefusedBeforeItIsRead) {
     ends.line->receive(room);
     FAIL() << "it was taken";
   } catch (const LineError& error) {
-    EXPECT_NE(std::string(error.what()).find("and at most 32 are taken here"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("at most 32 are allowed here"), std::string::npos);
   }
 }
 
@@ -162,9 +162,9 @@ std::string failure_of(const std::string& script, double seconds = 20) {
 
 TEST(Programs, HowTheyEndAndWhatTheyPrintedLastIsSaid) {
   const std::string said = failure_of("echo one; echo two >&2; exit 3");
-  EXPECT_NE(said.find("it left with exit code 3, and last printed: one\ntwo"), std::string::npos)
+  EXPECT_NE(said.find("it exited with code 3, and last printed: one\ntwo"), std::string::npos)
       << said;
-  EXPECT_NE(failure_of("kill -9 $$").find("it was ended by signal 9 (Killed), and printed nothing"),
+  EXPECT_NE(failure_of("kill -9 $$").find("signal 9 (Killed) ended it, and printed nothing"),
             std::string::npos);
 }
 

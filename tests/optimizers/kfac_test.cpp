@@ -197,7 +197,7 @@ TEST(Kfac, IsForDenseLayersAndConvolutionsOfUpToSomeThousandInputs) {
   for (const char* spec : {"poisson[mode=learn]", "heat[mode=learn]", "navier-stokes[mode=learn]",
                            "burgers[mode=learn]"})
     EXPECT_EQ(why("kfac", published(spec)), "") << spec;
-  const std::string lack = "there is no network of dense layers or of convolutions";
+  const std::string lack = "the problem has no network of dense layers or convolutions";
   EXPECT_EQ(why("kfac", published("sine")), lack);
   EXPECT_EQ(why("kfac", published("poisson[mode=learn,network=fno]")), lack);
   EXPECT_EQ(why("kfac", published("sine[mode=learn,network=mlp[layers=5000]]")),
@@ -207,7 +207,7 @@ TEST(Kfac, IsForDenseLayersAndConvolutionsOfUpToSomeThousandInputs) {
 // JJᵀ layer by layer is of dense layers, whose rows are outer products.
 TEST(Kfac, AloneTakesConvolutionsByTheirMoments) {
   EXPECT_EQ(why("hig[way=layers]", published("poisson-hig[mode=learn,network=unet[levels=3]]")),
-            "there is no network of dense layers");
+            "the problem has no network of dense layers");
 }
 
 // They end at a thirtieth and at a thirteenth of their start.

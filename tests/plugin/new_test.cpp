@@ -100,9 +100,9 @@ TEST(New, InTheTreeNamesTheLauncher) {
 TEST(New, OverwritesNothingAndTakesNoNameTwice) {
   const struct {
     std::string command, sentence;
-  } mistakes[] = {{"problem well --c", "well.c is there already, and is not overwritten"},
-                  {"problem sine", "there is a 'sine' already"},
-                  {"optimizer adam --c", "there is a 'adam' already"},
+  } mistakes[] = {{"problem well --c", "well.c exists already"},
+                  {"problem sine", "'sine' exists already"},
+                  {"optimizer adam --c", "'adam' exists already"},
                   {"problem Well", "a name must be lower-case letters"},
                   {"problem ../well", "got '../well'"},
                   {"problem -- -well", "got '-well'"},

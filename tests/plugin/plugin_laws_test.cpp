@@ -27,7 +27,7 @@ struct Law {
 };
 
 const Law kLaws[] = {
-    {"version", "no. 0: a component must be of version 1 of isoline.h, got 2"},
+    {"version", "no. 0: a component must have version 1 of isoline.h, got 2"},
     {"bytes", "`bytes` must be sizeof(isoline_component), "},
     {"null name", "no. 0: `name` is null"},
     {"bad name", "`name` must be lower-case letters, digits and hyphens, 64 at most"},
@@ -42,13 +42,13 @@ const Law kLaws[] = {
     {"null inverse", "its capabilities promise inverse(), which is null"},
     {"null step", "its capabilities promise step(), which is null"},
     {"inverse of no kind", "dimension() must say what its inverse is"},
-    {"alien capability", "capabilities 0x10000000000 are none of a problem's"},
+    {"alien capability", "capabilities 0x10000000000 are not valid for a problem"},
     {"no capability", "a problem must have ISOLINE_FORWARD"},
     {"two kinds of step", "either ISOLINE_STEP or ISOLINE_SOLVE"},
     {"null options", "`options` is null"},
     {"endless options", "it may have 100 options, got 1099511627776"},
     {"option outside", "the default of option 'size' must be in [0, 1], got 5"},
-    {"endless components", "isoline_plugin() must return null behind the last component, got 1000"},
+    {"endless components", "isoline_plugin() must return null after the last component, got 1000"},
     {"nothing at all", "isoline_plugin() has no component"},
     {"no inputs", "dimension() must give inputs from 1 to 134217728, got 0"},
     {"2^40 inputs", "dimension() must give inputs from 1 to 134217728, got 1099511627776"},
@@ -80,7 +80,7 @@ std::string message_of_overreach(const char* defect) {
 TEST(PluginLaws, AMethodIsRefusedWhatItDidNotDeclareWhateverItMakesOfThat) {
   EXPECT_NE(message_of_overreach("").find("jacobian"), std::string::npos)
       << message_of_overreach("");
-  EXPECT_NE(message_of_overreach("gradient first").find("come after linearize()"),
+  EXPECT_NE(message_of_overreach("gradient first").find("need linearize() first"),
             std::string::npos);
   EXPECT_NE(message_of_overreach("unknown verdict").find("got 7"), std::string::npos);
   EXPECT_NE(message_of_overreach("failed step").find("trial-overreach: step() failed"),
@@ -106,9 +106,9 @@ TEST(PluginLaws, WhatIsNoLibraryIsNamed) {
   };
   EXPECT_NE(told("nowhere.so").find("nowhere.so: no such file"), std::string::npos);
   EXPECT_NE(told(kPlugins).find("is a folder"), std::string::npos) << told(kPlugins);
-  EXPECT_NE(told(ISOLINE_SOURCE_DIR "/README.md").find("no library that can be loaded"),
+  EXPECT_NE(told(ISOLINE_SOURCE_DIR "/README.md").find("cannot be loaded as a library"),
             std::string::npos);
-  EXPECT_NE(told(kPlugins + "/empty.so").find("it exports no isoline_plugin()"), std::string::npos);
+  EXPECT_NE(told(kPlugins + "/empty.so").find("does not export isoline_plugin()"), std::string::npos);
 }
 
 }  // namespace

@@ -80,11 +80,11 @@ TEST_F(PluginProgram, WhatCannotBeLoadedIsOneSentence) {
     std::string before, plugin, sentence;
   } all[] = {
       {"ISOLINE_DEFECT='crash at load'", "./trials.so",
-       "./trials.so: it cannot be loaded: it was ended by signal 6"},
+       "./trials.so cannot be loaded: "},
       {"ISOLINE_DEFECT=version", "./trials.so",
-       "./trials.so: no. 0: a component must be of version"},
+       "./trials.so: no. 0: a component must have version"},
       {"", "./nowhere.so", "./nowhere.so: no such file"},
-      {"", "./isoline", "./isoline: no library that can be loaded"},
+      {"", "./isoline", "./isoline cannot be loaded as a library"},
       {"head -c 3000 rosenbrock.so > cut.so;", "./cut.so", "./cut.so: "},
       {"", "./rosenbrock.so --plugin ./rosenbrock.so", "'rosenbrock-c' is registered twice"}};
   for (const auto& [before, plugin, sentence] : all) {

@@ -153,24 +153,24 @@ void expect_complaint(const std::string& spec, const std::string& part) {
 }
 
 TEST(Process, SaysWhatIsMissing) {
-  expect_complaint("process", "process needs a command, as in process[command=");
-  expect_complaint(process_of("python3 'mine.py"), "ends within a quote");
+  expect_complaint("process", "process needs a command, such as process[command=");
+  expect_complaint(process_of("python3 'mine.py"), "must not end inside a quote");
   expect_complaint(process_of("a-program-that-nobody-has"),
                    "cannot start 'a-program-that-nobody-has': No such file or directory");
-  expect_complaint(process_of("true"), "closed its socket; it left with exit code 0");
+  expect_complaint(process_of("true"), "closed its socket; it exited with code 0");
 }
 
 TEST(Process, ThatDiesAtImportIsQuotedByItsLastLines) {
   const std::string dead = process_of(misbehaving("misbehaving.py dies-at-import"));
-  expect_complaint(dead, "it left with exit code 1, and last printed:");
+  expect_complaint(dead, "it exited with code 1, and last printed:");
   expect_complaint(dead, "ModuleNotFoundError: No module named 'a_package_that_nobody_has'");
 }
 
 TEST(Process, ThatIsLateIsToldFromOneThatIsSilent) {
   expect_complaint(process_of(misbehaving("misbehaving.py is-late"), ",startup=0.2"),
-                   "did not answer within 0.2 s; it still runs");
+                   "did not answer within 0.2 s; it is still running");
   expect_complaint(process_of(misbehaving("misbehaving.py is-silent")),
-                   "closed its socket; it left with exit code 0, and printed nothing");
+                   "closed its socket; it exited with code 0, and printed nothing");
 }
 
 TEST(Process, ThatIsAnOptimizerSaysSo) {

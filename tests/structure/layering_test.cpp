@@ -1,4 +1,4 @@
-// The arrows of the house: which folder may include which, and which file is whose only door to a
+// Layering: which folder may include which, and which file is the only adapter to a
 // library.
 #include <gtest/gtest.h>
 
@@ -177,7 +177,7 @@ TEST(Layering, EveryLibraryStaysBehindItsDoor) {
       const auto door = std::ranges::find_if(
           kDoors, [&](const auto& each) { return include.name.starts_with(each.first); });
       ASSERT_NE(door, kDoors.end()) << source.path << " includes an unknown <" << include.name
-                                    << ">: name its door here and in the conventions";
+                                    << ">: name its adapter here and in the conventions";
       EXPECT_TRUE(std::regex_match(source.path, std::regex(door->second)))
           << source.path << " includes <" << include.name << ">";
     }

@@ -71,8 +71,21 @@ std::vector<std::filesystem::path> pages() {
 }
 
 // Folders whose sources are held to kArchaic.
-constexpr const char* kFolders[] = {"cmake",    "clients",    "networks",
-                                    "problems", "optimizers", "core"};
+constexpr const char* kFolders[] = {"cmake",
+                                    "clients",
+                                    "networks",
+                                    "problems",
+                                    "optimizers",
+                                    "core",
+                                    "benchmarks/plan",
+                                    "benchmarks/shard",
+                                    "benchmarks/merge",
+                                    "benchmarks/audit",
+                                    "benchmarks/cli",
+                                    "benchmarks/verbs",
+                                    "benchmarks/schemas",
+                                    "benchmarks/suites",
+                                    "benchmarks/micro"};
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(),
