@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "core/results/times.h"
 #include "core/status.h"
 #include "core/threads.h"
 #include "reports/compare/differences.h"
 #include "reports/compare/pairing.h"
-#include "reports/statistics/times.h"
 
 namespace isoline::reports {
 

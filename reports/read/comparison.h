@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/results/statistics.h"
 #include "reports/read/lead.h"
 #include "reports/read/metrics.h"
 #include "reports/read/study.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 

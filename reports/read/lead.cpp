@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/statistics/statistics.h"
-#include "reports/statistics/tests.h"
+#include "core/results/statistics.h"
+#include "core/results/tests.h"
 
 namespace isoline::reports {
 namespace {

@@ -6,9 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
 namespace isoline::reports {
+
+using namespace results;  // statistics, as if they were ours
 
 inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
 

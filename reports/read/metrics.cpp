@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
 namespace isoline::reports {
+
+using namespace results;
 namespace {
 
 // "1e-4", "1.6e-4": two digits tell a rung from its neighbours.

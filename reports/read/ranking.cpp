@@ -7,9 +7,9 @@
 #include <numeric>
 #include <set>
 
+#include "core/results/statistics.h"
+#include "core/results/tests.h"
 #include "core/threads.h"
-#include "reports/statistics/statistics.h"
-#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 namespace {

@@ -14,9 +14,11 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/records/json_view.h"
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
 namespace isoline::reports {
+
+using namespace results;
 namespace {
 
 std::string text_at(const JsonView& row, const char* key) {

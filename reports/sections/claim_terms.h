@@ -10,9 +10,9 @@
 
 #include "core/real.h"
 #include "core/records/record.h"
+#include "core/results/statistics.h"
 #include "reports/read/comparison.h"
 #include "reports/sections/quantities.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 

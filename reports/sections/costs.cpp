@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/results/statistics.h"
 #include "reports/read/reached.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

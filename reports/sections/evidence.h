@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "core/results/statistics.h"
 #include "reports/read/comparison.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/quantities.h"
 #include "reports/sections/section.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 

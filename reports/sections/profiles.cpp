@@ -8,13 +8,13 @@
 
 #include "core/digest.h"
 #include "core/draws.h"
+#include "core/results/statistics.h"
 #include "reports/read/ranking.h"
 #include "reports/read/reached.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 

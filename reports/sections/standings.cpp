@@ -8,13 +8,13 @@
 #include <map>
 #include <numeric>
 
+#include "core/results/statistics.h"
+#include "core/results/tests.h"
 #include "reports/read/ranking.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
-#include "reports/statistics/tests.h"
 
 namespace isoline::reports {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/results/statistics.h"
 #include "reports/read/comparison.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 

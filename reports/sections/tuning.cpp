@@ -6,12 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "core/results/statistics.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/results/statistics.h"
 #include "core/shell.h"
 #include "reports/sections/claim_terms.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

@@ -1,5 +1,5 @@
 // Judges times: exact ranks, an interval of the ratio, and the noise that the repetitions show.
-#include "reports/statistics/times.h"
+#include "core/results/times.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/digest.h"
 #include "core/draws.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 // Fisher and Yates.
@@ -96,4 +96,4 @@ std::vector<TimeVerdict> judge_times(const std::vector<TimedCell>& cells, Real l
   return verdicts;
 }
 
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -35,8 +35,6 @@ def area(s):
 
 
 ranks = stats.rankdata(costs, axis=1)
-boot = stats.bootstrap((ranks[:, 0],), np.mean, n_resamples=200000, method="percentile",
-                       random_state=np.random.default_rng(1))
 
 spent = np.round(random.uniform(50, 200, 9))
 success = np.array([1, 0, 0, 1, 0, 1, 0, 0, 0], dtype=bool)
@@ -50,8 +48,6 @@ json.dump({
     "shares": shares,
     "areas": [area(s) for s in range(5)],
     "mean_ranks": [float(m) for m in ranks.mean(axis=0)],
-    "first_rank_interval": [float(boot.confidence_interval.low),
-                            float(boot.confidence_interval.high)],
     "spent": [float(s) for s in spent],
     "success": [bool(s) for s in success],
     "ert": float(ert)

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "reports/statistics/times.h"
+#include "core/results/times.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 constexpr std::size_t kPairs = 100;  // of jobs
@@ -110,4 +110,4 @@ TEST(Timing, RanksOfWhatIsNotANumberEnd) {
 }
 
 }  // namespace
-}  // namespace isoline::reports
+}  // namespace isoline::results

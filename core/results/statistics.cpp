@@ -1,14 +1,13 @@
 // Medians that keep failures, performance profiles, running times and the bootstrap.
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/digest.h"
 #include "core/draws.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 
 Spread spread_of(std::vector<Real> values) {
   Spread spread;
@@ -133,17 +132,6 @@ std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const
 
 namespace {
 
-template <class Statistic>
-Interval bootstrap(const std::vector<Real>& values, const std::string& key, Statistic statistic) {
-  if (values.empty()) return {};
-  std::vector<Real> all, sample(values.size());
-  resample(values.size(), {fnv1a(key), "report", "bootstrap"}, [&](const Places& places) {
-    for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = values[places[i]];
-    all.push_back(statistic(sample));
-  });
-  return interval_of(std::move(all));
-}
-
 void add(GroupSum& all, const GroupSum& some) {
   all.sums.resize(some.sums.size(), 0);
   for (std::size_t i = 0; i < some.sums.size(); ++i) all.sums[i] += some.sums[i];
@@ -181,14 +169,6 @@ Interval interval_of(std::vector<Real> draws) {
   return {quantile(draws, kTail), quantile(draws, 1 - kTail)};
 }
 
-Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key) {
-  if (!values.empty() && values.size() < kFewestForInterval)
-    return {std::ranges::min(values), std::ranges::max(values)};
-  return bootstrap(values, key, [](const std::vector<Real>& some) {
-    return std::accumulate(some.begin(), some.end(), 0.0) / Real(some.size());
-  });
-}
-
 Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key) {
   GroupSum all;
   for (const GroupSum& group : groups) add(all, group);
@@ -209,4 +189,4 @@ Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key
   return band;
 }
 
-}  // namespace isoline::reports
+}  // namespace isoline::results

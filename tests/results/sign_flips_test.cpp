@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "reports/statistics/tests.h"
+#include "core/results/tests.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 constexpr Real kRounding = 1e-12;
@@ -74,4 +74,4 @@ TEST(Friedman, TheTailOfChiSquareIsTheClosedOneWhereThereIsOne) {
 }
 
 }  // namespace
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -1,11 +1,11 @@
 // Medians with infinities and performance profiles, against hand-computed and independent values.
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 TEST(Spread, AnUnsolvedRunCountsAsInfinite) {
@@ -92,4 +92,4 @@ TEST(Profile, AgreesWithAnIndependentImplementation) {
 }
 
 }  // namespace
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -4,9 +4,9 @@
 
 #include <map>
 
-#include "reports/statistics/tests.h"
+#include "core/results/tests.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 using Sample = std::vector<Real>;
@@ -126,4 +126,4 @@ TEST(RankTests, TheIntervalOfAMedianLeavesOutWhatTheTestOfSignsRejects) {
 }
 
 }  // namespace
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -5,9 +5,9 @@
 #include <bit>
 #include <limits>
 
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 // Of {0, 0, 1} one value is 1 in a third of the draws, one of two in two thirds.
@@ -36,4 +36,4 @@ TEST(BestOf, IsTheExpectationOverAllSubsets) {
 TEST(BestOf, OfNothingIsNothing) { EXPECT_TRUE(expected_best({}).empty()); }
 
 }  // namespace
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -1,6 +1,6 @@
 // Exact distributions of rank sums, counted out by dynamic programming over doubled midranks, which
 // are whole numbers; probabilities instead of counts, so that nothing overflows.
-#include "reports/statistics/tests.h"
+#include "core/results/tests.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "core/draws.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 constexpr Real kTwoSided = 1.959963984540054;  // the normal quantile of 0.975
@@ -316,4 +316,4 @@ Real detectable_mean(Real deviation, std::size_t n) {
          std::sqrt(Real(n));
 }
 
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -12,7 +12,7 @@
 
 #include "core/real.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 
 inline constexpr Real kNever = std::numeric_limits<Real>::infinity();
 
@@ -102,9 +102,6 @@ Interval interval_of(std::vector<Real> draws);
 // So many values are the fewest that can give 95 %: 2/2⁶ is the first below 0.05.
 inline constexpr std::size_t kFewestForInterval = 6;
 
-// Of the mean of values; of fewer values, their range. The key names the stream.
-Interval bootstrap_mean(const std::vector<Real>& values, const std::string& key);
-
 // Ratios of two sums over groups, as a share of problems is: value, and 95 % of the resamples of
 // whole groups, for each component of the numerators.
 struct GroupSum {
@@ -116,4 +113,4 @@ struct Band {
 };
 Band bootstrap_ratio(const std::vector<GroupSum>& groups, const std::string& key);
 
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/real.h"
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 
 // Ranks, 1 the least; ties share the mean, infinite values the last ranks.
 std::vector<Real> mid_ranks(const std::vector<Real>& values);
@@ -63,4 +63,4 @@ Real deviation_of(const std::vector<Real>& values);
 // all samples: (t(0.975) + t(0.8)) deviation / √n. Infinite of fewer than two pairs.
 Real detectable_mean(Real deviation, std::size_t n);
 
-}  // namespace isoline::reports
+}  // namespace isoline::results

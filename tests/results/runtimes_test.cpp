@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/statistics/statistics.h"
-#include "reports/statistics/tests.h"
+#include "core/results/statistics.h"
+#include "core/results/tests.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 // (100 + 40 + 60) / 2; one success of three: E[T_s] + (1 − p)/p E[T_us] = 60 + 2 · 100 = 260.
@@ -39,4 +39,4 @@ TEST(Quantile, IsTheNearestRank) {
 }
 
 }  // namespace
-}  // namespace isoline::reports
+}  // namespace isoline::results

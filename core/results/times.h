@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/real.h"
-#include "reports/statistics/tests.h"
+#include "core/results/tests.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 
 inline constexpr std::size_t kLeastRepetitions = 9;  // of each side
 inline constexpr std::size_t kMostTimed = 20;        // cells, of which each costs the others power
@@ -42,4 +42,4 @@ std::vector<TimeVerdict> judge_times(const std::vector<TimedCell>& cells, Real l
 // noise, and the interval of a cell's ratio already widens with it.
 Real split_noise(const std::vector<TimedCell>& cells);
 
-}  // namespace isoline::reports
+}  // namespace isoline::results
