@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "core/draws.h"
@@ -211,24 +211,82 @@ Real chi_square_tail(Real x, Real freedom) {
   return half < a + 1 ? 1 - lower_gamma(a, half) : upper_gamma(a, half);
 }
 
-// With ties: 12 Σ (R_j − n (k + 1)/2)² / (n k (k + 1) (1 − Σ (t³ − t) / (n (k³ − k)))), the last
-// factor from Σ ranks², which ties lower.
+namespace {
+
+// Ranks within each block, less their mean.
+std::vector<std::vector<Real>> centred_ranks(const std::vector<std::vector<Real>>& values) {
+  std::vector<std::vector<Real>> all;
+  for (const auto& block : values) {
+    all.push_back(mid_ranks(block));
+    for (Real& rank : all.back()) rank -= Real(block.size() + 1) / 2;
+  }
+  return all;
+}
+
+Real squares_of_sums(const std::vector<std::vector<Real>>& ranks) {
+  Real total = 0;
+  for (std::size_t j = 0; j < ranks[0].size(); ++j) {
+    Real sum = 0;
+    for (const auto& block : ranks) sum += block[j];
+    total += sum * sum;
+  }
+  return total;
+}
+
+// How many orders a block's ranks have: k! over the factorials of its ties.
+Real orders_of(std::vector<Real> ranks) {
+  std::ranges::sort(ranks);
+  Real orders = 1, alike = 0;
+  for (std::size_t j = 0; j < ranks.size(); ++j) {
+    alike = j > 0 && ranks[j] == ranks[j - 1] ? alike + 1 : 1;
+    orders *= Real(j + 1) / alike;
+  }
+  return orders;
+}
+
+// Of all orders of the blocks from `block` on, how many reach `far`. The first block keeps its own:
+// to permute all blocks alike changes nothing.
+Real orders_reaching(std::vector<std::vector<Real>>& ranks, std::size_t block, Real far) {
+  if (block == ranks.size()) return squares_of_sums(ranks) >= far ? 1 : 0;
+  Real count = 0;
+  std::ranges::sort(ranks[block]);
+  do count += orders_reaching(ranks, block + 1, far);
+  while (std::ranges::next_permutation(ranks[block]).found);
+  return count;
+}
+
+Real permuted_friedman_p(std::vector<std::vector<Real>> ranks) {
+  constexpr Real kSame = 1e-9;  // sums of halves, squared
+  const Real far = squares_of_sums(ranks) - kSame;
+  Real orders = 1;
+  for (std::size_t block = 1; block < ranks.size(); ++block) orders *= orders_of(ranks[block]);
+  if (orders <= Real(kDrawnFlips)) return orders_reaching(ranks, 1, far) / orders;
+  Draws random(0, "report", "permutations");
+  std::size_t hits = 1;
+  for (std::size_t draw = 1; draw < kDrawnFlips; ++draw) {
+    for (std::size_t block = 1; block < ranks.size(); ++block)
+      for (std::size_t j = ranks[block].size(); j > 1; --j)
+        std::swap(ranks[block][j - 1],
+                  ranks[block][static_cast<std::size_t>(random.uniform() * Real(j))]);
+    hits += squares_of_sums(ranks) >= far;
+  }
+  return Real(hits) / Real(kDrawnFlips);
+}
+
+}  // namespace
+
+// With ties: Σ (R_j − n (k + 1)/2)² (k − 1) over the sum of all (rank − (k + 1)/2)², which ties
+// lower.
 Real friedman_p(const std::vector<std::vector<Real>>& values) {
   if (values.size() < 2 || values[0].size() < 2) return 1;
-  const Real n = Real(values.size()), k = Real(values[0].size()), mean = (k + 1) / 2;
-  std::vector<Real> sums(values[0].size(), 0);
-  Real spread = 0;  // of all ranks about their mean
-  for (const auto& block : values) {
-    const std::vector<Real> ranks = mid_ranks(block);
-    for (std::size_t j = 0; j < ranks.size(); ++j) {
-      sums[j] += ranks[j];
-      spread += (ranks[j] - mean) * (ranks[j] - mean);
-    }
-  }
+  const std::vector<std::vector<Real>> ranks = centred_ranks(values);
+  Real spread = 0;
+  for (const auto& block : ranks)
+    for (const Real rank : block) spread += rank * rank;
   if (spread == 0) return 1;
-  Real between = 0;
-  for (const Real sum : sums) between += (sum - n * mean) * (sum - n * mean);
-  return chi_square_tail(between * (k - 1) / spread, k - 1);
+  if (values.size() * values[0].size() <= kSmallDesign) return permuted_friedman_p(ranks);
+  const Real freedom = Real(values[0].size() - 1);
+  return chi_square_tail(squares_of_sums(ranks) * freedom / spread, freedom);
 }
 
 // Flips of signs, counted out where they are few enough.
@@ -260,11 +318,10 @@ Real exact_p(const std::vector<Real>& sizes, Real far) {
 
 // With the data themselves among the flips, so that no p is 0.
 Real drawn_p(const std::vector<Real>& sizes, Real far) {
-  constexpr std::size_t kFlips = 1U << 16;
   constexpr int kBits = 52;  // of one draw
   Draws random(0, "report", "signs");
   std::size_t hits = 0;
-  for (std::size_t flip = 0; flip < kFlips; ++flip) {
+  for (std::size_t flip = 0; flip < kDrawnFlips; ++flip) {
     Real sum = 0;
     std::uint64_t signs = 0;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
@@ -275,15 +332,7 @@ Real drawn_p(const std::vector<Real>& sizes, Real far) {
     }
     hits += std::abs(sum) >= far;
   }
-  return Real(hits + 1) / Real(kFlips + 1);
-}
-
-// Of Student's t with so many degrees of freedom, from the normal's: Cornish, Fisher (1938); to
-// 1e-3 from seven on.
-Real student_quantile(Real z, Real freedom) {
-  const Real z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom) +
-         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * freedom * freedom * freedom);
+  return Real(hits + 1) / Real(kDrawnFlips + 1);
 }
 
 }  // namespace
@@ -308,12 +357,50 @@ Real deviation_of(const std::vector<Real>& values) {
   return std::sqrt(sum / (n - 1));
 }
 
+namespace {
+
+// P(t ≤ x) with so many degrees of freedom, x > 0: Abramowitz, Stegun (1964), 26.7.3 and 26.7.4.
+Real student_share(Real x, std::size_t freedom) {
+  const Real n = Real(freedom), angle = std::atan(x / std::sqrt(n)), cosine = std::cos(angle);
+  const bool is_odd = freedom % 2 == 1;
+  Real term = is_odd ? cosine : 1, sum = freedom == 1 ? 0 : term;
+  for (std::size_t j = is_odd ? 3 : 2; j < freedom - 1; j += 2) {
+    term *= cosine * cosine * Real(j - 1) / Real(j);
+    sum += term;
+  }
+  const Real two_sides =
+      is_odd ? 2 / std::numbers::pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
+  return 0.5 + two_sides / 2;
+}
+
+}  // namespace
+
+Real student_quantile(Real share, std::size_t freedom) {
+  Real low = 0, high = 1;
+  while (student_share(high, freedom) < share) high *= 2;
+  constexpr int kHalvings = 60;
+  for (int i = 0; i < kHalvings; ++i) {
+    const Real middle = (low + high) / 2;
+    (student_share(middle, freedom) < share ? low : high) = middle;
+  }
+  return high;
+}
+
 Real detectable_mean(Real deviation, std::size_t n) {
-  constexpr Real kLevel = 1.959963984540054, kPower = 0.8416212335729143;  // normal quantiles
-  if (n < 2) return std::numeric_limits<Real>::infinity();
-  const Real freedom = Real(n - 1);
-  return (student_quantile(kLevel, freedom) + student_quantile(kPower, freedom)) * deviation /
-         std::sqrt(Real(n));
+  constexpr Real kBelow = 0.975, kPower = 0.8;
+  if (n < kFewestForInterval) return kNever;
+  const Real quantiles = student_quantile(kBelow, n - 1) + student_quantile(kPower, n - 1);
+  return (1 + 2 / Real(n - 3)) * quantiles * deviation / std::sqrt(Real(n));
+}
+
+Interval prediction_interval(const std::vector<Real>& values, Real reading) {
+  if (values.size() < 2) return {.low = -kNever, .high = kNever};
+  const Real n = Real(values.size());
+  const Real mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  const Real half =
+      student_quantile(0.975, values.size() - 1) * deviation_of(values) * std::sqrt(1 + 1 / n) +
+      reading;
+  return {mean - half, mean + half};
 }
 
 }  // namespace isoline::results

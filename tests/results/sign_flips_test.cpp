@@ -46,17 +46,53 @@ TEST(SignFlips, ManyAreDrawnAndAgree) {
   EXPECT_EQ(sign_flip_p(values), sign_flip_p(values)) << "the flips are fixed";
 }
 
-// scipy.stats.t.ppf(0.975, 11) + t.ppf(0.8, 11) = 2.20098516 + 0.87552998.
+// scipy.stats.t.ppf(0.975, 11) + t.ppf(0.8, 11) = 2.20098516 + 0.87552998, and 2/9 more.
 TEST(SignFlips, WhatTheyFindGrowsWithTheSpread) {
-  EXPECT_NEAR(detectable_mean(1.7, 12), 3.07651514 * 1.7 / std::sqrt(12), 1e-3);
-  EXPECT_EQ(detectable_mean(1, 1), INFINITY);
+  EXPECT_NEAR(detectable_mean(1.7, 12), 11 / 9.0 * 3.07651514 * 1.7 / std::sqrt(12), 1e-7);
+  EXPECT_EQ(detectable_mean(1, 5), INFINITY) << "no p of five pairs is below 0.0625";
   EXPECT_NEAR(deviation_of({1, 2, 3, 4}), std::sqrt(5 / 3.0), kRounding);
 }
 
-// By hand: ranks sum to 6, 4 and 2 over two blocks, so χ² = 12 · 8 / (2 · 3 · 4) = 4 and
-// p = e^(−2) at two degrees of freedom.
-TEST(Friedman, FollowsItsFormula) {
-  EXPECT_NEAR(friedman_p({{3, 2, 1}, {9, 5, 4}}), std::exp(-2), kRounding);
+// scipy.stats.t.ppf, to its digits.
+TEST(Student, HasTheQuantilesOfSciPy) {
+  EXPECT_NEAR(student_quantile(0.975, 1), 12.7062047364, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 2), 4.30265272991, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 5), 2.57058183661, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 10), 2.22813885196, 1e-9);
+  EXPECT_NEAR(student_quantile(0.8, 11), 0.875529978, 1e-8);
+}
+
+// Mean 2, variance 1, t(2) = 4.30265273: ±4.30265273 √(4/3), and half more for the reading.
+TEST(Prediction, AddsBothVariancesAndTheReadingError) {
+  const Interval interval = prediction_interval({1, 2, 3}, 0.5);
+  const Real half = 4.30265273 * std::sqrt(4 / 3.0) + 0.5;
+  EXPECT_NEAR(interval.low, 2 - half, 1e-7);
+  EXPECT_NEAR(interval.high, 2 + half, 1e-7);
+  EXPECT_EQ(prediction_interval({1}, 0).high, INFINITY);
+}
+
+// By hand: of 21 blocks twelve rank 3, 2, 1 and nine 1, 2, 3. The sums are 45, 42 and 39 about 42,
+// so χ² = 12 · 18 / (21 · 3 · 4), and p = e^(−χ²/2) at two degrees of freedom.
+TEST(Friedman, FollowsItsFormulaInALargeDesign) {
+  std::vector<std::vector<Real>> values(12, {3, 2, 1});
+  values.resize(21, {0.1, 0.2, 0.3});
+  EXPECT_NEAR(friedman_p(values), std::exp(-12 * 18 / (2 * 21.0 * 3 * 4)), kRounding);
+}
+
+// Of the six orders of the second block one agrees with the first; of five blocks of two, 2 of 2⁵.
+TEST(Friedman, CountsPermutationsInASmallDesign) {
+  EXPECT_NEAR(friedman_p({{3, 2, 1}, {9, 5, 4}}), 1 / 6.0, kRounding);
+  EXPECT_EQ(friedman_p({{1, 2}, {1, 2}, {1, 2}, {1, 2}, {1, 2}}), 0.0625);
+  // The second block's tie leaves three orders, whose squared sums are 6.5 as here, 3.5 and 0.5.
+  EXPECT_NEAR(friedman_p({{3, 2, 1}, {9, 4, 4}}), 1 / 3.0, kRounding);
+}
+
+// Of 18 blocks of two 14 one way: 2 Σ C(18, j ≥ 14) / 2¹⁸ = 8096 / 262144, by 2¹⁶ drawn
+// permutations to a standard error of 0.0007.
+TEST(Friedman, DrawsPermutationsWhereThereAreMany) {
+  std::vector<std::vector<Real>> values(14, {1, 2});
+  values.resize(18, {2, 1});
+  EXPECT_NEAR(friedman_p(values), 8096 / 262144.0, 0.003);
 }
 
 TEST(Friedman, SeesNoDifferenceAmongTies) {
