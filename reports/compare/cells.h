@@ -14,10 +14,10 @@
 #include "core/records/integrity.h"
 #include "core/records/record.h"
 #include "core/results/statistics.h"
+#include "core/results/study.h"
+#include "core/results/targets.h"
 #include "core/status.h"
 #include "core/threads.h"
-#include "reports/read/metrics.h"
-#include "reports/read/study.h"
 
 namespace isoline::reports {
 

@@ -23,6 +23,8 @@
 
 namespace isoline::reports {
 
+using namespace results;
+
 struct GateOptions {
   std::optional<Real> tolerance;  // relative; without it figures must agree bit for bit
   Real least_noise = kLeastNoise;

@@ -13,9 +13,9 @@
 #include <ranges>
 
 #include "core/json.h"
+#include "core/results/ranking.h"
 #include "core/results/statistics.h"
 #include "reports/read/curves.h"
-#include "reports/read/ranking.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -1,5 +1,5 @@
-// Leaves out of long labels what is common to all of a method.
-#include "reports/read/axes.h"
+// Finds the problems and optimizers of a study, and what to call them.
+#include "core/results/labels.h"
 
 #include <algorithm>
 #include <map>
@@ -10,7 +10,7 @@
 #include "core/privilege.h"
 #include "core/spec.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 namespace {
 
 constexpr std::size_t kLong = 24;  // letters: a shorter label is shown as it is
@@ -74,8 +74,6 @@ std::vector<std::string> brief_labels(const std::vector<std::string>& labels) {
   return brief;
 }
 
-// Finds the problems and optimizers of a study, and what to call them.
-
 namespace {
 
 // The sheet of this very spec, else any of the same name.
@@ -119,8 +117,8 @@ std::string given_by(const std::set<std::string>& privileges) {
 OptimizerLabels::OptimizerLabels(const Study& study)
     : names_(names_by_spec(study, &Request::optimizer, &PlannedCell::optimizer)) {
   find_foreign(study);
-  std::set<std::pair<std::string, std::string>> seen;                // problem, optimizer spec
-  std::map<std::pair<std::string, std::string>, std::size_t> specs;  // by problem and name
+  std::set<Pair> seen;                // problem, optimizer spec
+  std::map<Pair, std::size_t> specs;  // by problem and name
   for (const Record& record : study.runs) {
     const Component& optimizer = record.request.optimizer;
     const std::string& problem = record.request.problem.spec;
@@ -154,12 +152,12 @@ void OptimizerLabels::find_foreign(const Study& study) {
 // Where one problem has a method both ways, with different options: at its defaults, and at the one
 // setting that a table gives it. Several settings of one problem were asked for one by one.
 void OptimizerLabels::find_both_ways(const Study& study) {
-  std::set<std::pair<std::string, std::string>> plain;  // problem and name, at the defaults
-  std::map<std::pair<std::string, std::string>, std::set<std::string>> settings;
+  std::set<Pair> plain;  // problem and name, at the defaults
+  std::map<Pair, std::set<std::string>> settings;
   std::set<std::string> swept;  // names
   for (const Record& record : study.runs) {
     const Component& optimizer = record.request.optimizer;
-    const auto pair = std::pair(record.request.problem.spec, optimizer.name);
+    const Pair pair(record.request.problem.spec, optimizer.name);
     if (optimizer.spec == optimizer.name)
       plain.insert(pair);
     else if (kind_of_rates(record.request.rates) == RatesKind::published)
@@ -219,16 +217,13 @@ std::vector<std::string> OptimizerLabels::wholes(const std::string& problem,
   return {by_name_.contains(name) ? name : spec};
 }
 
-std::string OptimizerLabels::method(const std::string& spec) const { return names_.at(spec); }
-
 std::vector<ProblemAxis> problem_axis(const Study& study) {
   const auto names = names_by_spec(study, &Request::problem, &PlannedCell::problem);
   std::vector<ProblemAxis> axis;
   for (const auto& [spec, name] : names)
     axis.push_back({.spec = spec, .name = name, .sheet = sheet_of(study, "problem", spec, name)});
   for (ProblemAxis& problem : axis)
-    if (problem.sheet != nullptr && problem.sheet->spec == problem.spec)
-      problem.prices = Prices(problem.sheet);
+    if (problem.has_own_sheet()) problem.prices = Prices(problem.sheet);
   for (const Record& record : study.runs) {
     const auto at = std::ranges::find(axis, record.request.problem.spec, &ProblemAxis::spec);
     const bool could_declare = record.status != Status::inapplicable;
@@ -242,34 +237,36 @@ std::vector<ProblemAxis> problem_axis(const Study& study) {
   return axis;
 }
 
-std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& label) {
+std::vector<OptimizerAxis> optimizer_axis(const Study& study, const OptimizerLabels& labels) {
   struct Known {
     std::string spec, whole;
+    bool is_imported = false;
   };
-  std::map<std::string, Known> labels;  // any spec of them
-  const auto know = [&](const std::string& problem, const std::string& spec) {
-    for (const std::string& whole : label.wholes(problem, spec))
-      labels.emplace(label.meaning(problem, whole), Known{spec, whole});
+  std::map<std::string, Known> known;  // by label, any spec of it
+  const auto know = [&](const std::string& problem, const std::string& spec, bool is_imported) {
+    for (const std::string& whole : labels.wholes(problem, spec)) {
+      const std::string label = labels.meaning(problem, whole);
+      known.emplace(label, Known{spec, whole}).first->second.is_imported |= is_imported;
+    }
   };
-  std::set<std::string> imported;  // labels
-  for (const Record& record : study.runs) {
-    const std::string &problem = record.request.problem.spec, &spec = record.request.optimizer.spec;
-    know(problem, spec);
-    if (!record.imported) continue;
-    for (std::string& name : label.of(problem, spec)) imported.insert(std::move(name));
-  }
-  for (const PlannedCell& cell : study.plan.cells) know(cell.problem, cell.optimizer);
+  for (const Record& record : study.runs)
+    know(record.request.problem.spec, record.request.optimizer.spec, record.imported.has_value());
+  for (const PlannedCell& cell : study.plan.cells) know(cell.problem, cell.optimizer, false);
+  std::vector<std::string> names;
+  for (const auto& [label, each] : known) names.push_back(label);
+  const std::vector<std::string> brief = brief_labels(names);
   std::vector<OptimizerAxis> axis;
-  for (const auto& [name, known] : labels)
-    axis.push_back({.label = name,
-                    .method = label.method(known.spec),
-                    .whole = known.whole,
-                    .is_meaning = label.has_meanings(known.whole),
-                    .is_foreign = label.is_foreign(known.spec),
-                    .sheet = sheet_of(study, "optimizer", known.spec, label.method(known.spec)),
+  for (const auto& [label, each] : known)
+    axis.push_back({.label = label,
+                    .brief = brief[axis.size()],
+                    .method = labels.method(each.spec),
+                    .whole = each.whole,
+                    .is_meaning = labels.has_meanings(each.whole),
+                    .is_foreign = labels.is_foreign(each.spec),
+                    .sheet = sheet_of(study, "optimizer", each.spec, labels.method(each.spec)),
                     .privileges = {},
-                    .is_imported = imported.contains(name)});
+                    .is_imported = each.is_imported});
   return axis;
 }
 
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -1,18 +1,12 @@
-// Names of rungs, and yardsticks of other tolerances.
-#include "reports/read/metrics.h"
+// Reads what each target took off the hits of a record, or else off its curve, at its prices.
+#include "core/results/targets.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
-#include "core/results/statistics.h"
-
-namespace isoline::reports {
-
-using namespace results;
+namespace isoline::results {
 namespace {
 
 // "1e-4", "1.6e-4": two digits tell a rung from its neighbours.
@@ -24,16 +18,14 @@ std::string rung_name(std::size_t j) {
   return text;
 }
 
-const std::vector<std::string>& rung_names() {
+Tolerance tolerance_of_rung(std::size_t j) {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (std::size_t j = 0; j < kRungs; ++j) all.push_back(rung_name(j));
+    for (std::size_t each = 0; each < kRungs; ++each) all.push_back(rung_name(each));
     return all;
   }();
-  return names;
+  return {names[j], rung(j), j};
 }
-
-Tolerance tolerance_of_rung(std::size_t j) { return {rung_names()[j], rung(j), j}; }
 
 }  // namespace
 
@@ -157,4 +149,82 @@ OracleCounts counts_at(const Record& record, Real work) {
   return counts;
 }
 
-}  // namespace isoline::reports
+BestKnown::BestKnown(const Study& study) {
+  for (const Record& record : study.runs) {
+    if (record.imported) continue;  // what others say of theirs moves nobody's targets
+    const auto key = std::pair(record.request.problem.spec, record.request.seed);
+    Real& least = least_.emplace(key, kNever).first->second;
+    const Real best = record.summary.best_loss;
+    if (record.status != Status::inapplicable && best < least) least = best;
+  }
+}
+
+Real BestKnown::minimum(const Record& record) const {
+  if (record.minimum) return *record.minimum;
+  const auto found = least_.find({record.request.problem.spec, record.request.seed});
+  if (found != least_.end()) return found->second;
+  return record.imported ? record.summary.best_loss : std::nan("");
+}
+
+Real Reached::by(Measure measure) const {
+  switch (measure) {
+    case Measure::work:
+      return work;
+    case Measure::cost:
+      return cost;
+    case Measure::iterations:
+      return Real(iteration);
+    case Measure::time:
+      return seconds;
+  }
+  return kNever;
+}
+
+namespace {
+
+std::vector<Reached> from_hits(const Record& record, const Prices& prices) {
+  const Hits& hits = *record.hits;
+  const std::vector<Real> costs = prices.hit_costs(record);
+  std::vector<Reached> met;
+  for (std::size_t j = 0; j < hits.iteration.size() && hits.iteration[j] >= 0; ++j)
+    met.push_back({Real(hits.work[j]), costs[j], hits.wall_seconds[j],
+                   static_cast<std::int32_t>(hits.iteration[j])});
+  return met;
+}
+
+// At the first kept points where left[i] ≤ goal(j).
+template <class Goal>
+std::vector<Reached> from_curve(const Record& record, const Prices& prices,
+                                const std::vector<Real>& left, Goal goal) {
+  const Curve& curve = record.curve;
+  const std::vector<Real> costs = prices.curve_costs(record);
+  std::vector<Reached> met;
+  std::size_t i = 0;
+  for (std::size_t j = 0; j < kTargets; ++j) {
+    while (i < left.size() && !(left[i] <= goal(j))) ++i;
+    if (i == left.size()) break;
+    met.push_back({Real(curve.work[i]), costs[i], curve.wall_seconds[i],
+                   static_cast<std::int32_t>(curve.iteration[i]),
+                   i > 0 && curve.iteration[i] > curve.iteration[i - 1] + 1});
+  }
+  return met;
+}
+
+}  // namespace
+
+std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim aim,
+                                 const BestKnown& best) {
+  if (record.status == Status::inapplicable) return {};
+  if (aim == Aim::x) {
+    if (!record.x_scale) return {};
+    return from_curve(record, prices, record.curve.x_error, [&](std::size_t j) {
+      return x_goal(rung(j), *record.x_scale, record.x_floor);
+    });
+  }
+  if (record.hits) return from_hits(record, prices);
+  const Real minimum = best.minimum(record), scale = best.scale(record);
+  return from_curve(record, prices, record.curve.loss,
+                    [&](std::size_t j) { return minimum + rung(j) * scale; });
+}
+
+}  // namespace isoline::results

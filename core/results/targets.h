@@ -1,4 +1,5 @@
-// By what runs are measured, the tolerances of success, and what a run cost at measured prices.
+// What a run took until it met each of 51 targets: by four measures, for a small loss or for the x
+// that was sought.
 #pragma once
 
 #include <array>
@@ -6,14 +7,17 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/ladder.h"
 #include "core/real.h"
 #include "core/records/record.h"
 #include "core/records/sheet.h"
+#include "core/results/statistics.h"
+#include "core/results/study.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 
 enum class Measure {
   work,        // oracle calls at declared prices, in forward solves: any machine repeats it
@@ -45,6 +49,7 @@ Tolerance tolerance_at(Real tau);
 inline constexpr std::array<Tolerance, 3> kTolerances = {
     {{"1e-1", 1e-1, 5}, {"1e-3", 1e-3, 15}, {"1e-6", 1e-6, 30}}};
 inline constexpr std::size_t kTightest = kTolerances.size() - 1;
+inline constexpr std::size_t kTargets = kRungs;
 
 struct Yardstick {
   Measure by = Measure::work;
@@ -54,24 +59,6 @@ struct Yardstick {
 };
 // The usual one with another tolerance for its headline, and two looser ones below it.
 Yardstick yardstick_at(Measure by, Real tau);
-
-// A value for each measure and tolerance.
-template <class Value>
-class ByMeasure {
- public:
-  using Values = std::array<Value, kTolerances.size()>;
-
-  explicit ByMeasure(const Value& everywhere = {}) {
-    for (Values& values : values_) values.fill(everywhere);
-  }
-  Values& operator[](Measure measure) { return values_[static_cast<std::size_t>(measure)]; }
-  const Values& operator[](Measure measure) const {
-    return values_[static_cast<std::size_t>(measure)];
-  }
-
- private:
-  std::array<Values, kMeasures.size()> values_;
-};
 
 // What runs cost in equivalent forward solves: their raw counts at the measured prices of their
 // problem. Where nothing was measured, or too short a call to be told, at the declared ones.
@@ -105,4 +92,35 @@ class Prices {
 // the first kept point from there on.
 OracleCounts counts_at(const Record& record, Real work);
 
-}  // namespace isoline::reports
+// The least loss any run of a problem and seed has reached: f_L where none is declared.
+class BestKnown {
+ public:
+  using Minima = std::map<std::pair<std::string, std::uint64_t>, Real>;  // by problem and seed
+
+  explicit BestKnown(const Study& study);
+  explicit BestKnown(Minima least) : least_(std::move(least)) {}
+  // Declared, else the best known; not-a-number where no run of its problem and seed is.
+  Real minimum(const Record& record) const;
+  // s of f ≤ f_L + τ s; f₀ − f_L where older records lack it.
+  Real scale(const Record& record) const {
+    return record.scale.value_or(record.summary.start_loss - minimum(record));
+  }
+
+ private:
+  Minima least_;
+};
+
+// What a run had taken when it first met a target.
+struct Reached {
+  Real work = 0, cost = 0, seconds = 0;
+  std::int32_t iteration = 0;
+  bool is_bound = false;  // kept points were skipped before: at most that
+
+  Real by(Measure measure) const;
+};
+// The targets τ = 10^(−j/5), j = 0, 1, … until one that it never met. Of losses exact where the
+// record has hits; all else is read at the kept points of its curve.
+std::vector<Reached> targets_met(const Record& record, const Prices& prices, Aim aim,
+                                 const BestKnown& best);
+
+}  // namespace isoline::results

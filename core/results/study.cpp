@@ -1,5 +1,5 @@
 // Reads rows of tables of rates.
-#include "reports/read/study.h"
+#include "core/results/study.h"
 
 #include <fmt/format.h>
 
@@ -16,9 +16,7 @@
 #include "core/records/json_view.h"
 #include "core/results/statistics.h"
 
-namespace isoline::reports {
-
-using namespace results;
+namespace isoline::results {
 namespace {
 
 std::string text_at(const JsonView& row, const char* key) {
@@ -268,4 +266,4 @@ std::vector<std::string> record_files(const std::vector<std::string>& folders,
   return all;
 }
 
-}  // namespace isoline::reports
+}  // namespace isoline::results

@@ -15,8 +15,9 @@
 #include "core/records/sheet.h"
 #include "core/threads.h"
 
-namespace isoline::reports {
+namespace isoline::results {
 
+// A row of a table of rates.
 struct TunedRate {
   std::string problem, optimizer;  // the problem's spec, the optimizer's name
   std::string file;                // the table of rates that it stands in
@@ -97,4 +98,4 @@ std::vector<std::string> json_files(const std::filesystem::path& folder,
 std::vector<std::string> record_files(const std::vector<std::string>& folders,
                                       std::vector<Unreadable>& unreadable);
 
-}  // namespace isoline::reports
+}  // namespace isoline::results
