@@ -15,12 +15,14 @@
 #include <filesystem>
 #include <string>
 
+#include "core/results/study.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
-#include "reports/read/study.h"
 #include "reports/sections/sections.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // All that are written: a format is, once it is named here.
 struct Format {

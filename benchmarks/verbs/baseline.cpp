@@ -10,8 +10,8 @@
 #include "benchmarks/run/runner.h"
 #include "core/errors.h"
 #include "core/files.h"
+#include "core/results/study.h"
 #include "core/text.h"
-#include "reports/read/study.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {

@@ -10,8 +10,8 @@
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
 #include "core/errors.h"
+#include "core/results/targets.h"
 #include "core/text.h"
-#include "reports/read/metrics.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {

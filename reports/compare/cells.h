@@ -13,13 +13,15 @@
 #include "core/options.h"
 #include "core/records/integrity.h"
 #include "core/records/record.h"
+#include "core/results/statistics.h"
+#include "core/results/study.h"
+#include "core/results/targets.h"
 #include "core/status.h"
 #include "core/threads.h"
-#include "reports/read/metrics.h"
-#include "reports/read/study.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 enum class Quantity { loss, best_loss, x_error, path, work, work_to_x, unverified };
 

@@ -15,13 +15,15 @@
 #include <string>
 #include <vector>
 
+#include "core/results/times.h"
 #include "core/status.h"
 #include "core/threads.h"
 #include "reports/compare/differences.h"
 #include "reports/compare/pairing.h"
-#include "reports/statistics/times.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 struct GateOptions {
   std::optional<Real> tolerance;  // relative; without it figures must agree bit for bit

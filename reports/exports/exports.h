@@ -6,9 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 struct ExportedFile {
   std::string name;  // below the folder that they all go to

@@ -21,7 +21,9 @@ void add_reached(std::vector<CsvColumn>& columns, const Yardstick& yardstick, co
                  Measure by) {
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
     columns.push_back({fmt::format("{}_to_{}", what, yardstick.tolerances[t].name),
-                       [by, t](const Run& run) { return exact_figure(run.taken[by][t]); }});
+                       [by, target = yardstick.tolerances[t].rung](const Run& run) {
+                         return exact_figure(run.taken(by, target));
+                       }});
 }
 
 using CsvColumns = std::vector<CsvColumn>;

@@ -9,8 +9,8 @@
 #include "core/json.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
-#include "reports/sections/standings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -55,8 +55,9 @@ Json calls_json(const Comparison& c, const Cell& cell) {
   Json json = Json::object();
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
-    if (run.taken[Measure::work][kTightest] == kNever) continue;
-    const OracleCounts counts = counts_at(*run.record, run.taken[Measure::work][kTightest]);
+    const Real work = c.taken(run, Measure::work, kTightest);
+    if (work == kNever) continue;
+    const OracleCounts counts = counts_at(*run.record, work);
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       json[std::string(kOracleNames[kind])].push_back(counts[kind]);
   }
@@ -125,26 +126,43 @@ Json standings_json(const Comparison& c) {
   return list;
 }
 
-Json rivals_json(const Comparison& c, const Lead& lead) {
+Json labels_json(const Comparison& c, const std::vector<std::size_t>& methods) {
   Json list = Json::array();
-  for (const Rival& rival : lead.rivals)
-    list.push_back({{"optimizer", c.optimizers[rival.optimizer].label},
-                    {"typical", json_number(rival.pairing.typical())},
-                    {"wins", rival.pairing.wins},
-                    {"losses", rival.pairing.losses},
-                    {"ties", rival.pairing.ties},
-                    {"p", rival.p},
-                    {"adjusted_p", rival.adjusted}});
+  for (const std::size_t s : methods) list.push_back(c.optimizers[s].label);
   return list;
 }
 
-Json leader_json(const Comparison& c, const std::optional<Lead>& lead) {
-  if (!lead) return nullptr;
-  return {{"optimizer", c.optimizers[lead->ranked[0].optimizer].label},
-          {"tied", lead->tied},
-          {"settled", lead->is_settled},
-          {"stays_first", lead->stays_first},
-          {"others", rivals_json(c, *lead)}};
+Json place_json(const Comparison& c, const results::Place& place) {
+  return {{"optimizer", c.optimizers[place.method].label},
+          {"score", place.score},
+          {"low", json_number(place.interval.low)},
+          {"high", json_number(place.interval.high)},
+          {"solved", place.solved},
+          {"p", place.p},
+          {"adjusted_p", place.adjusted},
+          {"in_group", place.is_in_group},
+          {"share_first", place.share_first},
+          {"work_ratio", json_number(place.ratio.median)},
+          {"both_solve", place.ratio.both}};
+}
+
+Json decision_json(const Comparison& c, const std::optional<Decision>& decision) {
+  if (!decision) return nullptr;
+  Json places = Json::array(), choices = places;
+  for (const results::Place& place : decision->places) places.push_back(place_json(c, place));
+  for (const Choice& choice : decision->choices)
+    choices.push_back({{"choice", choice_text(choice)},
+                       {"first", labels_json(c, choice.first)},
+                       {"kept", choice.is_kept}});
+  return {{"optimizer", c.optimizers[decision->places[0].method].label},
+          {"tied", decision->tied},
+          {"significant", decision->is_lead},
+          {"settings", decision->settings},
+          {"families", decision->families},
+          {"friedman_p", decision->friedman},
+          {"least_p", decision->least_p},
+          {"places", places},
+          {"choices", choices}};
 }
 
 // [a, b, wins, losses, ties, neither, typical, its interval]
@@ -228,8 +246,8 @@ std::string json_report(const Document& document) {
                   {"verdict", verdict_json(document)},
                   {"claims", claims_json(document.claims)},
                   {"audit", audit_json(document)},
-                  {"leader", leader_json(c, c.lead)},
-                  {"open_leader", leader_json(c, c.open_lead)},
+                  {"leader", decision_json(c, c.decision)},
+                  {"open_leader", decision_json(c, c.open_decision)},
                   {"optimizers", standings_json(c)},
                   {"pairs", pairs_json(c)},
                   {"profiles", profiles_json(c)},

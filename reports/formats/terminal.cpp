@@ -396,8 +396,6 @@ std::string terminal_table(const Document& document) {
   for (const auto& row : c.cells)
     cells += static_cast<std::size_t>(
         std::ranges::count_if(row, [](const Cell& cell) { return cell.planned > 0; }));
-  const bool has_privileges = std::ranges::any_of(
-      c.optimizers, [](const OptimizerAxis& optimizer) { return !optimizer.privileges.empty(); });
   std::string text = document.headline + "\n";
   if (!document.incomplete.empty())
     text += wrapped("INCOMPLETE: " + terminal_text(document.incomplete));
@@ -407,9 +405,7 @@ std::string terminal_table(const Document& document) {
     text += standings(document.section("standings")) + best_of_each(c) + "\n";
   for (const Reading& sentence : document.section("standings").readings)
     text += wrapped(terminal_text(sentence.text));
-  if (has_privileges) text += "† uses privileged information.\n";
-  if (const std::string legend = foreign_legend(c); !legend.empty()) text += legend + "\n";
-  if (is_any_imported(c)) text += fmt::format("{}\n", kImportedLegend);
+  if (const std::string legend = marks_legend(c); !legend.empty()) text += wrapped(legend);
   return text + failure_lines(c);
 }
 

@@ -13,8 +13,8 @@
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
 #include "reports/sections/claim_terms.h"
+#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
-#include "reports/sections/standings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -118,10 +118,9 @@ std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet)
       html_text(sheet.name), rows);
 }
 
-// "3rd of 36 on the 17 settings that all ranked methods were given", or where it stands apart.
+// "3rd of 36 on the 17 settings that all ranked methods were given", or that it is not ranked.
 std::string place_text(const Comparison& c, std::size_t s) {
-  const auto apart = std::ranges::find(c.apart, s, &Placed::optimizer);
-  if (apart != c.apart.end()) return "Not ranked with the others; " + placed_text(c, *apart);
+  if (!c.order.has(s)) return "Not ranked with the others";
   const Real score = c.optimizers[s].tightest().score;
   const auto before = std::ranges::count_if(c.order.methods, [&](std::size_t other) {
     const Real theirs = c.optimizers[other].tightest().score;
@@ -231,7 +230,7 @@ std::string about_html(const Sheet& sheet) {
   return html;
 }
 
-std::string problem_html(const Comparison& c, const Ladders& ladders, std::size_t p,
+std::string problem_html(const Comparison& c, std::size_t p,
                          const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
   const Sheet* sheet = problem.sheet;
@@ -242,7 +241,7 @@ std::string problem_html(const Comparison& c, const Ladders& ladders, std::size_
   html += fmt::format(
       "<p class=reading>{}</p><div class=solve><div class=curves>{}</div><div "
       "class=reached></div></div>",
-      html_text(curve_reading(c, p)), curves_html(c, ladders, p));
+      html_text(curve_reading(c, p)), curves_html(c, p));
   html += planes_html(c, p);
   if (fields) html += fields_html(c, *fields);
   return html + "</noscript></article>\n";
@@ -251,10 +250,9 @@ std::string problem_html(const Comparison& c, const Ladders& ladders, std::size_
 }  // namespace
 
 // By group, each a row of links.
-std::string problems_html(const Comparison& c, const Ladders& ladders, const AllFields& fields) {
+std::string problems_html(const Comparison& c, const AllFields& fields) {
   std::vector<std::string> articles(c.problems.size());
-  share(articles.size(),
-        [&](std::size_t p) { articles[p] = problem_html(c, ladders, p, fields[p]); });
+  share(articles.size(), [&](std::size_t p) { articles[p] = problem_html(c, p, fields[p]); });
   std::map<std::string, std::string> groups;
   std::string index, html;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {

@@ -104,8 +104,7 @@ PlotSeries stairs(const PlotSeries& kept, const std::vector<std::pair<Real, Real
 
 class Curves {
  public:
-  Curves(const Comparison& c, const Ladders& ladders, std::size_t p)
-      : c_(c), ladders_(ladders), p_(p), ranking_(ranking(c, p)) {
+  Curves(const Comparison& c, std::size_t p) : c_(c), p_(p), ranking_(ranking(c, p)) {
     for (const std::size_t s : ranking_)
       curves_.push_back(median_curve(c, c.cell(p, s), points_per_curve(c)));
     on_demand_ = all_but(c, shown_at_first(c, ranking_));
@@ -145,7 +144,7 @@ class Curves {
   std::vector<std::pair<Real, Real>> medians(std::size_t s, Measure by) const {
     std::vector<std::pair<Real, Real>> points;
     for (const std::size_t target : targets_of(c_))
-      if (const Real taken = ladders_.at(p_, s).at(by, target); taken < kNever)
+      if (const Real taken = c_.cell(p_, s).median(by, target); taken < kNever)
         points.emplace_back(by == Measure::time ? 1e3 * taken : taken,
                             std::pow(10.0, -static_cast<Real>(target) / 5));
     return points;
@@ -194,7 +193,6 @@ class Curves {
   }
 
   const Comparison& c_;
-  const Ladders& ladders_;
   std::size_t p_;
   std::vector<std::size_t> ranking_;
   std::vector<MedianCurve> curves_;
@@ -409,9 +407,7 @@ std::vector<std::size_t> first_lines(const Comparison& c, std::size_t p) {
   return {shown.begin(), shown.end()};
 }
 
-std::string curves_html(const Comparison& c, const Ladders& ladders, std::size_t p) {
-  return Curves(c, ladders, p).html();
-}
+std::string curves_html(const Comparison& c, std::size_t p) { return Curves(c, p).html(); }
 
 // Paths as the paper draws them: short runs with a point a step, long ones as lines.
 std::string planes_html(const Comparison& c, std::size_t p) {

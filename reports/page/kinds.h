@@ -4,9 +4,11 @@
 #include <string>
 #include <string_view>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 std::string kind_title(std::string_view kind);  // "Adaptive gradients"
 

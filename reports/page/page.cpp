@@ -9,9 +9,9 @@
 #include <set>
 #include <string_view>
 
+#include "core/results/ranking.h"
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
-#include "reports/read/ranking.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
@@ -84,9 +84,10 @@ std::string title_of(const Document& document) {
 
 // What marks mean besides that of privileges, where any method or problem has them.
 std::string legend_html(const Comparison& c) {
+  const Marks shown = marks_shown(c);
   std::string legend;
-  if (!foreign_legend(c).empty()) legend += " ·\n  <b>‡</b>: computed by another program";
-  if (is_any_imported(c))
+  if (shown.is_foreign) legend += " ·\n  <b>‡</b>: computed by another program";
+  if (shown.is_imported)
     legend += " ·\n  <b>§</b>: imported from others, by their own figures, never verified";
   return legend;
 }
@@ -129,7 +130,7 @@ std::string verdict_html(const Comparison& c) {
 
 std::string settled_html(const Comparison& c) {
   std::string html = "<dl class=settled>";
-  for (const Reading& reading : settled_readings(c))
+  for (const Reading& reading : ranking_facts(c))
     html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
   return html + "</dl>\n";
 }
@@ -157,7 +158,6 @@ std::string marks_html(const OptimizerAxis& axis) {
 
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
-  const Ladders ladders(c);
   const AllFields fields = all_found_fields(c);
   Parts parts{{"title", html_text(title_of(document))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
@@ -172,7 +172,7 @@ std::string html_report(const Document& document) {
               {"remarks", remarks_html(document)},
               {"order", section_html(document.section("standings"))},
               {"matrix", section_html(document.section("problems"))},
-              {"problems", problems_html(c, ladders, fields)},
+              {"problems", problems_html(c, fields)},
               {"profile", profile_html(c)},
               {"details", details_html(c)},
               {"figures", figures_html(document)},
@@ -180,7 +180,7 @@ std::string html_report(const Document& document) {
               {"methods", methods_html(c)},
               {"optimizers", optimizers_html(c)},
               {"legend", legend_html(c)},
-              {"data", page_data(document, ladders, fields)}};
+              {"data", page_data(document, fields)}};
   for (const Section& section : document.sections)  // but those that the scripts redraw
     if (!parts.contains(section.id)) parts.emplace(section.id, section_html(section));
   return filled(embedded_page_html(), parts);

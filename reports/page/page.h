@@ -6,13 +6,15 @@
 #include <string_view>
 #include <vector>
 
+#include "core/results/ranking.h"
 #include "reports/page/svg.h"
 #include "reports/read/found_fields.h"
-#include "reports/read/ranking.h"
+#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
-#include "reports/sections/standings.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 std::string html_report(const Document& document);  // one file that asks nothing of the network
 
@@ -22,8 +24,7 @@ std::string section_html(const Section& section);
 // What no other format has.
 std::string details_html(const Comparison& comparison);
 // One article each, with what fields its runs keep.
-std::string problems_html(const Comparison& comparison, const Ladders& ladders,
-                          const AllFields& fields);
+std::string problems_html(const Comparison& comparison, const AllFields& fields);
 std::string methods_html(const Comparison& comparison);     // the grid of properties
 std::string optimizers_html(const Comparison& comparison);  // one article each
 // What its runs asked for, as counted, not the least that it can do with: "forward, jacobian,
@@ -32,7 +33,7 @@ std::string counted_oracles(const Comparison& comparison, std::size_t optimizer)
 std::string claims_html(const Document& document);  // verdicts, and each claim with its evidence
 
 // Drawings with their words.
-std::string curves_html(const Comparison& comparison, const Ladders& ladders, std::size_t problem);
+std::string curves_html(const Comparison& comparison, std::size_t problem);
 std::string planes_html(const Comparison& comparison, std::size_t problem);
 std::string figures_html(const Document& document);
 std::vector<std::size_t> first_lines(const Comparison& comparison, std::size_t problem);
@@ -48,7 +49,7 @@ std::string fields_html(const Comparison& comparison, const FoundFields& all);
 std::string fields_json(const FoundFields& all);
 
 // The data of the scripts, as JSON that is safe inside a script element.
-std::string page_data(const Document& document, const Ladders& ladders, const AllFields& fields);
+std::string page_data(const Document& document, const AllFields& fields);
 std::string runs_address(const Document& document);  // of the folder of records, from the page
 std::string json_quoted(const std::string& text);
 // Those that the page can be switched to, in the order of its data.

@@ -48,12 +48,12 @@ std::string medians_text(const std::vector<Real>& medians, Measure by) {
 }
 
 // In the order of measures_of; 0 where they are those of the first.
-std::string medians_json(const Comparison& c, const TargetMedians& medians) {
+std::string medians_json(const Comparison& c, const Cell& cell) {
   const std::vector<std::size_t> targets = targets_of(c);
   const auto of = [&](Measure by) {
     std::vector<Real> taken;
     for (const std::size_t target : targets)
-      if (const Real median = medians.at(by, target); median < kNever) taken.push_back(median);
+      if (const Real median = cell.median(by, target); median < kNever) taken.push_back(median);
     return taken;
   };
   const std::vector<Measure> measures = measures_of(c);
@@ -65,25 +65,25 @@ std::string medians_json(const Comparison& c, const TargetMedians& medians) {
 
 // [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing, [record
 // of each run]]: what the page chooses from. The optimizer alone where the pair makes no sense.
-std::string cell_json(const Comparison& c, const Ladders& ladders, std::size_t p, std::size_t s) {
+std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
-  const TargetMedians& medians = ladders.at(p, s);
-  const std::size_t missing = cell.planned - cell.runs.size();
+  std::vector<std::size_t> reached;
+  for (const std::size_t run : cell.runs) reached.push_back(c.runs[run].targets.size());
   const bool is_large = targets_of(c).size() < kTargets;
   const std::string records = list(cell.runs, [&](std::size_t run) {
     const std::string name = c.runs[run].record->file_name();
     return json_quoted(name.substr(0, name.find('.')));
   });
-  return fmt::format("[{},{},{},{},{}{}]", s, indices(medians.reached), medians_json(c, medians),
-                     cell.failed, missing, is_large ? "" : "," + records);
+  return fmt::format("[{},{},{},{},{}{}]", s, indices(reached), medians_json(c, cell), cell.failed,
+                     cell.missing(), is_large ? "" : "," + records);
 }
 
-std::string cells_json(const Comparison& c, const Ladders& ladders, std::size_t p) {
+std::string cells_json(const Comparison& c, std::size_t p) {
   std::vector<std::size_t> asked;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     if (c.cell(p, s).planned > 0) asked.push_back(s);
-  return list(asked, [&](std::size_t s) { return cell_json(c, ladders, p, s); });
+  return list(asked, [&](std::size_t s) { return cell_json(c, p, s); });
 }
 
 // {"optimizer": "3.8e-5, tuned"}, of those whose options a table of rates chose.
@@ -108,14 +108,14 @@ std::string learned_json(const Comparison& c, std::size_t p) {
                      list(equal.nearest_first(), row));
 }
 
-std::string problem_json(const Comparison& c, const Ladders& ladders, std::size_t p,
+std::string problem_json(const Comparison& c, std::size_t p,
                          const std::optional<FoundFields>& fields) {
   const ProblemAxis& problem = c.problems[p];
   return fmt::format(
              "{{\"spec\":{},\"name\":{},\"group\":\"{}\",\"isOrdered\":{},\"cells\":{},"
              "\"order\":{},\"lines\":{}",
              json_quoted(problem_name(problem)), json_quoted(problem.name), problem.group(),
-             is_ordered(c, p), cells_json(c, ladders, p), indices(ranking(c, p)),
+             is_ordered(c, p), cells_json(c, p), indices(ranking(c, p)),
              indices(first_lines(c, p))) +
          origins_json(c, p) + learned_json(c, p) +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
@@ -153,13 +153,13 @@ std::string places_json(const std::vector<Ranked>& places) {
 }
 
 // By measure and target; 0 where they are those of the target before.
-std::string standings_json(const Comparison& c, const Ladders& ladders) {
+std::string standings_json(const Comparison& c) {
   const std::vector<Measure> measures = measures_of(c);
   const std::vector<std::size_t> targets = targets_of(c);
   const std::size_t n = targets.size();
   std::vector<std::string> all(measures.size() * n);
   share(all.size(), [&](std::size_t i) {
-    all[i] = places_json(ladders.standings(measures[i / n], targets[i % n]));
+    all[i] = places_json(standings_to(c, measures[i / n], targets[i % n]));
   });
   std::string text = "[";
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -226,7 +226,7 @@ std::vector<Measure> measures_of(const Comparison& c) {
 
 std::string json_quoted(const std::string& text) { return json_text(Json(text)); }
 
-std::string page_data(const Document& document, const Ladders& ladders, const AllFields& fields) {
+std::string page_data(const Document& document, const AllFields& fields) {
   const Comparison& c = document.comparison;
   std::string text = fmt::format(
       "{{\"runs\":{},\"by\":\"{}\",\"allLearned\":{},\"shades\":{},\"measures\":{},\"isTimedTogether\":{},"
@@ -237,9 +237,9 @@ std::string page_data(const Document& document, const Ladders& ladders, const Al
       list(c.yardstick.tolerances,
            [](const Tolerance& tolerance) { return std::to_string(tolerance.rung); }),
       indices(targets_of(c)), axes_json(c), given_json(c), indices(c.order.methods),
-      indices(c.order.settings), claims_about(document), standings_json(c, ladders));
+      indices(c.order.settings), claims_about(document), standings_json(c));
   for (std::size_t p = 0; p < c.problems.size(); ++p)
-    text += (p > 0 ? "," : "") + problem_json(c, ladders, p, fields[p]);
+    text += (p > 0 ? "," : "") + problem_json(c, p, fields[p]);
   std::string safe;  // no </script and no <!-- can stand in it
   for (const char letter : text + "]}")
     if (letter == '<')

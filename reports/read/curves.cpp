@@ -6,7 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "reports/read/reached.h"
+#include "core/results/targets.h"
 
 namespace isoline::reports {
 namespace {

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // Columns of equal length. At each iteration the median over seeds of every column; a run that has
 // ended keeps its last values, a run without a curve counts as infinite. The gap is what is left of

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 struct FoundField {
   std::size_t optimizer = 0;

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // Of one problem and one optimizer by name. Options of the problem, of the optimizer, or of what
 // stands inside one of them: "batch", "kappa", "network-optimizer.rate".

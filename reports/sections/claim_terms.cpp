@@ -13,10 +13,10 @@
 #include <ranges>
 
 #include "core/json.h"
+#include "core/results/ranking.h"
+#include "core/results/statistics.h"
 #include "reports/read/curves.h"
-#include "reports/read/ranking.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

@@ -10,11 +10,13 @@
 
 #include "core/real.h"
 #include "core/records/record.h"
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
+#include "core/results/statistics.h"
 #include "reports/sections/quantities.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // One figure of one run: what the quantities of claims are made of.
 

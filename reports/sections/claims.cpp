@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/results/statistics.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/read/reached.h"
+#include "core/results/statistics.h"
+#include "core/results/targets.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {
@@ -23,16 +23,16 @@ struct Calls {
 
 Calls calls_of(const Comparison& c, std::size_t s) {
   Calls calls;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const Cell& cell = c.cell(p, s);
-    calls.runs += cell.planned;
-    for (const std::size_t index : cell.runs) {
-      const Run& run = c.runs[index];
-      if (run.taken[Measure::work][kTightest] == kNever) continue;
+  for (const auto& cells : c.cells) {
+    calls.runs += cells[s].planned;
+    for (const std::size_t row : cells[s].runs) {
+      const Run& run = c.runs[row];
+      const Real work = c.taken(run, Measure::work, kTightest);
+      if (work == kNever) continue;
       ++calls.reached;
-      calls.work += run.taken[Measure::work][kTightest];
-      calls.cost += run.taken[Measure::cost][kTightest];
-      const OracleCounts counts = counts_at(*run.record, run.taken[Measure::work][kTightest]);
+      calls.work += work;
+      calls.cost += c.taken(run, Measure::cost, kTightest);
+      const OracleCounts counts = counts_at(*run.record, work);
       for (std::size_t kind = 0; kind < kOracles; ++kind) calls.counts[kind] += Real(counts[kind]);
     }
   }
@@ -48,8 +48,7 @@ const MeasuredPrice* price_of(const MeasuredPrices& prices, std::string_view ora
 
 // Also those that are not used.
 const MeasuredPrices* prices_of(const ProblemAxis& problem) {
-  const bool is_own = problem.sheet != nullptr && problem.sheet->spec == problem.spec;
-  return is_own && problem.sheet->prices ? &*problem.sheet->prices : nullptr;
+  return problem.has_own_sheet() && problem.sheet->prices ? &*problem.sheet->prices : nullptr;
 }
 
 TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
@@ -208,9 +207,8 @@ Section problems_section(const Comparison& c) {
               .caption = fmt::format(
                   "Median {}. Bold: the least of its problem. ✗: not reached by half of the "
                   "runs. (k/n): k of n runs reached it. n/a: not applicable. Empty: "
-                  "never planned.{}{}",
-                  counted_to_tau(c), is_any_imported(c) ? " " : "",
-                  is_any_imported(c) ? kImportedLegend : ""),
+                  "never planned. {}",
+                  counted_to_tau(c), marks_legend(c)),
               .columns = {"optimizer"},
               .is_folded = c.problems.size() > kMostColumns,
               .most_columns = kMostColumns};
@@ -239,9 +237,9 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
   std::vector<Attempt> attempts;
   for (const std::size_t index : cell.runs) {
     const Run& run = c.runs[index];
-    const Real taken = run.taken[by][kTightest];
+    const Real taken = c.taken(run, by, kTightest);
     const bool is_success = taken < kNever;
-    attempts.push_back({in_units(by, is_success ? taken : spent_by(run, by)), is_success});
+    attempts.push_back({in_units(by, is_success ? taken : run.spent_by(by)), is_success});
   }
   return attempts;
 }
@@ -250,8 +248,8 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
 TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   std::vector<std::pair<Real, std::size_t>> reached;
   for (const std::size_t index : cell.runs)
-    if (c.runs[index].taken[Measure::work][kTightest] < kNever)
-      reached.emplace_back(c.runs[index].taken[Measure::work][kTightest], index);
+    if (const Real work = c.taken(c.runs[index], Measure::work, kTightest); work < kNever)
+      reached.emplace_back(work, index);
   if (reached.empty()) return shown;
   std::ranges::sort(reached);
   const auto [work, middle] = reached[(reached.size() - 1) / 2];
@@ -263,30 +261,29 @@ TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   return shown;
 }
 
-// A matrix of optimizers and problems whose cells `text` writes.
-template <class Text>
-void fill_matrix(const Comparison& c, Table& table, Text text) {
-  const std::size_t problems = std::min(c.problems.size(), kMostProblems);
-  for (std::size_t p = 0; p < problems; ++p) table.columns.push_back(problem_name(c.problems[p]));
-  table.columns.push_back("failed");
-  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
-    std::vector<TableCell> row = {optimizer_text(c, s)};
-    for (std::size_t p = 0; p < problems; ++p) {
-      const Cell& cell = c.cell(p, s);
-      row.push_back(cell.planned == 0    ? TableCell("")
-                    : cell.runs.empty()  ? TableCell("missing")
-                    : cell.is_measured() ? with_calls(c, cell, text(p, s, cell))
-                                         : TableCell("n/a"));
+// What restarts cost on one cell; `rescued` counts cells that only restarts solve.
+TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::size_t& rescued) {
+  const Cell& cell = c.cell(p, s);
+  if (!cell.is_measured()) return cell.planned == 0 ? "" : cell.runs.empty() ? "missing" : "n/a";
+  const std::vector<Attempt> attempts = attempts_of(c, cell);
+  const auto successes = std::ranges::count_if(attempts, &Attempt::is_success);
+  const Real expected = expected_running_time(attempts);
+  TableCell shown{
+      fmt::format("{} ({}/{})", reached_figure(expected), successes, attempts.size()),
+      {{"expected", expected}, {"reached", Real(successes)}, {"n", Real(attempts.size())}}};
+  rescued += expected < kNever && !cell.headline[kTightest].is_solved();
+  if (expected < kNever && attempts.size() > 1) {
+    const std::string key = c.problems[p].spec + " " + c.optimizers[s].label;
+    const std::vector<Real> costs = simulated_restarts(attempts, key);
+    const Real low = quantile(costs, 0.1), high = quantile(costs, 0.9);
+    if (low < high) {
+      shown.text = fmt::format("{} [{}–{}] ({}/{})", reached_figure(expected), figure(low),
+                               figure(high), successes, attempts.size());
+      shown.numbers.push_back({"low", low});
+      shown.numbers.push_back({"high", high});
     }
-    row.push_back(failed_cell(c, s));
-    table.rows.push_back(std::move(row));
   }
-  rows_are_optimizers(table);
-  columns_are_problems(table, problems);
-}
-
-std::string key_of(const Comparison& c, std::size_t p, std::size_t s) {
-  return c.problems[p].spec + " " + c.optimizers[s].label;
+  return with_calls(c, cell, std::move(shown));
 }
 
 }  // namespace
@@ -306,25 +303,17 @@ Table restart_table(const Comparison& c) {
       .columns = {"optimizer"},
       .rows = {}};
   std::size_t rescued = 0;
-  fill_matrix(c, table, [&](std::size_t p, std::size_t s, const Cell& cell) -> TableCell {
-    const std::vector<Attempt> attempts = attempts_of(c, cell);
-    const auto successes = std::ranges::count_if(attempts, &Attempt::is_success);
-    const Real expected = expected_running_time(attempts);
-    const std::string count = fmt::format("({}/{})", successes, attempts.size());
-    TableCell::Numbers numbers = {
-        {"expected", expected}, {"reached", Real(successes)}, {"n", Real(attempts.size())}};
-    rescued += expected < kNever && !cell.headline[kTightest].is_solved();
-    if (expected == kNever || attempts.size() < 2)
-      return {fmt::format("{} {}", reached_figure(expected), count), numbers};
-    const std::vector<Real> costs = simulated_restarts(attempts, key_of(c, p, s));
-    const Real low = quantile(costs, 0.1), high = quantile(costs, 0.9);
-    if (low == high) return {fmt::format("{} {}", reached_figure(expected), count), numbers};
-    numbers.push_back({"low", low});
-    numbers.push_back({"high", high});
-    return {
-        fmt::format("{} [{}–{}] {}", reached_figure(expected), figure(low), figure(high), count),
-        numbers};
-  });
+  const std::size_t problems = std::min(c.problems.size(), kMostProblems);
+  for (std::size_t p = 0; p < problems; ++p) table.columns.push_back(problem_name(c.problems[p]));
+  table.columns.push_back("failed");
+  for (std::size_t s = 0; s < listed_optimizers(c, kMostTableRows); ++s) {
+    std::vector<TableCell> row = {optimizer_text(c, s)};
+    for (std::size_t p = 0; p < problems; ++p) row.push_back(restart_cell(c, p, s, rescued));
+    row.push_back(failed_cell(c, s));
+    table.rows.push_back(std::move(row));
+  }
+  rows_are_optimizers(table);
+  columns_are_problems(table, problems);
   table.reading = fmt::format("Only restarts reach it in {}: the median run does not.",
                               counted(rescued, "cell"));
   return table;

@@ -30,11 +30,6 @@ void rows_are_optimizers(Table& table) {
   for (std::size_t s = 0; s < table.rows.size(); ++s) table.row_topics.push_back({.optimizer = s});
 }
 
-void columns_are_optimizers(Table& table, std::size_t count) {
-  table.column_topics.emplace_back();
-  for (std::size_t s = 0; s < count; ++s) table.column_topics.push_back({.optimizer = s});
-}
-
 void columns_are_problems(Table& table, std::size_t count) {
   table.column_topics.emplace_back();
   for (std::size_t p = 0; p < count; ++p) table.column_topics.push_back({.problem = p});
@@ -58,21 +53,6 @@ TableCell share_cell(std::size_t part, std::size_t whole) {
 
 Measure cost_measure(const Comparison& c) {
   return c.yardstick.by == Measure::work ? Measure::cost : c.yardstick.by;
-}
-
-Real spent_by(const Run& run, Measure by) {
-  const Summary& summary = run.record->summary;
-  switch (by) {
-    case Measure::work:
-      return Real(summary.work);
-    case Measure::cost:
-      return run.spent;
-    case Measure::iterations:
-      return Real(summary.iterations);
-    case Measure::time:
-      return summary.wall_seconds;
-  }
-  return kNever;
 }
 
 Real in_units(Measure by, Real value) { return by == Measure::time ? 1e3 * value : value; }

@@ -9,18 +9,21 @@
 #include <string>
 #include <vector>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
+#include "core/results/statistics.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/quantities.h"
 #include "reports/sections/section.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 using Plots = std::vector<Plot>;  // none where there is too little to show
 
 Table profile_table(const Comparison& comparison);
 Table leader_table(const Comparison& comparison);
+Table choices_table(const Comparison& comparison);
 Table loss_without_x_table(const Comparison& comparison);
 Table condition_table(const Comparison& comparison);
 Table data_profile_table(const Comparison& comparison);
@@ -35,8 +38,8 @@ Plots runtime_plot(const Comparison& comparison);
 
 // In the order of a report: what is declared above stands in it once it is named here.
 inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
-    profile_table,      leader_table,  loss_without_x_table, condition_table,
-    data_profile_table, restart_table, calls_table,          prices_table};
+    profile_table,      leader_table,  choices_table, loss_without_x_table, condition_table,
+    data_profile_table, restart_table, calls_table,   prices_table};
 inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {profile_plot, log_ratio_plot,
                                                                   data_profile_plot, runtime_plot};
 
@@ -55,8 +58,7 @@ inline constexpr std::size_t kMostRivals = 4;      // of the leader, each in a p
 std::size_t shown_optimizers(const Comparison& comparison, std::size_t most);
 std::size_t listed_optimizers(const Comparison& comparison, std::size_t most);
 void rows_are_optimizers(Table& table);  // the i-th row is of the i-th
-// The first columns beside the names are of the first optimizers, or problems.
-void columns_are_optimizers(Table& table, std::size_t count);
+// The first columns beside the names are of the first problems.
 void columns_are_problems(Table& table, std::size_t count);
 TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);  // "2/80"
 TableCell count_cell(std::size_t count);
@@ -66,7 +68,6 @@ TableCell share_cell(std::size_t part, std::size_t whole);  // "33 %"
 Measure cost_measure(const Comparison& comparison);
 std::string cost_unit(const Comparison& comparison);
 std::string priced_unit(const Comparison& comparison);  // "forward solves at measured prices", …
-Real spent_by(const Run& run, Measure by);              // in all
 Real in_units(Measure by, Real value);                  // as tables and axes have it: times in ms
 // "16 to 23 settings; 2 of 345 runs failed", of the first optimizers.
 std::string denominators(const Comparison& comparison, std::size_t shown);
@@ -184,7 +185,7 @@ struct OtherReading {
 struct Judgement {
   std::string id, sentence, source, quantity, published, caveat;
   std::string paper, place;  // of the source: "Someone (2022)", "Figure 1"
-  std::string fact;  // the claim whose fact this one restates, or itself
+  std::string fact;          // the claim whose fact this one restates, or itself
   Verdict verdict = Verdict::not_comparable;
   std::string why;      // it is too short, undecidable, or not comparable
   std::string reading;  // how the published figure was read off a plot, where it was

@@ -10,9 +10,9 @@
 #include <set>
 #include <span>
 
+#include "core/results/statistics.h"
 #include "reports/read/curves.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

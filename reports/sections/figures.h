@@ -6,11 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/section.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // One method: y over x, the median over seeds, with its least and greatest.
 struct FigureLine {

@@ -13,74 +13,51 @@
 namespace isoline::reports {
 namespace {
 
-struct LearnedRow {
-  std::size_t problem = 0, optimizer = 0;
-  Spread x_error, loss;             // on the validation, after the last iteration, over seeds
-  Real iterations = 0;              // median
-  Real milliseconds_each = kNever;  // median time of an iteration
-  std::size_t runs = 0, failed = 0;
-  bool is_timed_alone = true;
-};
-
-LearnedRow learned_row(const Comparison& c, std::size_t problem, std::size_t optimizer) {
-  const Cell& cell = c.cell(problem, optimizer);
-  LearnedRow row{.problem = problem,
-                 .optimizer = optimizer,
-                 .x_error = cell.x_error,
-                 .loss = cell.loss,
-                 .runs = cell.runs.size(),
-                 .failed = cell.failed,
-                 .is_timed_alone = cell.is_timed_alone};
-  std::vector<Real> iterations, milliseconds;
-  for (const std::size_t run : cell.runs) {
-    const Summary& summary = c.runs[run].record->summary;
-    if (summary.iterations == 0) continue;
-    iterations.push_back(static_cast<Real>(summary.iterations));
-    milliseconds.push_back(1e3 * summary.wall_seconds / iterations.back());
-  }
-  if (iterations.empty()) return row;
-  row.iterations = median_of(std::move(iterations));
-  row.milliseconds_each = median_of(std::move(milliseconds));
-  return row;
+// Medians over seeds of the runs that made a step.
+Real median_per_run(const Comparison& c, const Cell& cell, Real (*value)(const Summary&)) {
+  const Rows rows =
+      c.where(cell.runs, [](const Run& run) { return run.record->summary.iterations > 0; });
+  return c.aggregate(rows, [&](const Run& run) { return value(run.record->summary); }).median;
 }
 
-std::string label(const Comparison& c, const LearnedRow& row) {
-  return setting_text(c, row.problem, row.optimizer);
-}
-
-// Rows are in order of their error in x.
-std::string reading_of(const Comparison& c, const std::vector<LearnedRow>& rows) {
-  const LearnedRow& nearest = rows.front();
-  const auto lowest =
-      std::ranges::min_element(rows, {}, [](const LearnedRow& row) { return row.loss.median; });
-  if (lowest->optimizer == nearest.optimizer)
-    return fmt::format("{} has both the least error in x, {}, and the least loss, {}.",
-                       label(c, nearest), figure(nearest.x_error.median),
-                       figure(nearest.loss.median));
+// Methods in order of their error in x.
+std::string reading_of(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
+  const auto least =
+      std::ranges::min_element(order, {}, [&](std::size_t s) { return c.cell(p, s).loss.median; });
+  const Cell &lowest = c.cell(p, *least), &nearest = c.cell(p, order[0]);
+  const std::string first = setting_text(c, p, order[0]);
+  if (*least == order[0])
+    return fmt::format("{} has both the least error in x, {}, and the least loss, {}.", first,
+                       figure(nearest.x_error.median), figure(nearest.loss.median));
   return fmt::format(
       "Loss and error rank methods differently here: {} has the least loss, {}, at an error in x "
       "of {}; {} has the least error in x, {}, at a loss of {}.",
-      label(c, *lowest), figure(lowest->loss.median), figure(lowest->x_error.median),
-      label(c, nearest), figure(nearest.x_error.median), figure(nearest.loss.median));
+      setting_text(c, p, *least), figure(lowest.loss.median), figure(lowest.x_error.median), first,
+      figure(nearest.x_error.median), figure(nearest.loss.median));
 }
 
-Table table_of(const Comparison& c, std::size_t problem, const std::vector<LearnedRow>& rows) {
-  const Sheet* sheet = c.problems[problem].sheet;
-  Table table{.id = fmt::format("learned-{}", problem),
-              .title = problem_name(c.problems[problem]),
-              .reading = reading_of(c, rows),
+Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
+  const Sheet* sheet = c.problems[p].sheet;
+  Table table{.id = fmt::format("learned-{}", p),
+              .title = problem_name(c.problems[p]),
+              .reading = reading_of(c, p, order),
               .caption = sheet == nullptr ? "" : sheet->note,
               .columns = {"optimizer", "error in x", "loss in y", "iterations", "ms each", "runs",
                           "failed"},
-              .topic = {.problem = problem}};
-  for (const LearnedRow& row : rows) {
-    const bool is_privileged = !c.cell(problem, row.optimizer).privileges.empty();
-    table.rows.push_back({label(c, row) + (is_privileged ? " †" : "") +
-                              (c.optimizers[row.optimizer].is_imported ? " §" : ""),
-                          figure(row.x_error), figure(row.loss), figure(row.iterations),
-                          (row.is_timed_alone ? "" : "≈ ") + figure(row.milliseconds_each),
-                          std::to_string(row.runs), std::to_string(row.failed)});
-    table.row_topics.push_back({.optimizer = row.optimizer});
+              .topic = {.problem = p}};
+  for (const std::size_t s : order) {
+    const Cell& cell = c.cell(p, s);
+    const Real iterations =
+        median_per_run(c, cell, [](const Summary& end) { return Real(end.iterations); });
+    const Real milliseconds_each = median_per_run(
+        c, cell, [](const Summary& end) { return 1e3 * end.wall_seconds / Real(end.iterations); });
+    const Marks marks{.has_extra_information = !cell.privileges.empty(),
+                      .is_imported = c.optimizers[s].is_imported};
+    table.rows.push_back({setting_text(c, p, s) + marks_text(marks), figure(cell.x_error),
+                          figure(cell.loss), figure(iterations == kNever ? 0 : iterations),
+                          (cell.is_timed_alone ? "" : "≈ ") + figure(milliseconds_each),
+                          std::to_string(cell.runs.size()), std::to_string(cell.failed)});
+    table.row_topics.push_back({.optimizer = s});
   }
   return table;
 }
@@ -93,11 +70,11 @@ Section learned_section(const Comparison& c) {
                   .otherwise = "No problem of this report is learned."};
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
-    std::vector<LearnedRow> rows;
+    std::vector<std::size_t> order;
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).is_measured()) rows.push_back(learned_row(c, p, s));
-    std::ranges::stable_sort(rows, {}, [](const LearnedRow& row) { return row.x_error.median; });
-    if (!rows.empty()) section.tables.push_back(table_of(c, p, rows));
+      if (c.cell(p, s).is_measured()) order.push_back(s);
+    std::ranges::stable_sort(order, {}, [&](std::size_t s) { return c.cell(p, s).x_error.median; });
+    if (!order.empty()) section.tables.push_back(learned_table(c, p, order));
   }
   if (!section.tables.empty())
     section.lead = "On the validation, medians over seeds and their range.";
@@ -116,9 +93,6 @@ constexpr Real kUnknown = std::numeric_limits<Real>::quiet_NaN();
 struct Side {
   std::size_t problem = 0, optimizer = 0;
   Spread seconds;  // of the processor: to the end, or to the error that is asked
-  std::size_t failed = 0;
-  bool is_timed_alone = true;
-  bool is_privileged = false;
 };
 
 struct Trained : Side {
@@ -128,9 +102,8 @@ struct Trained : Side {
 
 // Nothing where no run tells the options.
 const OptionValues* options_of(const Comparison& c, std::size_t problem) {
-  for (const Cell& cell : c.cells[problem])
-    if (!cell.runs.empty()) return &c.runs[cell.runs[0]].record->request.problem.options;
-  return nullptr;
+  const auto run = std::ranges::find(c.runs, problem, &Run::problem);
+  return run == c.runs.end() ? nullptr : &run->record->request.problem.options;
 }
 
 // Direct problems of the same physics.
@@ -156,17 +129,10 @@ Real inference_seconds(const Sheet* sheet, const std::string& spec) {
 template <class Seconds>
 Side side_of(const Comparison& c, std::size_t problem, std::size_t optimizer, Seconds seconds_of) {
   const Cell& cell = c.cell(problem, optimizer);
-  std::vector<Real> seconds(cell.planned - cell.runs.size(), kNever);
-  for (const std::size_t run : cell.runs) {
-    const Record& record = *c.runs[run].record;
-    seconds.push_back(is_failure(record.status) ? kNever : seconds_of(record));
-  }
-  return {.problem = problem,
-          .optimizer = optimizer,
-          .seconds = spread_of(std::move(seconds)),
-          .failed = cell.failed,
-          .is_timed_alone = cell.is_timed_alone,
-          .is_privileged = !cell.privileges.empty()};
+  const auto seconds = [&](const Run& run) {
+    return is_failure(run.record->status) ? kNever : seconds_of(*run.record);
+  };
+  return {problem, optimizer, c.aggregate(cell.runs, seconds, cell.missing())};
 }
 
 // The nearest to x first.
@@ -216,8 +182,13 @@ Real pays_from(const Trained& network, const Side& single) {
   return saved > 0 ? std::max(1.0, std::ceil(training / saved)) : kNever;
 }
 
+const Cell& cell_of(const Comparison& c, const Side& side) {
+  return c.cell(side.problem, side.optimizer);
+}
+
 std::string named(const Comparison& c, const Side& side) {
-  return setting_text(c, side.problem, side.optimizer) + (side.is_privileged ? " †" : "");
+  return setting_text(c, side.problem, side.optimizer) +
+         marks_text({.has_extra_information = !cell_of(c, side).privileges.empty()});
 }
 
 TableCell pays_cell(const Trained& network, const Side& single) {
@@ -230,9 +201,9 @@ TableCell pays_cell(const Trained& network, const Side& single) {
 // Three digits, as milliseconds have them.
 std::string in_seconds(Real seconds) { return milliseconds(1e-3 * seconds); }
 
-TableCell time_cell(const Side& side, std::string (*written)(Real)) {
+TableCell time_cell(const Comparison& c, const Side& side, std::string (*written)(Real)) {
   const Real seconds = side.seconds.median;
-  return {(side.is_timed_alone || seconds == kNever ? "" : "≈ ") + written(seconds),
+  return {(cell_of(c, side).is_timed_alone || seconds == kNever ? "" : "≈ ") + written(seconds),
           {{"seconds", seconds}}};
 }
 
@@ -246,11 +217,11 @@ std::vector<TableCell> amortized_row(const Comparison& c, const Trained& network
   return {named(c, network),
           named(c, single),
           {figure(network.x_error), {{"x_error", network.x_error}}},
-          time_cell(network, in_seconds),
+          time_cell(c, network, in_seconds),
           inference,
-          time_cell(single, milliseconds),
+          time_cell(c, single, milliseconds),
           fmt::format("{}/{}", times.n - times.unsolved, times.n),
-          fmt::format("{}, {}", network.failed, single.failed),
+          fmt::format("{}, {}", cell_of(c, network).failed, cell_of(c, single).failed),
           pays_cell(network, single)};
 }
 

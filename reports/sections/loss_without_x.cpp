@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "reports/read/reached.h"
+#include "core/results/targets.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/words.h"
 
@@ -28,37 +28,23 @@ bool are_both_known(const Run& run) {
   return run.record->x_scale && std::isfinite(run.minimum) && run.scale > 0;
 }
 
-// Runs that are missing count as infinite, as elsewhere.
-template <class Reached>
-bool is_in_the_median(const Comparison& c, const Cell& cell, Reached reached) {
-  std::vector<Real> unmet(cell.planned - cell.runs.size(), kNever);
-  for (const std::size_t run : cell.runs) unmet.push_back(reached(c.runs[run]) ? 0 : kNever);
-  return median_of(std::move(unmet)) < kNever;
-}
-
 std::optional<Outcome> outcome_of(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
-  const auto is_known = [&](std::size_t run) { return are_both_known(c.runs[run]); };
-  if (!cell.is_measured() || !std::ranges::all_of(cell.runs, is_known)) return std::nullopt;
-  const std::size_t near = rung_of(std::sqrt(c.yardstick.tightest().tau));
-  std::vector<Real> errors;
-  for (const std::size_t run : cell.runs) {
-    const Record& record = *c.runs[run].record;
-    errors.push_back(record.summary.x_error / *record.x_scale);
-  }
-  return Outcome{
-      is_in_the_median(
-          c, cell,
-          [](const Run& run) { return run.reached_loss[Measure::work][kTightest] < kNever; }),
-      is_in_the_median(
-          c, cell, [](const Run& run) { return run.found_x[Measure::work][kTightest] < kNever; }),
-      is_in_the_median(c, cell,
-                       [&](const Run& run) {
-                         const Prices& prices = c.problems[p].prices;
-                         return !is_failure(run.record->status) &&
-                                ladder_of(run, prices, Aim::x).size() > near;
-                       }),
-      median_of(std::move(errors))};
+  if (!cell.is_measured() || c.where(cell.runs, are_both_known) != cell.runs) return std::nullopt;
+  const std::size_t target = c.yardstick.tightest().rung,
+                    near = rung_of(std::sqrt(c.yardstick.tightest().tau));
+  const auto holds_in_the_median = [&](auto holds) {
+    const auto unmet = [&](const Run& run) { return holds(run) ? 0 : kNever; };
+    return c.aggregate(cell.runs, unmet, cell.missing()).median < kNever;
+  };
+  return Outcome{holds_in_the_median([&](const Run& run) { return run.loss_met > target; }),
+                 holds_in_the_median([&](const Run& run) { return run.x_met > target; }),
+                 holds_in_the_median([&](const Run& run) {
+                   return !is_failure(run.record->status) && run.x_met > near;
+                 }),
+                 c.aggregate(cell.runs, [](const Run& run) {
+                    return run.record->summary.x_error / *run.record->x_scale;
+                  }).median};
 }
 
 // Of all methods on a setting, or of all settings given to a method.
@@ -75,8 +61,7 @@ struct Tally {
 };
 
 std::optional<Real> condition_of(const ProblemAxis& problem) {
-  const bool is_own = problem.sheet != nullptr && problem.sheet->spec == problem.spec;
-  return is_own ? problem.sheet->condition : std::nullopt;
+  return problem.has_own_sheet() ? problem.sheet->condition : std::nullopt;
 }
 
 std::string condition_text(const ProblemAxis& problem) {

@@ -6,10 +6,12 @@
 #include <string>
 #include <string_view>
 
-#include "reports/read/comparison.h"
-#include "reports/read/study.h"
+#include "core/results/ranking.h"
+#include "core/results/study.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 enum class Origin {
   defaults,   // none was given

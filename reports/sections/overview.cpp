@@ -6,17 +6,16 @@
 #include <optional>
 #include <set>
 
-#include "reports/read/ranking.h"
+#include "core/results/ranking.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
-#include "reports/sections/standings.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
 
-// Methods, however many meanings each has: all, or those that were given a problem.
+// Methods, however many meanings each has: all, or those that were run on a problem.
 std::size_t methods_of(const Comparison& c, std::optional<std::size_t> problem = {}) {
   std::set<std::string> names;
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
@@ -70,21 +69,16 @@ std::string least_loss_reading(const Comparison& c, std::size_t problem,
                      shown_spec(c.optimizers[best].label), figure(loss));
 }
 
-// "less on 2 of 3 seeds": of the seeds that both ran, those where the first took less.
+// "more on 2 of 3 seeds": of the seeds that both ran, those where the first took less.
 std::string seeds_text(const Comparison& c, const Cell& first, const Cell& second) {
-  std::map<std::uint64_t, Real> taken;
-  const auto amount_of = [&](std::size_t run) {
-    return c.runs[run].taken[c.yardstick.by][kTightest];
+  const auto pairs = c.join(first.runs, second.runs, [](const Run& run) { return run.seed; });
+  const auto is_less = [&](const auto& pair) {
+    return c.taken(c.runs[pair.first], c.yardstick.by, kTightest) <
+           c.taken(c.runs[pair.second], c.yardstick.by, kTightest);
   };
-  for (const std::size_t run : first.runs) taken[c.runs[run].record->request.seed] = amount_of(run);
-  std::size_t both = 0, less = 0;
-  for (const std::size_t run : second.runs) {
-    const auto mine = taken.find(c.runs[run].record->request.seed);
-    if (mine == taken.end()) continue;
-    ++both;
-    less += mine->second < amount_of(run);
-  }
-  return both < 2 ? "" : fmt::format(", more on {} of {} seeds", less, both);
+  return pairs.size() < 2 ? ""
+                          : fmt::format(", more on {} of {} seeds",
+                                        std::ranges::count_if(pairs, is_less), pairs.size());
 }
 
 // "; next adam, 1.3× as much", and on how many seeds that is so.
@@ -98,27 +92,6 @@ std::string runner_up(const Comparison& c, std::size_t problem, std::size_t firs
   return fmt::format("; next {}, {} as much{}", name,
                      multiple(next.median / std::max(best.median, unit)),
                      seeds_text(c, c.cell(problem, first), c.cell(problem, second)));
-}
-
-// The first and whether that is settled; "" for the second of two leads that say the same.
-std::vector<std::string> lead_sentences(const Comparison& c, const Lead& lead) {
-  const Scored& first = lead.ranked[0];
-  const OptimizerAxis& axis = c.optimizers[first.optimizer];
-  if (lead.tied > 1) return {fmt::format("Of {}, {}", field_text(c, lead), settled_text(c, lead))};
-  std::string text = fmt::format("Of {}, {} stands first: it {}", field_text(c, lead),
-                                 shown_spec(axis.label), deeds_text(c, first));
-  if (!axis.privileges.empty())
-    text += fmt::format("; but it uses privileged information: {}", joined(axis.privileges));
-  return {text + ". " + settled_text(c, lead), power_text(c, lead)};
-}
-
-// Of few problems no order over them is told, but one on each.
-std::vector<std::string> problem_sentences(const Comparison& c) {
-  constexpr std::size_t kFew = 4;
-  std::vector<std::string> all;
-  for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
-    all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
-  return all;
 }
 
 }  // namespace
@@ -149,6 +122,7 @@ std::string imported_text(const Comparison& c) {
   for (const Run& run : c.runs)
     if (run.record->imported)
       sources[run.record->request.optimizer.name].insert(run.record->imported->source);
+  if (sources.empty()) return "";
   std::vector<std::string> named;
   for (const auto& [method, those] : sources)
     named.push_back(fmt::format("{} ({})", method, joined({those.begin(), those.end()}, "; ")));
@@ -165,8 +139,7 @@ std::vector<std::string> remarks(const Comparison& c) {
     all.push_back(fmt::format(
         "Not every problem was given to every optimizer, as where a grid is too large for methods "
         "that factorize a matrix or take no derivatives. An empty cell was never planned. Methods are "
-        "ranked on the {} that all ranked ones were given; what only some were given forms orders of "
-        "its own. Optimizers by problem, of {}: {}.",
+        "ranked on the {} that all ranked ones were given. Optimizers by problem, of {}: {}.",
         counted(c.order.settings.size(), setting_noun(c)), methods_of(c), rows));
   if (study.superseded > 0)
     all.push_back(fmt::format("Left aside: {} of the same cells.",
@@ -176,34 +149,12 @@ std::vector<std::string> remarks(const Comparison& c) {
                               counted(study.unreadable.size(), "file")));
   if (c.is_any_timed_together)
     all.push_back("Times marked ≈ were taken while other runs shared the machine: not comparable.");
-  if (is_any_imported(c)) all.push_back(imported_text(c));
+  if (const std::string imported = imported_text(c); !imported.empty()) all.push_back(imported);
   for (const ProblemAxis& problem : c.problems)
     if (!problem.is_minimum_declared)
       all.push_back(fmt::format(
           "{} declares no least loss: its tolerances refer to the best loss any run reached.",
           problem_name(problem)));
-  return all;
-}
-
-std::vector<std::string> verdict(const Comparison& c) {
-  const bool is_any_solved = std::ranges::any_of(c.cells, [](const auto& row) {
-    return std::ranges::any_of(
-        row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
-  });
-  if (is_all_learned(c) && !c.problems.empty()) return learned_sentences(c);
-  if (!is_any_solved)
-    return {fmt::format("No optimizer solves any of the problems to {}.", tau_name(c))};
-  if (!has_order(c) || !c.lead) return problem_sentences(c);
-  std::vector<std::string> all = lead_sentences(c, *c.lead);
-  const bool is_other =
-      c.open_lead && c.open_lead->ranked[0].optimizer != c.lead->ranked[0].optimizer;
-  if (is_other)
-    all.push_back("Among the methods without privileged information: " +
-                  joined(lead_sentences(c, *c.open_lead), " "));
-  all.push_back(prices_text(c));
-  all.push_back(apart_sentence(c));
-  for (std::string& sentence : learned_sentences(c)) all.push_back(std::move(sentence));
-  std::erase(all, "");
   return all;
 }
 
@@ -240,71 +191,7 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
   return text + "." + unsolved_text(order.size() - solved, order.size());
 }
 
-// What a report settles, what it does not, and what was not run: three sentences of its first
-// screen; and those on what was learned.
-
-namespace {
-
-std::string settled(const Comparison& c) {
-  if (!has_order(c) || !c.lead) return "No order of methods: too few problems were given to all.";
-  const Lead& lead = *c.lead;
-  if (lead.told() == 0) return "No method can be told from the first over these problems.";
-  std::vector<std::string> names;
-  constexpr std::size_t kNamed = 4;
-  for (const Rival& rival : lead.rivals)
-    if (rival.is_told() && names.size() < kNamed)
-      names.push_back(optimizer_text(c, rival.optimizer));
-  const std::size_t more = lead.told() - names.size();
-  return fmt::format("{} needs less {} than {}{}: so much holds after Holm at 0.05.",
-                     first_text(c, lead), counted_name(c), joined(names),
-                     more > 0 ? fmt::format(" and {} others", more) : "");
-}
-
-std::string open(const Comparison& c) {
-  if (!has_order(c) || !c.lead) return "Every order.";
-  const Lead& lead = *c.lead;
-  std::string text = settled_text(c, lead);
-  if (c.seeds.size() < kFewestForInterval)
-    text += fmt::format(" With {} every interval over seeds is a range.",
-                        counted(c.seeds.size(), "seed"));
-  return text + " Problems unlike these were not drawn.";
-}
-
-std::string not_run(const Comparison& c) {
-  std::size_t pairs = 0, never = 0, inapplicable = 0;
-  for (const auto& row : c.cells)
-    for (const Cell& cell : row) {
-      ++pairs;
-      never += cell.planned == 0;
-      inapplicable += !cell.inapplicable.empty();
-    }
-  if (never == 0 && inapplicable == 0 && c.missing.empty())
-    return fmt::format("Nothing: all {} pairs of method and problem ran.", pairs);
-  std::string text = fmt::format(
-      "Of {} pairs of method and problem {} were never planned, {} do not "
-      "apply",
-      pairs, never, inapplicable);
-  if (!c.missing.empty())
-    text += fmt::format("; {} planned {} missing", counted(c.missing.size(), "run"),
-                        c.missing.size() == 1 ? "is" : "are");
-  return text + ".";
-}
-
-}  // namespace
-
-std::string short_verdict(const Comparison& c) {
-  const std::vector<std::string> sentences = verdict(c);
-  const bool is_led = has_order(c) && c.lead && c.lead->tied == 1;
-  if (!is_led || sentences.empty()) return sentences.empty() ? "" : sentences[0];
-  const Scored& first = c.lead->ranked[0];
-  return fmt::format("Of {}, {} stands first, and its lead is {}: it {}.", field_text(c, *c.lead),
-                     optimizer_text(c, first.optimizer),
-                     c.lead->is_settled ? "settled" : "not settled", deeds_text(c, first));
-}
-
-std::vector<Reading> settled_readings(const Comparison& c) {
-  return {{"Settled", settled(c)}, {"Not settled", open(c)}, {"Not run", not_run(c)}};
-}
+// What was learned, at equal work.
 
 namespace {
 
@@ -339,6 +226,8 @@ std::vector<std::string> learned_sentences(const Comparison& c) {
     std::string text =
         fmt::format("{}, learned: at equal work {} is nearest in x, at {}",
                     problem_name(c.problems[p]), optimizer_text(c, order[0]), figure(least));
+    if (const std::size_t diverged = equal.methods[order[0]]->diverged; diverged > 0)
+      text += fmt::format(" (last finite value of {} that diverged)", counted(diverged, "run"));
     if (order.size() > 1)
       text += fmt::format("; next {}, {} as far", optimizer_text(c, order[1]),
                           multiple(equal.methods[order[1]]->x_error.median / least));

@@ -8,13 +8,13 @@
 
 #include "core/digest.h"
 #include "core/draws.h"
-#include "reports/read/ranking.h"
-#include "reports/read/reached.h"
+#include "core/results/ranking.h"
+#include "core/results/statistics.h"
+#include "core/results/targets.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 
@@ -58,23 +58,6 @@ Table data_profile_table(const Comparison& c) {
 
 // The performance profile as a table.
 
-namespace {
-
-// The area of an optimizer's profile with its interval over problems, names drawn together.
-Band area_band(const Comparison& c, const Costs& ratios, std::size_t s) {
-  return band_over_names(c, column_of(ratios, s), "areas", [](Real ratio) {
-    return std::vector<Real>{score_of(ratio, kProfileEnd)};
-  });
-}
-
-TableCell area_cell(Real area) { return {fmt::format("{:.3f}", area), {{"area", area}}}; }
-
-TableCell interval_cell(Real low, Real high) {
-  return {fmt::format("{:.3f}–{:.3f}", low, high), {{"low", low}, {"high", high}}};
-}
-
-}  // namespace
-
 Table profile_table(const Comparison& c) {
   Table table{
       .id = "performance-profile",
@@ -82,16 +65,11 @@ Table profile_table(const Comparison& c) {
       .reading = "",
       .caption = fmt::format(
           "Share of the {}s given to a method that its median run solves to {} within so many "
-          "times the least {} (Dolan, Moré 2002). Area: under the profile over log2 of the factor "
-          "up to 64, in closed form, with the 95 % bootstrap interval over problems (1,000 draws). "
-          "Whether an order is more than chance is no matter of these intervals, since all methods "
-          "share the problems: see the pairs.",
+          "times the least {} (Dolan, Moré 2002). The score that ranks is the area under it, over "
+          "log2 of the factor up to 64.",
           setting_noun(c), tau_name(c), counted_name(c)),
-      .columns = {"optimizer", "≤ 1×", "≤ 2×", "≤ 4×", "≤ 16×", "at all", "area", "interval",
-                  n_column(c), "failed"},
+      .columns = {"optimizer", "≤ 1×", "≤ 2×", "≤ 4×", "≤ 16×", "at all", n_column(c), "failed"},
       .rows = {}};
-  Costs ratios;
-  for (const auto& row : common_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
   const Profile& profile = c.profiles[kTightest];
   Leading first;
   for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
@@ -101,11 +79,7 @@ Table profile_table(const Comparison& c) {
       const Real share = n == 0 ? 0 : profile.share(s, factor);
       row.push_back(share_cell(static_cast<std::size_t>(std::llround(share * Real(n))), n));
     }
-    const Band band = area_band(c, ratios, s);
-    const bool has_area = !band.low.empty();
-    if (has_area) first.offer(band.value[0], optimizer_text(c, s));
-    row.push_back(has_area ? area_cell(band.value[0]) : "");
-    row.push_back(has_area ? interval_cell(band.low[0], band.high[0]) : "");
+    first.offer(c.optimizers[s].tightest().score, optimizer_text(c, s));
     row.push_back(count_cell(n));
     row.push_back(failed_cell(c, s));
     table.rows.push_back(std::move(row));
@@ -113,7 +87,7 @@ Table profile_table(const Comparison& c) {
   rows_are_optimizers(table);
   table.reading = first.count == 0
                       ? fmt::format("No method solves any {} to {}.", setting_noun(c), tau_name(c))
-                      : fmt::format("The largest area, {:.3f}: {}.", first.value, first.names());
+                      : fmt::format("The highest score, {:.3f}: {}.", first.value, first.names());
   return table;
 }
 
@@ -150,8 +124,7 @@ Plots profile_plot(const Comparison& c) {
             .x_label = fmt::format("factor of the least {}", counted_name(c)),
             .y_label = fmt::format("share of {}s", setting_noun(c)),
             .is_log_x = true};
-  Costs ratios;
-  for (const auto& row : common_costs(c, kTightest)) ratios.push_back(cost_ratios(row));
+  const Costs ratios = ratios_of(common_costs(c, kTightest));
   std::vector<Real> grid;
   for (int i = 0; i <= 48; ++i) grid.push_back(std::pow(2.0, i / 8.0));
   add_lines(c, plot, ratios, grid);
@@ -244,10 +217,8 @@ PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<
     for (const std::size_t index : cell.runs) {
       const Run& run = c.runs[index];
       targets.emplace_back(kTargets, kNever);
-      const std::vector<Reached> ladder = ladder_of(run, c.problems[p].prices, run.aim);
-      for (std::size_t j = 0; j < std::min(ladder.size(), kTargets); ++j)
-        targets.back()[j] = in_units(by, ladder[j].by(by));
-      spent.push_back(std::max(in_units(by, spent_by(run, by)), 1e-9));  // of nothing is no end
+      for (std::size_t j = 0; j < kTargets; ++j) targets.back()[j] = in_units(by, run.taken(by, j));
+      spent.push_back(std::max(in_units(by, run.spent_by(by)), 1e-9));  // of nothing is no end
     }
     hits.add(targets, spent, c.problems[p].spec + " " + c.optimizers[s].label);
   }
@@ -260,7 +231,7 @@ Plots runtime_plot(const Comparison& c) {
   if (shown_optimizers(c, kMostLines) == 0) return {};
   const Measure by = cost_measure(c);
   Real most = 1;
-  for (const Run& run : c.runs) most = std::max(most, in_units(by, spent_by(run, by)));
+  for (const Run& run : c.runs) most = std::max(most, in_units(by, run.spent_by(by)));
   const std::vector<Real> grid = cost_grid(by, 10 * most);  // a decade of restarts
   Plot plot{.id = "plot-runtime",
             .title = "Runtime distribution with restarts",

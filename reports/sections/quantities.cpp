@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "core/json.h"
+#include "core/results/statistics.h"
 #include "reports/sections/claim_terms.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

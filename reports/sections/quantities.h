@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "core/real.h"
-#include "reports/statistics/statistics.h"
+#include "core/results/statistics.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // Of terms by their medians: value (of the first), greatest, ratio (first over second), slope of
 // log m over log at, crossing (where the first half of the terms passes from below the second half

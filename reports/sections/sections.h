@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "core/records/audited.h"
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/section.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 using Audits = std::vector<AuditedOptimizer>;
 
@@ -35,9 +37,9 @@ Section failures_section(const Comparison& comparison);
 Section builds_section(const Comparison& comparison);
 
 // Sentences of them that others say too.
-std::vector<std::string> verdict(const Comparison& comparison);  // who leads, and how sure that is
-std::string short_verdict(const Comparison& comparison);         // a sentence that its tests sign
-std::vector<Reading> settled_readings(const Comparison& comparison);       // settled, not, not run
+std::vector<std::string> verdict(const Comparison& comparison);    // what the decision says
+std::string short_verdict(const Comparison& comparison);           // its first sentence
+std::vector<Reading> ranking_facts(const Comparison& comparison);  // the group, how robust, not run
 std::vector<std::string> learned_sentences(const Comparison& comparison);  // at equal work
 std::string profile_reading(const Comparison& comparison, std::size_t tolerance);
 std::string curve_reading(const Comparison& comparison, std::size_t problem);

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <set>
 
+#include "core/results/statistics.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/origins.h"
+#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {
@@ -230,11 +231,11 @@ Section tuning_section(const Comparison& c) {
 
 namespace {
 
-// One method at rates of a table and at its defaults, on the settings given to both.
+// One method at rates of a table and at its defaults, on the settings that both were run on.
 struct SideBySide {
   std::size_t tuned = 0, plain = 0;  // optimizers
-  std::size_t n = 0, solved = 0, solved_plain = 0, wins = 0, losses = 0;
-  std::vector<Real> doublings;  // log2 of tuned over plain where one solves; capped as profiles are
+  std::size_t n = 0, solved = 0, solved_plain = 0;
+  Pairing pairing;  // of single settings
 };
 
 const Request& request_of(const Comparison& c, const Cell& cell) {
@@ -257,32 +258,24 @@ bool is_at_defaults(const Comparison& c, std::size_t s) {
   });
 }
 
-SideBySide compared(const Comparison& c, std::size_t tuned, std::size_t plain) {
-  const Costs costs = median_costs(c, kTightest);
-  SideBySide pair{.tuned = tuned, .plain = plain, .doublings = {}};
-  const Real most = std::log2(kProfileEnd);
-  for (const auto& row : costs) {
-    if (!row[tuned] || !row[plain]) continue;
-    ++pair.n;
-    pair.solved += *row[tuned] < kNever;
-    pair.solved_plain += *row[plain] < kNever;
-    pair.wins += *row[tuned] < *row[plain];
-    pair.losses += *row[plain] < *row[tuned];
-    if (*row[tuned] == kNever && *row[plain] == kNever) continue;
-    const Real ratio =
-        std::log2(std::max(*row[tuned], 1.0)) - std::log2(std::max(*row[plain], 1.0));
-    pair.doublings.push_back(std::clamp(ratio, -most, most));
-  }
-  return pair;
-}
-
 std::vector<SideBySide> pairs_of(const Comparison& c) {
+  const Costs costs = median_costs(c, kTightest);
+  Families settings;
+  for (std::size_t p = 0; p < costs.size(); ++p) settings.push_back({p});
   std::vector<SideBySide> pairs;
   for (std::size_t a = 0; a < c.optimizers.size(); ++a)
-    for (std::size_t b = 0; b < c.optimizers.size(); ++b)
-      if (a != b && c.optimizers[a].method == c.optimizers[b].method && has_rates(c, a) &&
-          is_at_defaults(c, b))
-        if (SideBySide pair = compared(c, a, b); pair.n > 0) pairs.push_back(std::move(pair));
+    for (std::size_t b = 0; b < c.optimizers.size(); ++b) {
+      const bool is_pair = a != b && c.optimizers[a].method == c.optimizers[b].method;
+      if (!is_pair || !has_rates(c, a) || !is_at_defaults(c, b)) continue;
+      SideBySide pair{.tuned = a, .plain = b, .pairing = pairing_of(costs, settings, a, b)};
+      for (const auto& row : costs) {
+        if (!row[a] || !row[b]) continue;
+        ++pair.n;
+        pair.solved += *row[a] < kNever;
+        pair.solved_plain += *row[b] < kNever;
+      }
+      if (pair.n > 0) pairs.push_back(std::move(pair));
+    }
   return pairs;
 }
 
@@ -308,12 +301,13 @@ Table tuned_and_defaults_table(const Comparison& c) {
               .columns = {"optimizer", n_column(c), "solved, tuned", "solved, defaults",
                           "less : more", "tuned over default"}};
   for (const SideBySide& pair : pairs) {
-    const Real middle = median_of(pair.doublings);
-    table.rows.push_back(
-        {c.optimizers[pair.plain].method, count_cell(pair.n), count_cell(pair.solved),
-         count_cell(pair.solved_plain), fmt::format("{} : {}", pair.wins, pair.losses),
-         pair.doublings.empty() ? TableCell("")
-                                : TableCell(factor_text(middle), {{"doublings", middle}})});
+    const Real middle = median_of(pair.pairing.doublings);
+    table.rows.push_back({c.optimizers[pair.plain].method, count_cell(pair.n),
+                          count_cell(pair.solved), count_cell(pair.solved_plain),
+                          fmt::format("{} : {}", pair.pairing.wins, pair.pairing.losses),
+                          pair.pairing.doublings.empty()
+                              ? TableCell("")
+                              : TableCell(factor_text(middle), {{"doublings", middle}})});
     table.row_topics.push_back({.method = c.optimizers[pair.plain].method});
   }
   const auto better = std::ranges::count_if(

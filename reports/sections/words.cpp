@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/results/statistics.h"
 #include "core/shell.h"
 #include "reports/sections/claim_terms.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {
@@ -128,31 +128,43 @@ std::string ordinal(std::size_t place) {
 
 std::string problem_name(const ProblemAxis& problem) {
   return shown_spec(problem.label.empty() ? problem.spec : problem.label) +
-         (problem.is_foreign ? " ‡" : "");
+         marks_text({.is_foreign = problem.is_foreign});
 }
 
 std::string optimizer_name(const OptimizerAxis& optimizer) {
-  return shown_spec(optimizer.brief) + (optimizer.is_foreign ? " ‡" : "");
+  return shown_spec(optimizer.brief) + marks_text({.is_foreign = optimizer.is_foreign});
+}
+
+std::string marks_of(const OptimizerAxis& optimizer) {
+  Marks marks = optimizer.marks();
+  marks.is_foreign = false;  // its name says so
+  return marks_text(marks);
 }
 
 std::string optimizer_text(const Comparison& c, std::size_t s) {
   return optimizer_name(c.optimizers[s]) + marks_of(c.optimizers[s]);
 }
 
-std::string foreign_legend(const Comparison& c) {
-  const auto is_foreign = [](const auto& axis) { return axis.is_foreign; };
-  const bool is_any =
-      std::ranges::any_of(c.problems, is_foreign) || std::ranges::any_of(c.optimizers, is_foreign);
-  return is_any ? "‡: computed by another program." : "";
+Marks marks_shown(const Comparison& c) {
+  Marks shown;
+  for (const ProblemAxis& problem : c.problems) shown.is_foreign |= problem.is_foreign;
+  for (const OptimizerAxis& axis : c.optimizers) {
+    const Marks marks = axis.marks();
+    shown.has_extra_information |= marks.has_extra_information;
+    shown.is_foreign |= marks.is_foreign;
+    shown.is_imported |= marks.is_imported;
+  }
+  return shown;
 }
 
-std::string marks_of(const OptimizerAxis& optimizer) {
-  return std::string(optimizer.privileges.empty() ? "" : " †") +
-         (optimizer.is_imported ? " §" : "");
-}
-
-bool is_any_imported(const Comparison& c) {
-  return std::ranges::any_of(c.optimizers, &OptimizerAxis::is_imported);
+std::string marks_legend(const Comparison& c) {
+  const Marks shown = marks_shown(c);
+  std::vector<std::string> all;
+  if (shown.has_extra_information) all.emplace_back("†: uses extra information.");
+  if (shown.is_foreign) all.emplace_back("‡: computed by another program.");
+  if (shown.is_imported)
+    all.emplace_back("§: imported from others, by their own figures: nothing of it is verified.");
+  return joined(all, " ");
 }
 
 std::string status_meaning(Status status) {
@@ -196,8 +208,7 @@ std::string count_text(const Cell& cell, std::size_t tolerance) {
   const Spread& work = cell.headline[tolerance];
   std::string text = fmt::format("{}/{}", work.n - work.unsolved, work.n);
   if (cell.failed > 0) text += fmt::format(", {} failed", cell.failed);
-  const std::size_t missing = cell.planned - cell.runs.size();
-  if (missing > 0) text += fmt::format(", {} missing", missing);
+  if (cell.missing() > 0) text += fmt::format(", {} missing", cell.missing());
   return text;
 }
 
@@ -210,8 +221,7 @@ std::string matrix_text(const Comparison& c, const Cell& cell, std::size_t toler
 }
 
 bool is_complete(const Cell& cell, std::size_t tolerance) {
-  return cell.headline[tolerance].unsolved == 0 && cell.failed == 0 &&
-         cell.planned == cell.runs.size();
+  return cell.headline[tolerance].unsolved == 0 && cell.failed == 0 && cell.missing() == 0;
 }
 
 std::string budget_options(const Request& request) {

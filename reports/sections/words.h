@@ -7,9 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/read/comparison.h"
+#include "core/results/ranking.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // The one way a table writes a number, times apart: whole numbers below ten million in full, all
 // others with four significant digits; "inf", "nan".
@@ -39,13 +41,10 @@ std::string shown_spec(std::string_view spec);
 std::string problem_name(const ProblemAxis& problem);
 std::string optimizer_name(const OptimizerAxis& optimizer);
 std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"
-std::string foreign_legend(const Comparison& comparison);  // what ‡ means, where any is marked
+Marks marks_shown(const Comparison& comparison);         // by any problem or method
+std::string marks_legend(const Comparison& comparison);  // what †, ‡ and § mean, of those shown
 // " †" of a method that sees what others do not, " §" of one whose figures are claims of others.
 std::string marks_of(const OptimizerAxis& optimizer);
-bool is_any_imported(const Comparison& comparison);
-inline constexpr std::string_view kImportedLegend =
-    "§: imported from others, by their own figures: nothing of it is verified.";
-
 std::string status_meaning(Status status);  // "used up their work or iterations"
 std::string status_text(const std::map<Status, std::size_t>& statuses);  // "target 3, budget 2"
 

@@ -1,14 +1,14 @@
 // What a comparison makes of result folders: denominators, missing cells, builds, broken files.
-#include "reports/read/comparison.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/errors.h"
 #include "core/json.h"
+#include "core/results/ranking.h"
+#include "core/results/targets.h"
 #include "reports/read/curves.h"
-#include "reports/read/reached.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
@@ -136,11 +136,49 @@ TEST(Comparison, ThePrivilegedLeadOnlyAmongAll) {
   for (Record& record : study.runs)
     if (record.request.optimizer.name == "seer") record.privileges = {"the solution"};
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(c.optimizers[c.lead->ranked[0].optimizer].label, "seer");
-  EXPECT_EQ(c.optimizers[c.open_lead->ranked[0].optimizer].label, "fair");
-  EXPECT_EQ(c.open_lead->stays_first, 1);  // on every problem, so in every draw
-  // The lead, what the data tell of it, the lead of the others, and the order at both prices.
-  EXPECT_EQ(verdict(c).size(), 4U);
+  EXPECT_EQ(c.optimizers[c.decision->places[0].method].label, "seer");
+  EXPECT_EQ(c.optimizers[c.open_decision->places[0].method].label, "fair");
+  EXPECT_EQ(c.open_decision->places[0].share_first, 1);  // on every problem, so in every draw
+  EXPECT_EQ(verdict(c).size(), 4U);  // the decision, its group, its robustness, that of the others
+}
+
+// Two methods over three seeds on two problems; b misses seed 2 of q, which was planned.
+TEST(Table, SelectsGroupsAggregatesJoinsAndPivots) {
+  Study study;
+  for (const char* problem : {"p", "q"})
+    for (const char* optimizer : {"a", "b"})
+      for (const std::uint64_t seed : {0, 1, 2})
+        study.runs.push_back(record_of({.problem = problem,
+                                        .optimizer = optimizer,
+                                        .seed = seed,
+                                        .work_per_hit = static_cast<std::int64_t>(seed + 1)}));
+  study.plan = plan_of(study.runs);
+  study.runs.pop_back();
+  const results::Table table = table_of(study);
+  ASSERT_EQ(table.runs.size(), 11U);
+  ASSERT_EQ(table.absent.size(), 1U);
+  EXPECT_EQ(table.absent[0].seed, 2U);
+  EXPECT_EQ(table.absent[0].record, nullptr);
+  Rows all(table.runs.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto cell_of = [&](std::size_t p, std::size_t s) {
+    return table.where(
+        all, [=](const reports::Run& run) { return run.problem == p && run.optimizer == s; });
+  };
+  EXPECT_EQ(cell_of(1, 1).size(), 2U);
+  const auto by_seed = table.group(all, [](const reports::Run& run) { return run.seed; });
+  EXPECT_EQ(by_seed.at(0).size(), 4U);
+  EXPECT_EQ(by_seed.at(2).size(), 3U);
+  const auto work = [](const reports::Run& run) { return run.taken(Measure::work, 30); };
+  EXPECT_EQ(table.aggregate(cell_of(0, 0), work).median, 60);
+  EXPECT_EQ(table.aggregate(cell_of(1, 1), work, 1).unsolved, 1U);
+  const auto pairs =
+      table.join(cell_of(1, 0), cell_of(1, 1), [](const reports::Run& run) { return run.seed; });
+  EXPECT_EQ(pairs.size(), 2U) << "seed 2 has no partner";
+  const Pivot cells = pivot(table, {});
+  EXPECT_EQ(cells[1][1].runs, cell_of(1, 1));
+  EXPECT_EQ(cells[1][1].planned, 3U);
+  EXPECT_EQ(cells[0][0].median(Measure::work, 30), 60);
 }
 
 // From f₀ = 1 with f_L = 0.5 declared, the curve 10^(−j/5) has half of its descent left at 0.75.
@@ -173,8 +211,9 @@ TEST(Comparison, SettingsOfOneProblemAreDrawnTogetherWhateverStandsBetweenThem) 
                                 {"sine[xi=32]", "b", 1}});
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(c.names, 2U);
-  EXPECT_EQ(c.optimizers[c.lead->ranked[0].optimizer].label, "a");
-  EXPECT_NEAR(c.lead->stays_first, 0.875, 0.03);  // four standard errors of 1,000 draws
+  EXPECT_EQ(c.optimizers[c.decision->places[0].method].label, "a");
+  // Four standard errors of 1,000 draws.
+  EXPECT_NEAR(c.decision->places[0].share_first, 0.875, 0.03);
 }
 
 TEST(Comparison, RatesFromAFileDoNotSplitAMethod) {
@@ -202,11 +241,10 @@ TEST(Comparison, WithoutADeclaredMinimumTheBestKnownIsOne) {
   study.runs = {a, b};
   const BestKnown best(study);
   EXPECT_NEAR(best.minimum(b), 0.01, 1e-15);
-  reports::Run run{.record = &study.runs[1]};
-  fill_reached(run, best);
-  EXPECT_EQ(run.taken[Measure::work][0], 10);
-  EXPECT_EQ(run.taken[Measure::work][1], kNever);
-  EXPECT_FALSE(compare_optimizers(study).problems[0].is_minimum_declared);
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(c.taken(c.runs[1], Measure::work, 0), 10);
+  EXPECT_EQ(c.taken(c.runs[1], Measure::work, 1), kNever);
+  EXPECT_FALSE(c.problems[0].is_minimum_declared);
 }
 
 TEST(Comparison, AnImportedRunIsMarkedAndMovesNobodysTargets) {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "reports/read/metrics.h"
+#include "core/results/targets.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"

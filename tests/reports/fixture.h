@@ -7,9 +7,11 @@
 
 #include "core/records/record.h"
 #include "core/records/sheet.h"
-#include "reports/read/study.h"
+#include "core/results/study.h"
 
 namespace isoline::reports {
+
+using namespace results;
 
 // A folder of its own, removed at the end.
 class ResultFolder {

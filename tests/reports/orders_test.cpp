@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
-#include "reports/read/ranking.h"
+#include "core/results/ranking.h"
 #include "reports/sections/evidence.h"
+#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
-#include "reports/sections/standings.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -53,12 +53,9 @@ TEST(Orders, WhoWasAskedLittleIsListedApart) {
   study.runs.push_back(record_of({.problem = "p", .optimizer = "lucky", .work_per_hit = 1}));
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(c.order.methods.size(), 3U);
-  ASSERT_EQ(c.apart.size(), 1U);
   EXPECT_EQ(c.optimizers.back().label, "lucky");
-  EXPECT_EQ(apart_text(c, c.apart[0]), "asked 1 of 4 problems");
-  EXPECT_TRUE(has(all_of(verdict(c)), "Not ranked: lucky (asked 1 of 4 problems)."))
-      << all_of(verdict(c));
-  EXPECT_EQ(c.optimizers[c.lead->ranked[0].optimizer].label, "a");
+  EXPECT_TRUE(has(all_of(verdict(c)), "lucky (1)")) << all_of(verdict(c));
+  EXPECT_EQ(c.optimizers[c.decision->places[0].method].label, "a");
 }
 
 // It wins where it is given the inverse, and is last where it is not.
@@ -76,17 +73,18 @@ Study two_meanings() {
 TEST(Orders, AMethodWithTwoMeaningsIsTwo) {
   const Study study = two_meanings();
   const Comparison c = compare_optimizers(study);
-  ASSERT_EQ(c.apart.size(), 2U);
-  const Placed &given = c.apart[0], &plain = c.apart[1];
-  EXPECT_EQ(c.optimizers[given.optimizer].label, "sip, given P⁻¹");
-  EXPECT_EQ(c.optimizers[plain.optimizer].label, "sip");
-  EXPECT_FALSE(c.optimizers[given.optimizer].privileges.empty());
-  EXPECT_TRUE(c.optimizers[plain.optimizer].privileges.empty());
-  EXPECT_EQ(placed_text(c, given), "1st of 4 on the 2 problems where it is given P⁻¹");
-  EXPECT_EQ(placed_text(c, plain),
-            "4th of 4 on the 2 problems where it has no privileged information");
-  const std::string text = all_of(verdict(c));
-  EXPECT_TRUE(has(text, placed_text(c, given)) && has(text, placed_text(c, plain))) << text;
+  ASSERT_EQ(c.order.methods.size(), 3U);
+  ASSERT_EQ(c.optimizers.size(), 5U);
+  const OptimizerAxis &plain = c.optimizers[3], &given = c.optimizers[4];
+  EXPECT_EQ(given.label, "sip, given P⁻¹");
+  EXPECT_EQ(plain.label, "sip");
+  EXPECT_FALSE(given.privileges.empty());
+  EXPECT_TRUE(plain.privileges.empty());
+  const Section section = standings_section(c);
+  const Table& apart = section.tables.back();
+  EXPECT_EQ(apart.id, "apart-table");
+  ASSERT_EQ(apart.rows.size(), 2U);
+  EXPECT_EQ(apart.rows[1][1].text, "2") << "problems on which it is given the inverse";
 }
 
 TEST(Orders, AMethodThatSeesTheSameEverywhereStaysOne) {
@@ -96,31 +94,7 @@ TEST(Orders, AMethodThatSeesTheSameEverywhereStaysOne) {
   study.runs[0].status = Status::inapplicable;  // and has seen nothing there
   study.runs[0].privileges.clear();
   const Comparison c = compare_optimizers(study);
-  EXPECT_TRUE(c.apart.empty());
   EXPECT_EQ(c.order.methods.size(), 3U);
-}
-
-TEST(Orders, LargerSizesFormAnOrderOfTheirOwn) {
-  Study study = three_methods();
-  for (const char* optimizer : {"b", "c"})
-    study.runs.push_back(record_of({.problem = "p[N=64]",
-                                    .optimizer = optimizer,
-                                    .work_per_hit = optimizer[0] == 'c' ? 1 : 5}));
-  Study more = three_methods();
-  for (const char* optimizer : {"d", "e"})  // so that two of five are no majority
-    for (const char* problem : {"p", "q", "r", "s"})
-      more.runs.push_back(
-          record_of({.problem = problem, .optimizer = optimizer, .work_per_hit = 11}));
-  more.runs.insert(more.runs.end(), study.runs.end() - 2, study.runs.end());
-  const Comparison c = compare_optimizers(more);
-  EXPECT_EQ(c.order.settings.size(), 4U);
-  ASSERT_EQ(c.other_orders.size(), 1U);
-  const Order& order = c.other_orders[0];
-  ASSERT_EQ(order.methods.size(), 2U);
-  EXPECT_EQ(c.optimizers[order.methods[0]].label, "c") << "best first, of that order";
-  const Section section = standings_section(c);
-  EXPECT_EQ(section.tables.back().id, "orders-table");
-  EXPECT_EQ(section.tables.back().rows[0][0].text, "p[N=64]");
 }
 
 // Of three seeds one is fast. Leaving the slow ones out must not make the method look better.
@@ -181,23 +155,40 @@ Study family() {
   return study;
 }
 
-TEST(Orders, TheLeaderIsTestedAgainstEachOfTheOthersThatApply) {
+TEST(Orders, WhatAppliesNowhereIsNotRanked) {
   const Study study = family();
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(c.order.methods.size(), 4U);
-  ASSERT_EQ(c.lead->rivals.size(), 2U) << "what applies nowhere leaves the family";
-  const Table table = leader_table(c);
-  EXPECT_EQ(table.rows.size(), 2U);
-  EXPECT_TRUE(has(table.reading, "1 of the 2 others")) << table.reading;
+  EXPECT_EQ(c.order.methods.size(), 3U);
+  ASSERT_EQ(c.decision->places.size(), 3U);
+  EXPECT_EQ(leader_table(c).rows.size(), 3U);
   EXPECT_TRUE(has(limits_of_evidence(c).front(), "Friedman")) << limits_of_evidence(c).front();
+  EXPECT_EQ(unranked_sentence(c), "") << "nor listed as left out";
 }
 
-TEST(Orders, WhatIsNotSettledSaysAgainstWhom) {
+// One sentence of at most 60 words, and no other that contradicts it: kin is in the group, second
+// is not.
+TEST(Orders, AllSentencesFollowFromOneDecision) {
   const Study study = family();
   const Comparison c = compare_optimizers(study);
-  const std::string text = all_of(verdict(c));
-  EXPECT_TRUE(has(text, "Its lead is not settled: kin is not distinguishable from it")) << text;
-  EXPECT_TRUE(has(text, "80 %")) << text;
+  EXPECT_FALSE(c.decision->is_lead);
+  EXPECT_TRUE(c.decision->places[1].is_in_group);
+  EXPECT_FALSE(c.decision->places[2].is_in_group);
+  const std::string first = short_verdict(c);
+  EXPECT_LE(std::ranges::count(first, ' '), 59) << first;
+  EXPECT_EQ(leader_table(c).reading, first);
+  const std::vector<Reading> facts = ranking_facts(c);
+  EXPECT_TRUE(has(facts[0].text, "kin")) << facts[0].text;
+  EXPECT_FALSE(has(facts[0].text, "second")) << facts[0].text;
+}
+
+TEST(Orders, AMethodThatWasNotRunOnASharedSettingIsNotRanked) {
+  Study study = three_methods();
+  for (const char* problem : {"p", "q", "r"})  // and not on s
+    study.runs.push_back(record_of({.problem = problem, .optimizer = "d", .work_per_hit = 1}));
+  const Comparison c = compare_optimizers(study);
+  EXPECT_EQ(c.order.settings.size(), 4U);
+  EXPECT_EQ(c.order.methods.size(), 3U);
+  EXPECT_EQ(c.optimizers.back().label, "d");
 }
 
 TEST(Orders, OneAlgorithmTwiceIsTiedOnTheFirstScreen) {
@@ -208,9 +199,9 @@ TEST(Orders, OneAlgorithmTwiceIsTiedOnTheFirstScreen) {
                                       .optimizer = optimizer,
                                       .work_per_hit = optimizer[0] == 's' ? 9 : 2}));
   const Comparison c = compare_optimizers(study);
-  const std::string text = all_of(verdict(c));
-  EXPECT_TRUE(has(text, "gd and gd-again are tied")) << text;
-  EXPECT_FALSE(has(text, "Its lead is settled")) << text;
+  EXPECT_EQ(c.decision->tied, 2U);
+  EXPECT_FALSE(c.decision->is_lead);
+  EXPECT_TRUE(has(short_verdict(c), "tied")) << short_verdict(c);
   const Section section = standings_section(c);
   const Table& table = section.tables[0];
   EXPECT_EQ(table.rows[0][0].text, "1");

@@ -7,7 +7,7 @@
 #include "core/records/schema.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
-#include "reports/sections/standings.h"
+#include "reports/sections/ranking.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -108,17 +108,16 @@ Study priced_study(Real pullback) {
   return study;
 }
 
-TEST(BothPrices, TheFirstScreenSaysWhetherTheOrderHoldsAtBoth) {
-  const Study same = priced_study(1.1), turned = priced_study(40);
-  EXPECT_TRUE(has(prices_text(compare_optimizers(same)), "the first are the same: a, b"))
-      << prices_text(compare_optimizers(same));
-  const std::string text = prices_text(compare_optimizers(turned));
-  EXPECT_TRUE(has(text, "does not hold at both prices: at declared ones the first are a, b"))
-      << text;
-  const Document document = document_of(compare_optimizers(turned));
-  for (const auto format : {html_report, markdown_report, terminal_table})
-    EXPECT_TRUE(has(format(document), "does not hold at both prices") ||
-                has(format(document), "does not hold at both\nprices"));
+TEST(BothPrices, TheDecisionSaysWhetherTheFirstIsTheSameAtMeasuredPrices) {
+  for (const auto& [pullback, is_kept] : {std::pair(1.1, true), std::pair(40.0, false)}) {
+    const Study study = priced_study(pullback);
+    const Comparison c = compare_optimizers(study);
+    const auto& choices = c.decision->choices;
+    const auto cost = std::ranges::find(choices, "cost", &Choice::value);
+    ASSERT_NE(cost, choices.end());
+    EXPECT_EQ(cost->is_kept, is_kept) << pullback;
+    EXPECT_EQ(c.optimizers[cost->first.at(0)].label, is_kept ? "a" : "b");
+  }
 }
 
 }  // namespace

@@ -2,14 +2,15 @@
 // learned problems at equal work, kinds as colours.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <sstream>
 
+#include "core/results/labels.h"
+#include "core/results/ranking.h"
 #include "reports/page/kinds.h"
-#include "reports/read/axes.h"
-#include "reports/read/ranking.h"
 #include "reports/report.h"
-#include "reports/sections/standings.h"
+#include "reports/sections/ranking.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -23,9 +24,8 @@ const std::vector<Result> kThree = {
 TEST(Ladders, AreTheStandingsOfTheReportAtItsTolerances) {
   const Study study = study_of(kThree);
   const Comparison c = compare_optimizers(study);
-  const Ladders ladders(c);
   for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    for (const Ranked& ranked : ladders.standings(Measure::work, kTolerances[t].rung)) {
+    for (const Ranked& ranked : standings_to(c, Measure::work, kTolerances[t].rung)) {
       const Standing& own = c.optimizers[ranked.optimizer].standings[t];
       EXPECT_EQ(ranked.standing.score, own.score);
       EXPECT_EQ(ranked.standing.solved, own.solved);
@@ -39,8 +39,7 @@ TEST(Ladders, ByAnotherMeasureAreTheStandingsOfAReportByIt) {
   const Study study = study_of(kThree);
   const Comparison by_work = compare_optimizers(study);
   const Comparison by_time = compare_optimizers(study, yardstick_at(Measure::time, 1e-6));
-  const Ladders ladders(by_work);
-  for (const Ranked& ranked : ladders.standings(Measure::time, kTolerances[kTightest].rung)) {
+  for (const Ranked& ranked : standings_to(by_work, Measure::time, kTolerances[kTightest].rung)) {
     const std::string& label = by_work.optimizers[ranked.optimizer].label;
     const auto same = std::ranges::find(by_time.optimizers, label, &OptimizerAxis::label);
     EXPECT_DOUBLE_EQ(ranked.standing.score, same->tightest().score) << label;
@@ -62,7 +61,9 @@ TEST(MethodPairs, TurnWhenTheirMethodsDo) {
   const Comparison c = compare_optimizers(study);
   for (const MethodPair& pair : all_pairs(c)) {
     const Costs costs = median_costs(c, kTightest);
-    const Pairing turned = pairing_of(costs, groups_of(c), pair.b, pair.a);
+    Families families;
+    for (const auto& [name, problems] : problems_by_name(c)) families.push_back(problems);
+    const Pairing turned = pairing_of(costs, families, pair.b, pair.a);
     EXPECT_EQ(turned.wins, pair.pairing.losses);
     EXPECT_EQ(turned.ties, pair.pairing.ties);
     EXPECT_NEAR(turned.typical() * pair.pairing.typical(), 1, 1e-12);
@@ -102,11 +103,12 @@ Record learned(const char* optimizer, std::vector<std::int64_t> work, std::vecto
   record.curve.processor_seconds = record.curve.gradient_norm = record.curve.step_norm =
       record.curve.wall_seconds;
   record.summary.work = work.back();
+  record.summary.iterations = record.request.budget.iterations = record.curve.iteration.back();
   record.summary.x_error = x_error.back();
   return record;
 }
 
-TEST(EqualWork, IsTheLeastThatAnyMethodSpent) {
+TEST(EqualWork, IsTheLeastThatAnyMethodWasAllowed) {
   Study study;
   study.runs = {learned("adam", {0, 100, 200, 300}, {4, 3, 2, 0.1}),
                 learned("sip", {0, 80, 160, 240}, {4, 2, 1, 0.5})};
@@ -126,11 +128,29 @@ TEST(EqualWork, OfARunThatFailedBeforeIsInfinite) {
   Study study;
   study.runs = {learned("adam", {0, 100}, {4, 3}), learned("sip", {0, 50, 200}, {4, 2, 1})};
   study.runs[0].status = Status::crashed;
-  study.runs[0].summary.work = 300;
+  study.runs[0].request.budget.iterations = 3;
   const Comparison c = compare_optimizers(study);
   const EqualWork equal = equal_work(c, 0);
   for (std::size_t s = 0; s < c.optimizers.size(); ++s)
     EXPECT_EQ(equal.methods[s]->x_error.is_solved(), c.optimizers[s].label == "sip");
+}
+
+// It made two of six steps: the others are not compared at what these took. Its last finite value
+// counts, and is marked.
+TEST(EqualWork, OfARunThatDivergedIsItsLastFiniteValue) {
+  Study study;
+  study.runs = {learned("adam", {0, 100, 200, 300, 400, 500, 600}, {4, 3, 2, 1, 0.5, 0.3, 0.2}),
+                learned("sip", {0, 90, 180}, {4, 2, NAN})};
+  study.runs[1].status = Status::diverged;
+  study.runs[1].request.budget.iterations = 6;
+  const Comparison c = compare_optimizers(study);
+  const EqualWork equal = equal_work(c, 0);
+  EXPECT_EQ(equal.work, 540);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const bool is_sip = c.optimizers[s].label == "sip";
+    EXPECT_EQ(equal.methods[s]->x_error.median, is_sip ? 2 : 0.3);
+    EXPECT_EQ(equal.methods[s]->diverged, is_sip ? 1U : 0U);
+  }
 }
 
 // A tolerance of the loss says little of a network.

@@ -7,7 +7,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/oracle.h"
-#include "reports/read/reached.h"
+#include "core/results/targets.h"
 #include "reports/report.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
@@ -35,13 +35,13 @@ TEST(Targets, AgreeWithTheTablesAtEachTolerance) {
   for (const bool has_hits : {true, false}) {
     const Study study = uneven_study(has_hits);
     const Comparison c = compare_optimizers(study);
-    const TargetMedians medians = target_medians(c, c.cell(0, 0));
+    const Cell& cell = c.cell(0, 0);
     for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-      const Spread& work = c.cell(0, 0).headline[t];
+      const Spread& work = cell.headline[t];
       const std::size_t hit = kTolerances[t].rung;
-      EXPECT_EQ(medians.at(Measure::work, hit), work.median);
-      const auto reached =
-          std::ranges::count_if(medians.reached, [hit](std::size_t count) { return count > hit; });
+      EXPECT_EQ(cell.median(Measure::work, hit), work.median);
+      const auto reached = std::ranges::count_if(
+          c.runs, [hit](const reports::Run& run) { return run.targets.size() > hit; });
       EXPECT_EQ(static_cast<std::size_t>(reached), work.n - work.unsolved);
     }
   }
@@ -52,8 +52,10 @@ TEST(Targets, EndWhereTheMedianIsNeverReached) {
   study.runs[1].hits->iteration.at(10) = -1;  // two of three runs miss target 21
   study.runs[1].hits->work.at(10) = -1;
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(target_medians(c, c.cell(0, 0)).taken[0].size(), 21U);
-  EXPECT_EQ(target_medians(c, c.cell(0, 0)).reached, (std::vector<std::size_t>{51, 10, 21}));
+  EXPECT_EQ(c.cell(0, 0).medians[0].size(), 21U);
+  std::vector<std::size_t> reached;
+  for (const reports::Run& run : c.runs) reached.push_back(run.targets.size());
+  EXPECT_EQ(reached, (std::vector<std::size_t>{51, 10, 21}));
 }
 
 // By these attributes the page hides what is filtered out.
@@ -150,7 +152,7 @@ TEST(Page, ShowsEightLinesOfAProblemAtFirst) {
   }
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(first_lines(c, 0).size(), 8U);
-  const std::string svg = curves_html(c, Ladders(c), 0);
+  const std::string svg = curves_html(c, 0);
   std::size_t hidden = 0;
   for (std::size_t at = 0; (at = svg.find("class=off", at)) != std::string::npos; ++at) ++hidden;
   std::size_t charts = 0;

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "core/results/statistics.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/quantities.h"
-#include "reports/statistics/statistics.h"
 
 namespace isoline::reports {
 namespace {

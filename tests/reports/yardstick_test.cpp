@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "reports/read/metrics.h"
-#include "reports/read/reached.h"
+#include "core/results/ranking.h"
+#include "core/results/targets.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -22,9 +22,9 @@ TEST(Yardstick, AHugeStartMakesNoLossSmall) {
   Study study;
   study.runs = {record};
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(c.runs[0].taken[Measure::work][0], kNever);
+  EXPECT_EQ(c.taken(c.runs[0], Measure::work, 0), kNever);
   EXPECT_EQ(c.optimizers[0].standings[0].solved, 0U);
-  EXPECT_DOUBLE_EQ(goal(c.runs[0], 0.5), 0.562);
+  EXPECT_DOUBLE_EQ(c.runs[0].goal(0.5), 0.562);
 }
 
 // The loss falls ten decades, the error in x to a third at most.
@@ -42,12 +42,12 @@ TEST(Yardstick, AProblemThatWantsXIsNotSolvedByASmallLoss) {
   study.runs = {lost_in_x()};
   const Comparison c = compare_optimizers(study);
   const reports::Run& run = c.runs[0];
-  EXPECT_EQ(run.reached_loss[Measure::work][kTightest], 60);
-  EXPECT_EQ(run.found_x[Measure::work][0], kNever);
-  EXPECT_EQ(run.taken[Measure::work][0], kNever);
+  EXPECT_EQ(run.loss_met, 51U);
+  EXPECT_EQ(run.x_met, 3U);  // 0.4 is met, 0.35 is the floor
+  EXPECT_EQ(c.taken(run, Measure::work, 0), kNever);
   EXPECT_EQ(c.problems[0].aim, Aim::x);
   EXPECT_EQ(c.optimizers[0].standings[0].solved, 0U);
-  EXPECT_FALSE(c.lead.has_value());
+  EXPECT_FALSE(c.decision.has_value());
 }
 
 // The curve 10^(−j/10) meets 1e-1 at its tenth point, after 20 forwards.
@@ -58,9 +58,9 @@ TEST(Yardstick, XIsFoundWhereItsErrorIsATenthOfTheSolution) {
   Study study;
   study.runs = {record};
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(c.runs[0].taken[Measure::work][0], 20);
-  EXPECT_EQ(c.runs[0].taken[Measure::iterations][0], 10);
-  EXPECT_FALSE(c.runs[0].is_bound[0]) << "no point was skipped";
+  EXPECT_EQ(c.taken(c.runs[0], Measure::work, 0), 20);
+  EXPECT_EQ(c.taken(c.runs[0], Measure::iterations, 0), 10);
+  EXPECT_FALSE(c.cell(0, 0).is_bound[0]) << "no point was skipped";
 }
 
 TEST(Yardstick, NoDataGiveMoreThanTheirFloor) {
@@ -68,7 +68,7 @@ TEST(Yardstick, NoDataGiveMoreThanTheirFloor) {
   record.x_floor = 0.32;  // 1.1 times that is 0.352
   Study study;
   study.runs = {record};
-  EXPECT_LT(compare_optimizers(study).runs[0].taken[Measure::work][kTightest], kNever);
+  EXPECT_GT(compare_optimizers(study).runs[0].targets.size(), kTolerances[kTightest].rung);
 }
 
 TEST(Yardstick, BetweenKeptPointsAFigureIsABound) {
@@ -79,7 +79,7 @@ TEST(Yardstick, BetweenKeptPointsAFigureIsABound) {
   Study study;
   study.runs = {record};
   const Comparison c = compare_optimizers(study);
-  EXPECT_TRUE(c.runs[0].is_bound[0]);
+  EXPECT_TRUE(c.runs[0].targets[kTolerances[0].rung].is_bound);
   EXPECT_TRUE(c.cell(0, 0).is_bound[0]);
 }
 

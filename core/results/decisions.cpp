@@ -1,0 +1,480 @@
+// Scores, flips of signs, the confidence set of the best, and how far the first place hangs on
+// chance and choice.
+#include "core/results/decisions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "core/draws.h"
+#include "core/results/tests.h"
+
+namespace isoline::results {
+namespace {
+
+using Row = std::vector<Real>;
+
+constexpr Real kRounding = 1e-9;  // of sums, relative
+
+// Settings of one family, in the order in which families come first.
+std::vector<std::vector<std::size_t>> by_family(const std::vector<std::string>& families) {
+  std::map<std::string, std::size_t> places;
+  std::vector<std::vector<std::size_t>> all;
+  for (std::size_t p = 0; p < families.size(); ++p) {
+    const auto [place, is_new] = places.try_emplace(families[p], all.size());
+    if (is_new) all.emplace_back();
+    all[place->second].push_back(p);
+  }
+  return all;
+}
+
+bool are_tied(Real a, Real b) { return std::abs(a - b) <= kRounding; }
+
+// a_{p,s} of the methods that are ranked, which alone decide what the least cost is.
+std::vector<Row> scores_of(const Costs& costs, const std::vector<std::size_t>& methods, Real end) {
+  std::vector<Row> scores;
+  for (const auto& row : costs) {
+    std::vector<std::optional<Real>> own;
+    for (const std::size_t s : methods) own.push_back(row[s]);
+    const auto ratios = cost_ratios(own);
+    scores.emplace_back();
+    for (const auto& ratio : ratios) scores.back().push_back(ratio ? score_of(*ratio, end) : 0);
+  }
+  return scores;
+}
+
+Row mean_scores(const std::vector<Row>& scores) {
+  Row means(scores.empty() ? 0 : scores[0].size(), 0);
+  for (const Row& row : scores)
+    for (std::size_t s = 0; s < row.size(); ++s) means[s] += row[s] / Real(scores.size());
+  return means;
+}
+
+// Those with the greatest score; none where all are 0.
+std::vector<std::size_t> firsts(const Row& scores) {
+  std::vector<std::size_t> all;
+  const Real most = scores.empty() ? 0 : std::ranges::max(scores);
+  for (std::size_t s = 0; s < scores.size() && most > 0; ++s)
+    if (are_tied(scores[s], most)) all.push_back(s);
+  return all;
+}
+
+// --- flips of signs
+
+// Sums of the scores of each family, whose signs flip: sums[g][s].
+struct Flips {
+  std::vector<Row> sums;
+  Row total;               // over families
+  std::vector<Row> scale;  // [s][t] 1 / √(Σ_g d_g²); 0 where two never differ
+
+  explicit Flips(std::vector<Row> given) : sums(std::move(given)), total(sums[0].size(), 0) {
+    const std::size_t k = total.size();
+    scale.assign(k, Row(k, 0));
+    for (const Row& row : sums)
+      for (std::size_t s = 0; s < k; ++s) {
+        total[s] += row[s];
+        for (std::size_t t = 0; t < k; ++t) scale[s][t] += (row[s] - row[t]) * (row[s] - row[t]);
+      }
+    for (Row& row : scale)
+      for (Real& value : row) value = value > 0 ? 1 / std::sqrt(value) : 0;
+  }
+
+  Real size(std::size_t s, std::size_t t) const { return (total[t] - total[s]) * scale[s][t]; }
+
+  // use(sums under a flip) for each flip, the first of which is none. A flip of all signs leaves
+  // every |u| alone: the last family's keeps its sign where flips are enumerated.
+  template <class Use>
+  std::size_t each(const Use& use) const {
+    const std::size_t families = sums.size();
+    Row flipped = total;
+    const auto flip = [&](std::size_t g, bool is_minus) {
+      const Real sign = is_minus ? -2 : 2;
+      for (std::size_t s = 0; s < flipped.size(); ++s) flipped[s] += sign * sums[g][s];
+    };
+    if (families <= kExactFlips) {
+      const std::size_t count = std::size_t{1} << (families - 1);
+      for (std::size_t i = 0, code = 0; i < count; ++i) {  // Gray's code: one sign at a time
+        const std::size_t next = i ^ (i >> 1U);
+        if (next != code) {
+          std::size_t g = 0;
+          while (((next ^ code) >> g & 1U) == 0) ++g;
+          flip(g, (next >> g & 1U) == 1);
+          code = next;
+        }
+        use(flipped);
+      }
+      return count;
+    }
+    use(flipped);
+    Draws random(0, "report", "joint signs");
+    for (std::size_t i = 1; i < kDrawnFlips; ++i) {
+      flipped.assign(total.size(), 0);
+      for (const Row& row : sums) {
+        const Real sign = random.uniform() < 0.5 ? -1 : 1;
+        for (std::size_t s = 0; s < flipped.size(); ++s) flipped[s] += sign * row[s];
+      }
+      use(flipped);
+    }
+    return kDrawnFlips;
+  }
+};
+
+// The order in which methods leave the confidence set, whatever the level, and the greatest u at
+// each step. The last one never leaves.
+struct Leaving {
+  std::vector<std::size_t> order;
+  Row sizes;
+};
+Leaving leaving_order(const Flips& flips) {
+  std::vector<std::size_t> left(flips.total.size());
+  std::iota(left.begin(), left.end(), 0);
+  Leaving leaving;
+  while (left.size() > 1) {
+    Real most = -kNever;
+    std::size_t worst = 0;
+    for (std::size_t i = 0; i < left.size(); ++i)
+      for (const std::size_t t : left)
+        if (t != left[i] && flips.size(left[i], t) > most) {
+          most = flips.size(left[i], t);
+          worst = i;
+        }
+    leaving.order.push_back(left[worst]);
+    leaving.sizes.push_back(most);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(worst));
+  }
+  leaving.order.push_back(left[0]);
+  return leaving;
+}
+
+// --- the bootstrap
+
+// What a run of each method came to, of one setting, drawn anew: instances, and within each as many
+// of its starts. What no drawn run has is the median of all runs.
+std::vector<std::optional<Real>> drawn_costs(const std::vector<std::optional<Real>>& costs,
+                                             const std::vector<Repetition>& repetitions,
+                                             Draws& random) {
+  if (repetitions.size() < 2) return costs;
+  std::map<std::size_t, std::vector<const Repetition*>> instances;
+  for (const Repetition& repetition : repetitions)
+    instances[repetition.instance].push_back(&repetition);
+  std::vector<const std::vector<const Repetition*>*> all;
+  for (const auto& instance : instances) all.push_back(&instance.second);
+  const auto any_of = [&](const auto& from) -> const auto& {
+    return from[static_cast<std::size_t>(random.uniform() * Real(from.size()))];
+  };
+  std::vector<Row> values(costs.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& starts = *any_of(all);
+    for (std::size_t j = 0; j < starts.size(); ++j) {
+      const Repetition& drawn = *any_of(starts);
+      for (std::size_t s = 0; s < costs.size(); ++s)
+        if (drawn.costs[s]) values[s].push_back(*drawn.costs[s]);
+    }
+  }
+  std::vector<std::optional<Real>> medians = costs;
+  for (std::size_t s = 0; s < costs.size(); ++s)
+    if (costs[s] && !values[s].empty()) medians[s] = median_of(std::move(values[s]));
+  return medians;
+}
+
+// --- the decision, part by part
+
+class Decider {
+ public:
+  explicit Decider(const Evidence& evidence)
+      : evidence_(evidence), families_(by_family(evidence.families)) {
+    const std::size_t all = evidence.costs.empty() ? 0 : evidence.costs[0].size();
+    for (std::size_t s = 0; s < all; ++s) {
+      const auto run = std::ranges::count_if(evidence.costs,
+                                             [&](const auto& row) { return row[s].has_value(); });
+      if (run == static_cast<std::ptrdiff_t>(evidence.costs.size()))
+        methods_.push_back(s);
+      else if (run > 0)
+        unranked_.push_back(s);
+    }
+    scores_ = scores_of(evidence.costs, methods_, kProfileEnd);
+    means_ = mean_scores(scores_);
+  }
+
+  std::optional<Decision> decision() const {
+    if (firsts(means_).empty()) return std::nullopt;
+    Decision out;
+    out.unranked = unranked_;
+    out.settings = evidence_.costs.size();
+    out.families = families_.size();
+    out.least_p = std::exp2(1 - Real(families_.size()));
+    out.is_range = families_.size() < kFewestForInterval;
+    out.tied = firsts(means_).size();
+    fill_places(out);
+    fill_tests(out);
+    fill_shares(out);
+    fill_choices(out);
+    return out;
+  }
+
+ private:
+  std::vector<FamilyScore> family_scores(std::size_t s) const {
+    std::vector<FamilyScore> all;
+    for (const auto& settings : families_) {
+      all.push_back({.settings = Real(settings.size())});
+      for (const std::size_t p : settings) all.back().sum += scores_[p][s];
+    }
+    return all;
+  }
+
+  void fill_places(Decision& out) const {
+    std::vector<std::size_t> order(methods_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+      return means_[a] > means_[b] && !are_tied(means_[a], means_[b]);
+    });
+    for (const std::size_t s : order) {
+      Place place{.method = methods_[s], .score = means_[s], .ratio = {}};
+      place.interval = score_interval(family_scores(s));
+      for (const auto& row : evidence_.costs) {
+        Real least = kNever;
+        for (const std::size_t t : methods_) least = std::min(least, *row[t]);
+        place.solved += *row[place.method] < kNever;
+        place.wins += *row[place.method] < kNever && *row[place.method] == least;
+      }
+      place.ratio =
+          work_ratio(evidence_.costs, evidence_.families, place.method, methods_[order[0]]);
+      out.places.push_back(place);
+    }
+  }
+
+  void fill_tests(Decision& out) const {
+    std::vector<Row> sums(families_.size(), Row(methods_.size(), 0));
+    for (std::size_t g = 0; g < families_.size(); ++g)
+      for (const std::size_t p : families_[g])
+        for (std::size_t s = 0; s < methods_.size(); ++s) sums[g][s] += scores_[p][s];
+    const FlipLevels levels = flip_levels(sums);
+    const std::size_t all = evidence_.costs[0].size(), first = index_of(out.places[0].method);
+    out.pair_p.assign(all, Row(all, 1));
+    for (std::size_t s = 0; s < methods_.size(); ++s)
+      for (std::size_t t = 0; t < methods_.size(); ++t)
+        out.pair_p[methods_[s]][methods_[t]] = levels.pairs[s][t];
+    out.is_lead = levels.is_lead;
+    for (Place& place : out.places) {
+      const std::size_t s = index_of(place.method);
+      place.p = levels.pairs[first][s];
+      place.adjusted = levels.leaves[s];
+      place.is_in_group = levels.is_in_group(s);
+    }
+    std::vector<Row> negative = sums;  // ranks: the greatest score first, by mean over the family
+    Row differences;
+    for (std::size_t g = 0; g < sums.size(); ++g) {
+      for (Real& value : negative[g]) value = -value;
+      if (out.places.size() > 1)
+        differences.push_back((sums[g][first] - sums[g][index_of(out.places[1].method)]) *
+                              Real(sums.size()) / Real(out.settings));
+    }
+    out.friedman = friedman_p(negative);
+    out.detectable = detectable_mean(deviation_of(differences), differences.size());
+  }
+
+  // Families, within them instances, within these starts.
+  void fill_shares(Decision& out) const {
+    Row first(methods_.size(), 0);
+    Draws random(0, "report", "hierarchy");
+    for (std::size_t draw = 0; draw < kDraws; ++draw) {
+      random.restart(draw);
+      Costs costs;
+      for (std::size_t g = 0; g < families_.size(); ++g) {
+        const auto& settings =
+            families_[static_cast<std::size_t>(random.uniform() * Real(families_.size()))];
+        for (const std::size_t p : settings)
+          costs.push_back(evidence_.repetitions.empty()
+                              ? evidence_.costs[p]
+                              : drawn_costs(evidence_.costs[p], evidence_.repetitions[p], random));
+      }
+      const auto best = firsts(mean_scores(scores_of(costs, methods_, kProfileEnd)));
+      for (const std::size_t s : best) first[s] += 1 / Real(best.size());
+    }
+    for (Place& place : out.places)
+      place.share_first = first[index_of(place.method)] / Real(kDraws);
+  }
+
+  void add_choice(Decision& out, Varied varied, std::string value, const Costs& costs,
+                  Real end = kProfileEnd) const {
+    Choice choice{.varied = varied, .value = std::move(value), .first = {}};
+    for (const std::size_t s : firsts(mean_scores(scores_of(costs, methods_, end))))
+      choice.first.push_back(methods_[s]);
+    choice.is_kept = std::ranges::find(choice.first, out.places[0].method) != choice.first.end();
+    out.choices.push_back(std::move(choice));
+  }
+
+  void fill_choices(Decision& out) const {
+    for (const int end : {16, 64, 256})
+      add_choice(out, Varied::profile_end, std::to_string(end), evidence_.costs, end);
+    for (const OtherCosts& other : evidence_.others)
+      add_choice(out, other.varied, other.value, other.costs);
+    for (const auto& left_out : families_) {
+      if (families_.size() < 2) break;
+      Costs costs;
+      for (const auto& family : families_)
+        for (const std::size_t p : family)
+          if (&family != &left_out) costs.push_back(evidence_.costs[p]);
+      add_choice(out, Varied::family, evidence_.families[left_out[0]], costs);
+    }
+    std::set<std::array<std::size_t, 2>> seeds;
+    for (const auto& repetitions : evidence_.repetitions)
+      for (const Repetition& each : repetitions) seeds.insert({each.instance, each.start});
+    for (const auto& [instance, start] : seeds)
+      if (seeds.size() > 1)
+        add_choice(
+            out, Varied::seed,
+            instance == start ? fmt::format("{}", instance) : fmt::format("{}.{}", instance, start),
+            costs_of_seed(instance, start));
+  }
+
+  Costs costs_of_seed(std::size_t instance, std::size_t start) const {
+    Costs costs = evidence_.costs;
+    for (std::size_t p = 0; p < costs.size(); ++p)
+      for (const Repetition& each : evidence_.repetitions[p])
+        for (std::size_t s = 0; s < costs[p].size(); ++s)
+          if (each.instance == instance && each.start == start && costs[p][s] && each.costs[s])
+            costs[p][s] = each.costs[s];
+    return costs;
+  }
+
+  std::size_t index_of(std::size_t method) const {
+    return static_cast<std::size_t>(std::ranges::find(methods_, method) - methods_.begin());
+  }
+
+  const Evidence& evidence_;
+  std::vector<std::vector<std::size_t>> families_;
+  std::vector<std::size_t> methods_, unranked_;  // that are ranked, and that ran on some settings
+  std::vector<Row> scores_;                      // [setting][place in methods_]
+  Row means_;
+};
+
+}  // namespace
+
+// All pairs and all steps in one pass over the flips: a pair that is (i, j > i) in the order of
+// leaving belongs to what remains at the steps up to i.
+FlipLevels flip_levels(const std::vector<Row>& sums) {
+  const Flips flips(sums);
+  const std::size_t k = flips.total.size();
+  const auto [order, sizes] = leaving_order(flips);
+  // Per pair in the order of leaving: its scale, what its |u| must reach, how often it did.
+  Row scale, reach, hits, steps(k, 0);
+  for (std::size_t i = 0; i < k; ++i)
+    for (std::size_t j = i + 1; j < k; ++j) {
+      scale.push_back(flips.scale[order[i]][order[j]]);
+      reach.push_back(std::abs(flips.size(order[i], order[j])) - kRounding);
+    }
+  hits.assign(scale.size(), 0);
+  Row sorted(k);
+  const std::size_t count = flips.each([&](const Row& flipped) {
+    for (std::size_t i = 0; i < k; ++i) sorted[i] = flipped[order[i]];
+    Real most = 0;
+    std::size_t pair = scale.size();
+    for (std::size_t i = k - 1; i-- > 0;) {
+      pair -= k - 1 - i;
+      const Real own = sorted[i];
+      for (std::size_t j = i + 1, at = pair; j < k; ++j, ++at) {
+        const Real size = std::abs(sorted[j] - own) * scale[at];
+        hits[at] += size >= reach[at] ? 1 : 0;
+        most = size > most ? size : most;
+      }
+      steps[i] += most >= sizes[i] - kRounding ? 1 : 0;
+    }
+  });
+  FlipLevels levels{.pairs = std::vector<Row>(k, Row(k, 1)), .leaves = Row(k, 1)};
+  Real level = 0;
+  for (std::size_t i = 0, pair = 0; i < k; ++i) {
+    if (i + 1 < k) levels.leaves[order[i]] = level = std::max(level, steps[i] / Real(count));
+    for (std::size_t j = i + 1; j < k; ++j, ++pair)
+      levels.pairs[order[i]][order[j]] = levels.pairs[order[j]][order[i]] =
+          hits[pair] / Real(count);
+  }
+  levels.first = order.back();
+  // Everything else has left, or each alone would.
+  levels.is_lead = k > 1;
+  bool is_alone = k > 1;
+  for (std::size_t s = 0; s < k; ++s) {
+    if (s == levels.first) continue;
+    levels.is_lead = levels.is_lead && levels.pairs[levels.first][s] <= kSignificant;
+    is_alone = is_alone && levels.leaves[s] <= kSignificant;
+  }
+  levels.is_lead = levels.is_lead || is_alone;
+  return levels;
+}
+
+bool FlipLevels::is_in_group(std::size_t method) const {
+  return is_lead ? method == first : leaves[method] > kSignificant;
+}
+
+// 95 % of the mean over families, of which each has the sum of its scores and its number of
+// settings: mean ± t √variance, after adding three quarters of a family that scores 0 throughout
+// and as much of one that scores 1. Agresti, Coull (1998) add such to proportions. Without them
+// scores that are all alike, as of a method that solved every problem drawn, give an interval that
+// covers in 63 % of all samples instead of 95 %.
+Interval score_interval(const std::vector<FamilyScore>& families) {
+  constexpr Real kAdded = 0.75, kConfidenceLevel = 0.975;
+  Interval range{.low = 1, .high = 0};
+  Real sum = 0, settings = 0;
+  for (const auto& [score, n] : families) {
+    range = {std::min(range.low, score / n), std::max(range.high, score / n)};
+    sum += score;
+    settings += n;
+  }
+  if (families.size() < kFewestForInterval) return range;
+  const Real typical = settings / Real(families.size()), added = kAdded * typical;
+  const Real mean = (sum + added) / (settings + 2 * added);
+  Real variance = std::pow(added * mean, 2) + std::pow(added * (1 - mean), 2);
+  for (const auto& [score, n] : families) variance += std::pow(score - mean * n, 2);
+  const Real count = Real(families.size()) + 2;
+  const Real half = student_quantile(kConfidenceLevel, families.size() - 1) *
+                    std::sqrt(variance * count / (count - 1)) / (settings + 2 * added);
+  return {std::max(0.0, mean - half), std::min(1.0, mean + half)};
+}
+
+WorkRatio work_ratio(const Costs& costs, const std::vector<std::string>& families, std::size_t a,
+                     std::size_t b) {
+  WorkRatio out;
+  Row doublings;
+  for (const auto& settings : by_family(families)) {
+    Row own;
+    for (const std::size_t p : settings) {
+      if (!costs[p][a] || !costs[p][b]) continue;
+      const Real mine = std::max(*costs[p][a], 1.0), other = std::max(*costs[p][b], 1.0);
+      const bool is_mine = mine < kNever, is_other = other < kNever;
+      ++(is_mine && is_other ? out.both
+         : is_mine           ? out.only_a
+         : is_other          ? out.only_b
+                             : out.neither);
+      if (is_mine && is_other) own.push_back(std::log2(mine) - std::log2(other));
+    }
+    if (!own.empty()) doublings.push_back(median_of(std::move(own)));
+  }
+  out.families = doublings.size();
+  if (doublings.empty()) return out;
+  const MedianInterval interval = median_interval(doublings);
+  out.median = std::exp2(interval.median);
+  out.low = std::exp2(interval.low);
+  out.high = std::exp2(interval.high);
+  return out;
+}
+
+const Place* Decision::place_of(std::size_t method) const {
+  const auto found = std::ranges::find(places, method, &Place::method);
+  return found == places.end() ? nullptr : &*found;
+}
+
+std::vector<std::size_t> Decision::group() const {
+  std::vector<std::size_t> methods;
+  for (const Place& place : places)
+    if (place.is_in_group) methods.push_back(place.method);
+  return methods;
+}
+
+std::optional<Decision> decide(const Evidence& evidence) { return Decider(evidence).decision(); }
+
+}  // namespace isoline::results

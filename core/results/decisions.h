@@ -1,0 +1,133 @@
+// Which method is best over a set of settings, and what the data allow to be said of it: one
+// decision, from which every sentence, mark and band of a report is derived.
+//
+//   score of a method on a setting:  a = max(0, log2 e − log2 r) / log2 e, r its cost over the
+//   least
+//                                    of those compared, e the profile's end; 0 where unsolved
+//   score of a method:               A = mean of a over settings, the area of its profile
+//   difference of two methods:       D = Σ over families of d_g, d_g the sum of a_s − a_t in family
+//   g its size:                        u = D / √(Σ d_g²), which Student's t grows with
+//
+// Settings of one family (sizes and variants of a problem) are no independent witnesses: their
+// differences change sign together. Under the null the signs of all d_g are arbitrary, the same for
+// all pairs of methods: 2^(G−1) flips, all of them up to kExactFlips families.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/real.h"
+#include "core/results/statistics.h"
+
+namespace isoline::results {
+
+inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
+inline constexpr Real kSignificant = 0.05;
+
+// What all methods came to on one setting from one instance and start.
+struct Repetition {
+  std::size_t instance = 0, start = 0;
+  std::vector<std::optional<Real>> costs;  // [method]; nothing where no such run exists
+};
+
+enum class Varied { profile_end, tolerance, measure, family, seed };
+
+// Other costs of the same methods on the same settings: to another tolerance, or in time.
+struct OtherCosts {
+  Varied varied = Varied::tolerance;
+  std::string value;  // which tolerance, or which measure
+  Costs costs;
+};
+
+struct Evidence {
+  Costs costs;  // [setting][method]: medians; infinite where unsolved, nothing where never run
+  std::vector<std::string> families;                 // [setting]
+  std::vector<std::vector<Repetition>> repetitions;  // [setting], or none at all
+  std::vector<OtherCosts> others;
+};
+
+// Work of `a` over that of `b` where both solve, the middle of families (of a family the middle of
+// its settings); ratios are true ones, not limited by the profile's end.
+struct WorkRatio {
+  Real median = 1, low = 0, high = kNever;  // 95 % by the test of signs; the range of fewer than 6
+  std::size_t families = 0;                 // with a setting that both solve
+  std::size_t both = 0, only_a = 0, only_b = 0, neither = 0;  // settings
+  bool is_range() const { return families < kFewestForInterval; }
+};
+WorkRatio work_ratio(const Costs& costs, const std::vector<std::string>& families, std::size_t a,
+                     std::size_t b);
+
+// What the flips say of methods whose scores sum to sums[family][method].
+struct FlipLevels {
+  std::vector<std::vector<Real>> pairs;  // [method][method] p of the pair alone, two-sided
+  std::vector<Real> leaves;  // [method] the level at which it leaves the confidence set of the best
+  std::size_t first = 0;     // the greatest sum
+  bool is_lead = false;      // which is significantly greater than each other
+
+  bool is_in_group(std::size_t method) const;
+};
+
+// The confidence set of the best, by a step-down test over all pairs (Romano, Wolf 2005; Hansen,
+// Lunde, Nason 2011): the method against which some other has the greatest u leaves if that u
+// exceeds the 0.95 quantile of the greatest u of all remaining pairs under the flips, and so on. If
+// several methods tie for the best, the chance that any of them leaves is at most 5 %, which the
+// tests hold by simulation; a quantile for each method alone would drop one of 40 in four of five
+// data sets. A first method whose p against each other one is at most 0.05 leads
+// (intersection-union), and is then the whole group.
+FlipLevels flip_levels(const std::vector<std::vector<Real>>& sums);
+
+// 95 % of a mean score over families, of which each has the sum of its scores and its number of
+// settings; of fewer than 6 families their range.
+struct FamilyScore {
+  Real sum = 0, settings = 0;
+};
+Interval score_interval(const std::vector<FamilyScore>& families);
+
+// A ranked method: one that was run on every setting.
+struct Place {
+  std::size_t method = 0;
+  Real score = 0;
+  Interval
+      interval;  // of the score, 95 % over families; their range where is_range of the decision
+  std::size_t solved = 0,
+              wins = 0;  // settings; wins: least cost of all ranked, ties count for each
+  Real share_first =
+      0;              // of the bootstrap's samples, in which it has the greatest score; ties share
+  Real p = 1;         // of its difference from the first alone, two-sided
+  Real adjusted = 1;  // at which level it leaves the confidence set of the best
+  bool is_in_group = false;  // not significantly worse than the best
+  WorkRatio ratio;           // its work over that of the first
+};
+
+// A choice that could have been made otherwise, and who is first then.
+struct Choice {
+  Varied varied = Varied::profile_end;
+  std::string value;
+  std::vector<std::size_t> first;  // methods; several where they tie, none where nothing is solved
+  bool is_kept = false;            // the decision's first place is among them
+};
+
+struct Decision {
+  std::vector<Place> places;          // best first
+  std::vector<std::size_t> unranked;  // run on some settings only
+  std::size_t settings = 0, families = 0;
+  std::size_t tied = 1;      // so many places share the greatest score
+  bool is_lead = false;      // the first place is significantly better than each other
+  bool is_range = false;     // too few families for intervals
+  Real least_p = 1;          // 2^(1−families), which no result can go below
+  Real friedman = 1;         // p, over ranks by family
+  Real detectable = kNever;  // the difference of scores, as variable as that of the first two, that
+                             // is found in 80 % of all samples
+  std::vector<std::vector<Real>> pair_p;  // [method][method], two-sided; 1 of those not ranked
+  std::vector<Choice> choices;
+
+  const Place* place_of(std::size_t method) const;  // none if not ranked
+  std::vector<std::size_t> group() const;           // methods not significantly worse than the best
+};
+
+// Nothing where no ranked method solves a setting.
+std::optional<Decision> decide(const Evidence& evidence);
+
+}  // namespace isoline::results

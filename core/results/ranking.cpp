@@ -1,0 +1,336 @@
+// Finds the methods that were run on the same settings, and ranks them.
+#include "core/results/ranking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace isoline::results {
+namespace {
+
+bool is_asked(const Comparison& c, std::size_t p, std::size_t s) {
+  return c.cell(p, s).planned > 0;
+}
+
+// A setting is shared where at least two thirds of the methods were run on it, whatever their
+// meanings; so a grid that is too large for many is not, and no method removes one by itself.
+// Methods that apply to none of their settings do not count.
+std::vector<std::size_t> shared_settings(const Comparison& c) {
+  std::set<std::string> methods;
+  for (const OptimizerAxis& axis : c.optimizers)
+    if (axis.applicable > 0) methods.insert(axis.name_of_all());
+  std::vector<std::size_t> shared;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) {
+    std::set<std::string> asked;
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+      if (is_asked(c, p, s) && c.optimizers[s].applicable > 0)
+        asked.insert(c.optimizers[s].name_of_all());
+    if (is_ordered(c, p) && 3 * asked.size() >= 2 * methods.size() && !asked.empty())
+      shared.push_back(p);
+  }
+  return shared;
+}
+
+// A method is ranked that was run on every shared setting and applies to one of them; so one
+// method's additional settings move no other, and none rises by what it was not run on.
+Order common_order(const Comparison& c) {
+  Order order{.settings = shared_settings(c), .methods = {}};
+  const auto is_applicable = [&](std::size_t p, std::size_t s) {
+    return c.cell(p, s).inapplicable.empty();
+  };
+  for (std::size_t s = 0; s < c.optimizers.size() && !order.settings.empty(); ++s)
+    if (std::ranges::all_of(order.settings, [&](std::size_t p) { return is_asked(c, p, s); }) &&
+        std::ranges::any_of(order.settings, [&](std::size_t p) { return is_applicable(p, s); }))
+      order.methods.push_back(s);
+  return order;
+}
+
+void count_problems(OptimizerAxis& axis, const Cell& cell) {
+  if (cell.planned == 0) return;
+  ++axis.planned;
+  axis.applicable += cell.inapplicable.empty();
+  add_missing(axis.privileges, cell.privileges);
+  if (!cell.is_measured()) return;
+  axis.runs += cell.runs.size();
+  axis.failed += cell.failed;
+}
+
+void mark_best(Comparison& c, std::size_t p, std::size_t tolerance) {
+  std::vector<Cell>& row = c.cells[p];
+  const bool is_common = c.order.has_setting(p);
+  Real least = kNever;
+  for (std::size_t s = 0; s < row.size(); ++s)
+    if (!is_common || c.order.has(s)) least = std::min(least, row[s].headline[tolerance].median);
+  for (Cell& cell : row) {
+    const Real mine = cell.headline[tolerance].median;
+    cell.is_best[tolerance] = mine < kNever && mine <= least;
+  }
+}
+
+// The optimizers, best first, those apart after all others.
+std::vector<std::size_t> best_first(const Comparison& c) {
+  std::vector<std::size_t> places(c.optimizers.size());
+  std::iota(places.begin(), places.end(), 0);
+  std::ranges::stable_sort(places, [&](std::size_t a, std::size_t b) {
+    if (c.order.has(a) != c.order.has(b)) return c.order.has(a);
+    const Standing &mine = c.optimizers[a].tightest(), &other = c.optimizers[b].tightest();
+    if (!are_tied(mine.score, other.score)) return mine.score > other.score;
+    if (mine.reached != other.reached) return mine.reached > other.reached;
+    return c.optimizers[a].standings[0].score > c.optimizers[b].standings[0].score;
+  });
+  return places;
+}
+
+// Sorts the optimizers with all that is stored by their index.
+void sort_optimizers(Comparison& c, const std::vector<std::size_t>& places) {
+  std::vector<std::size_t> at(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) at[places[i]] = i;
+  const auto sort = [&](auto& values) {
+    auto before = std::move(values);
+    values.clear();
+    for (const std::size_t place : places) values.push_back(std::move(before[place]));
+  };
+  sort(c.optimizers);
+  for (auto& row : c.cells) sort(row);
+  for (std::vector<Run>* runs : {&c.runs, &c.absent})
+    for (Run& run : *runs) run.optimizer = at[run.optimizer];
+  for (std::size_t& method : c.order.methods) method = at[method];
+  std::ranges::sort(c.order.methods);
+}
+
+// The rows of the order's settings; nothing for methods with extra information where these are left
+// out: the others are then measured by the best of themselves.
+Costs decision_costs(const Comparison& c, Measure by, std::size_t tolerance, bool is_open) {
+  const Costs all = common_costs(c, tolerance, by);
+  Costs costs;
+  for (const std::size_t p : c.order.settings) {
+    costs.push_back(all[p]);
+    for (std::size_t s = 0; s < c.optimizers.size() && is_open; ++s)
+      if (!c.optimizers[s].privileges.empty()) costs.back()[s].reset();
+  }
+  return costs;
+}
+
+// What each seed came to: an instance and a start of its own.
+std::vector<Repetition> repetitions_of(const Comparison& c, std::size_t problem,
+                                       const std::vector<std::optional<Real>>& costs) {
+  std::map<std::uint64_t, Repetition> seeds;
+  for (std::size_t s = 0; s < costs.size(); ++s)
+    for (const std::size_t row : c.cell(problem, s).runs) {
+      const Run& run = c.runs[row];
+      Repetition& repetition = seeds[run.seed];
+      repetition.instance = repetition.start = run.seed;
+      repetition.costs.resize(costs.size());
+      if (costs[s])
+        repetition.costs[s] = c.taken(run, c.yardstick.by, kTightest) / least_unit(c.yardstick.by);
+    }
+  std::vector<Repetition> all;
+  for (auto& [seed, repetition] : seeds) all.push_back(std::move(repetition));
+  return all;
+}
+
+// Of a study with more runs than these, families alone are resampled.
+constexpr std::size_t kMostResampled = 20'000;
+
+std::optional<Decision> decision_of(const Comparison& c, bool is_open) {
+  Evidence evidence{.costs = decision_costs(c, c.yardstick.by, kTightest, is_open)};
+  for (std::size_t i = 0; i < c.order.settings.size(); ++i) {
+    const std::size_t p = c.order.settings[i];
+    evidence.families.push_back(c.problems[p].name);
+    if (c.runs.size() <= kMostResampled)
+      evidence.repetitions.push_back(repetitions_of(c, p, evidence.costs[i]));
+  }
+  for (std::size_t t = kTightest; t-- > 0;)
+    evidence.others.push_back({Varied::tolerance, std::string(c.yardstick.tolerances[t].name),
+                               decision_costs(c, c.yardstick.by, t, is_open)});
+  for (const Measure by : {Measure::work, Measure::cost, Measure::time})
+    if (by != c.yardstick.by)
+      evidence.others.push_back(
+          {Varied::measure, std::string(name_of(by)), decision_costs(c, by, kTightest, is_open)});
+  return decide(evidence);
+}
+
+}  // namespace
+
+bool Order::has(std::size_t optimizer) const {
+  return std::ranges::find(methods, optimizer) != methods.end();
+}
+
+bool Order::has_setting(std::size_t problem) const {
+  return std::ranges::find(settings, problem) != settings.end();
+}
+
+Comparison compare_optimizers(const Study& study, const Yardstick& yardstick) {
+  Comparison c{table_of(study), yardstick, {}, {}, {}, {}, {}, 0};
+  c.cells = pivot(c, yardstick);
+  for (const auto& row : c.cells)
+    for (std::size_t s = 0; s < row.size(); ++s) count_problems(c.optimizers[s], row[s]);
+  c.order = common_order(c);
+  for (std::size_t t = 0; t < kTolerances.size(); ++t)
+    for (const auto& [s, standing] : standings_to(c, yardstick.by, yardstick.tolerances[t].rung))
+      c.optimizers[s].standings[t] = standing;
+  sort_optimizers(c, best_first(c));
+  for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+    for (std::size_t p = 0; p < c.cells.size(); ++p) mark_best(c, p, t);
+    c.profiles[t] = performance_profile(common_costs(c, t));
+  }
+  c.decision = decision_of(c, false);
+  const auto is_privileged = [&](std::size_t s) { return !c.optimizers[s].privileges.empty(); };
+  c.open_decision =
+      std::ranges::any_of(c.order.methods, is_privileged) ? decision_of(c, true) : c.decision;
+  c.names = problems_by_name(c).size();
+  return c;
+}
+
+bool is_ordered(const Comparison& c, std::size_t p) {
+  return !c.problems[p].is_learned || is_all_learned(c);
+}
+
+bool is_all_learned(const Comparison& c) {
+  return std::ranges::all_of(c.problems, &ProblemAxis::is_learned);
+}
+
+Costs costs_to(const Comparison& c, const Order& order, Measure by, std::size_t target) {
+  Costs costs(c.problems.size(), std::vector<std::optional<Real>>(c.optimizers.size()));
+  for (const std::size_t p : order.settings)
+    for (const std::size_t s : order.methods)
+      if (is_asked(c, p, s)) costs[p][s] = c.cell(p, s).median(by, target) / least_unit(by);
+  return costs;
+}
+
+Costs median_costs(const Comparison& c, std::size_t tolerance, std::optional<Measure> by) {
+  Order all;
+  for (std::size_t p = 0; p < c.problems.size(); ++p) all.settings.push_back(p);
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) all.methods.push_back(s);
+  return costs_to(c, all, by.value_or(c.yardstick.by), c.yardstick.tolerances[tolerance].rung);
+}
+
+Costs common_costs(const Comparison& c, std::size_t tolerance, std::optional<Measure> by) {
+  return costs_to(c, c.order, by.value_or(c.yardstick.by), c.yardstick.tolerances[tolerance].rung);
+}
+
+Costs ratios_of(const Costs& costs) {
+  Costs ratios;
+  for (const auto& row : costs) ratios.push_back(cost_ratios(row));
+  return ratios;
+}
+
+std::size_t names_of(const Comparison& c, const Order& order) {
+  std::set<std::string> names;
+  for (const std::size_t p : order.settings) names.insert(c.problems[p].name);
+  return names.size();
+}
+
+bool has_order(const Comparison& c) {
+  constexpr std::size_t kFewProblems = 4;
+  return c.order.methods.size() > 1 && names_of(c, c.order) >= kFewProblems;
+}
+
+bool are_tied(Real score, Real other) {
+  constexpr Real kRounding = 1e-12;  // sums of the same scores in another order
+  return std::abs(score - other) <= kRounding;
+}
+
+std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t target) {
+  const Costs costs = costs_to(c, c.order, by, target), ratios = ratios_of(costs);
+  std::vector<Ranked> standings;
+  for (const std::size_t s : c.order.methods) {
+    Standing standing{.settings = c.order.settings.size()};
+    std::vector<Real> doublings;
+    for (const std::size_t p : c.order.settings) {
+      const Real ratio = *ratios[p][s];
+      standing.score += score_of(ratio, kProfileEnd);
+      standing.solved += ratio < kNever;
+      standing.wins += std::ranges::all_of(costs[p], [&](const std::optional<Real>& other) {
+        return ratio < kNever && (!other || *costs[p][s] <= *other);
+      });
+      doublings.push_back(std::log2(ratio));
+      const Cell& cell = c.cell(p, s);
+      if (!cell.is_measured()) continue;
+      const auto has_met = [&](const Run& run) { return run.targets.size() > target; };
+      standing.runs += cell.runs.size();
+      standing.reached += c.where(cell.runs, has_met).size();
+    }
+    standing.score /= Real(standing.settings);
+    standing.typical = std::exp2(median_of(std::move(doublings)));
+    standings.push_back({s, standing});
+  }
+  std::ranges::stable_sort(standings, [](const Ranked& a, const Ranked& b) {
+    if (!are_tied(a.standing.score, b.standing.score)) return a.standing.score > b.standing.score;
+    return a.standing.reached > b.standing.reached;
+  });
+  return standings;
+}
+
+// Reads learned runs where all have spent the same.
+
+namespace {
+
+// What a run was allowed to spend: its budget of work, or what all its iterations would have taken.
+Real allowed_work(const Run& run) {
+  const Budget& budget = run.record->request.budget;
+  const Summary& summary = run.record->summary;
+  Real allowed = budget.work < Budget{}.work ? Real(budget.work) : kNever;
+  if (summary.iterations > 0)
+    allowed = std::min(allowed, Real(summary.work) / Real(summary.iterations) *
+                                    Real(std::max(budget.iterations, summary.iterations)));
+  return allowed;
+}
+
+Real value_at(const Record& record, const std::vector<Real>& column, Real work) {
+  const auto& spent = record.curve.work;
+  auto passed = static_cast<std::size_t>(
+      std::ranges::upper_bound(spent, static_cast<std::int64_t>(work)) - spent.begin());
+  if (passed == spent.size() && is_failure(record.status)) return kNever;
+  passed = std::min(passed, column.size());
+  while (passed > 0 && !std::isfinite(column[passed - 1])) --passed;
+  return passed == 0 ? kNever : column[passed - 1];
+}
+
+bool has_diverged(const Run& run) { return run.record->status == Status::diverged; }
+
+}  // namespace
+
+std::vector<std::size_t> EqualWork::nearest_first() const {
+  std::vector<std::size_t> order;
+  for (std::size_t s = 0; s < methods.size(); ++s)
+    if (methods[s]) order.push_back(s);
+  std::ranges::stable_sort(order, {}, [&](std::size_t s) { return methods[s]->x_error.median; });
+  return order;
+}
+
+EqualWork equal_work(const Comparison& c, std::size_t problem) {
+  EqualWork all{.work = kNever, .methods = {}};
+  for (const Cell& cell : c.cells[problem])
+    if (cell.is_measured())
+      all.work = std::min(all.work, c.aggregate(cell.runs, allowed_work).median);
+  for (const Cell& cell : c.cells[problem]) {
+    const auto at = [&](std::vector<Real> Curve::*column) {
+      return c.aggregate(cell.runs, [&](const Run& run) {
+        return value_at(*run.record, run.record->curve.*column, all.work);
+      });
+    };
+    all.methods.emplace_back();
+    if (cell.is_measured())
+      all.methods.back() = {at(&Curve::x_error), at(&Curve::loss),
+                            c.where(cell.runs, has_diverged).size()};
+  }
+  return all;
+}
+
+std::vector<std::size_t> ranking(const Comparison& c, std::size_t problem) {
+  if (c.problems[problem].is_learned) return equal_work(c, problem).nearest_first();
+  std::vector<std::size_t> order;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (c.cell(problem, s).is_measured()) order.push_back(s);
+  std::ranges::stable_sort(order, {}, [&](std::size_t s) {
+    const Cell& cell = c.cell(problem, s);
+    return std::array{cell.headline[2].median, cell.headline[1].median, cell.headline[0].median,
+                      cell.loss.median};
+  });
+  return order;
+}
+
+}  // namespace isoline::results

@@ -1,0 +1,94 @@
+// Which methods are compared on which settings, in which order they rank, and who leads.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/results/decisions.h"
+#include "core/results/table.h"
+
+namespace isoline::results {
+
+// Methods that were run on the very same settings.
+struct Order {
+  std::vector<std::size_t> settings, methods;  // problems; optimizers, best first
+
+  bool has(std::size_t optimizer) const;
+  bool has_setting(std::size_t problem) const;
+};
+
+// A table at a yardstick: pivoted, its optimizers ranked. All that a report says is read off it.
+struct Comparison : Table {
+  Yardstick yardstick;
+  Pivot cells;  // [problem][optimizer]
+  Order order;  // the optimizers that are ranked come first of all, best first
+  std::array<Profile, kTolerances.size()> profiles;  // of the order
+  // Which of the ranked are best at the tightest tolerance; none where nothing is solved.
+  std::optional<Decision> decision;
+  std::optional<Decision> open_decision;  // among those without extra information alone
+  std::size_t names = 0;                  // of problems, options apart
+
+  const Cell& cell(std::size_t problem, std::size_t optimizer) const {
+    return cells[problem][optimizer];
+  }
+  Real taken(const Run& run, Measure by, std::size_t tolerance) const {
+    return run.taken(by, yardstick.tolerances[tolerance].rung);
+  }
+};
+
+Comparison compare_optimizers(const Study& study, const Yardstick& yardstick = {});
+
+// Whether a problem counts for an order: a tolerance of the loss says little of a network, so what
+// is learned is told apart, by its error in x, unless a study holds nothing else.
+bool is_ordered(const Comparison& comparison, std::size_t problem);
+bool is_all_learned(const Comparison& comparison);
+
+// costs[p][s]: medians to a target in the unit of their measure; nothing where never planned, nor
+// outside the order.
+Costs costs_to(const Comparison& comparison, const Order& order, Measure by, std::size_t target);
+// To one of the tolerances, by what the yardstick counts unless told otherwise: of all cells, and
+// of the order.
+Costs median_costs(const Comparison& comparison, std::size_t tolerance,
+                   std::optional<Measure> by = {});
+Costs common_costs(const Comparison& comparison, std::size_t tolerance,
+                   std::optional<Measure> by = {});
+Costs ratios_of(const Costs& costs);  // over the least of each problem
+
+std::size_t names_of(const Comparison& comparison, const Order& order);  // of its settings
+// Whether there are problems enough to speak of an order over them.
+bool has_order(const Comparison& comparison);
+
+bool are_tied(Real score, Real other);  // but for rounding
+
+// How those of the order did to a target, the headline's or another that a reader chooses; best
+// first.
+struct Ranked {
+  std::size_t optimizer = 0;
+  Standing standing;
+};
+std::vector<Ranked> standings_to(const Comparison& comparison, Measure by, std::size_t target);
+
+// A learned problem at equal work: what networks have come to when all have spent as much.
+
+struct AtEqualWork {
+  Spread x_error, loss;      // on the validation, over seeds
+  std::size_t diverged = 0;  // runs that count with their last finite value
+};
+struct EqualWork {
+  Real work = 0;  // declared: the least that any method was allowed
+  std::vector<std::optional<AtEqualWork>> methods;  // by optimizer; none where nothing ran
+
+  // Who measured something, least error in x first.
+  std::vector<std::size_t> nearest_first() const;
+};
+// Of each run the last kept point that had spent no more. A run that ended sooner keeps its last
+// point, one that diverged its last finite one; a run that went wrong is infinite.
+EqualWork equal_work(const Comparison& comparison, std::size_t problem);
+
+// The optimizers that ran on a problem, best first: by what the yardstick counts, from the tightest
+// tolerance to the loosest, then by final loss; of a learned one by the error in x at equal work.
+std::vector<std::size_t> ranking(const Comparison& comparison, std::size_t problem);
+
+}  // namespace isoline::results

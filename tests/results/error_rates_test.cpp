@@ -1,0 +1,256 @@
+// What decisions promise, held by simulation with fixed random streams: errors
+// of the group of the best at 5 %, coverage of intervals at 95 %, power at 80
+// %. The short version takes seconds; the whole tables, with their figures
+// printed, are made by
+//   ISOLINE_LONG_TESTS=1 build/release/tests/results_tests
+//   --gtest_filter='ErrorRates.*'
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "core/draws.h"
+#include "core/json.h"
+#include "core/results/decisions.h"
+#include "core/results/tests.h"
+
+namespace isoline::results {
+namespace {
+
+bool is_long() { return std::getenv("ISOLINE_LONG_TESTS") != nullptr; }
+
+// A share of n samples whose true value is at most `most` exceeds this in one
+// of 30,000 tables: four standard errors.
+Real at_most(Real most, Real n) { return most + 4 * std::sqrt(most * (1 - most) / n); }
+
+// --- errors of the group
+
+// log2 of costs: noise of `doublings` about a common value for the methods that
+// tie for the best, about `behind` doublings more for the others; methods of
+// odd number have the second noise.
+struct Null {
+  std::string name;
+  std::size_t methods = 2, tied = 2, problems = 10;
+  Real doublings = 0.3, other_doublings = 0.3, behind = 0, unsolved = 0;
+  std::size_t settings = 1;  // of each problem
+  Real shift = 0;            // of methods with the second noise, at which all scores are equal
+};
+
+using Rows = std::vector<std::vector<Real>>;
+
+// Sums of scores by problem, from a made-up data set.
+Rows drawn_sums(const Null& null, Draws& random) {
+  Rows sums(null.problems, std::vector<Real>(null.methods, 0));
+  for (auto& row : sums)
+    for (std::size_t setting = 0; setting < null.settings; ++setting) {
+      std::vector<std::optional<Real>> costs;
+      for (std::size_t s = 0; s < null.methods; ++s) {
+        const bool is_odd = s % 2 == 1;
+        const Real middle = 10 + (s < null.tied ? 0 : null.behind) + (is_odd ? null.shift : 0);
+        const Real noise = is_odd ? null.other_doublings : null.doublings;
+        const Real cost = std::exp2(middle + noise * random.normal());
+        costs.emplace_back(random.uniform() < null.unsolved ? kNever : cost);
+      }
+      const auto ratios = cost_ratios(costs);
+      for (std::size_t s = 0; s < row.size(); ++s) row[s] += score_of(*ratios[s], kProfileEnd);
+    }
+  return sums;
+}
+
+// The share of data sets of which the decision errs: a method that ties for the
+// best is said to be worse than it, be it by the confidence set or by a lead of
+// another.
+Real error_of(const Null& null, std::size_t samples) {
+  std::size_t errors = 0;
+  for (std::size_t sample = 0; sample < samples; ++sample) {
+    Draws random(sample, null.name, "null");
+    const FlipLevels levels = flip_levels(drawn_sums(null, random));
+    bool is_wrong = false;
+    for (std::size_t s = 0; s < null.tied; ++s)
+      is_wrong = is_wrong || (null.tied > 1 && !levels.is_in_group(s));
+    errors += is_wrong;
+  }
+  return Real(errors) / Real(samples);
+}
+
+// Scores are relative to the least cost, so methods of unequal noise differ in
+// the mean at equal medians: the shift at which they do not, by bisection over
+// one fixed stream.
+Real balancing_shift(Null null) {
+  Real low = -3, high = 3;
+  constexpr int kHalvings = 12, kSamples = 300;
+  for (int i = 0; i < kHalvings; ++i) {
+    null.shift = (low + high) / 2;
+    Real ahead = 0;  // of the methods with the second noise
+    for (int sample = 0; sample < kSamples; ++sample) {
+      Draws random(static_cast<std::uint64_t>(sample), null.name, "balance");
+      for (const auto& row : drawn_sums(null, random))
+        for (std::size_t s = 0; s + 1 < row.size(); s += 2) ahead += row[s + 1] - row[s];
+    }
+    (ahead > 0 ? low : high) = null.shift;
+  }
+  return (low + high) / 2;
+}
+
+std::vector<Null> nulls() {
+  std::vector<Null> all;
+  const std::vector<std::size_t> many =
+      is_long() ? std::vector<std::size_t>{2, 5, 10, 40} : std::vector<std::size_t>{2, 5, 10};
+  for (const std::size_t problems : {10U, 17U})
+    for (const Real noise : {0.3, 1.5}) {
+      for (const std::size_t k : many)
+        all.push_back({"exchangeable", k, k, problems, noise, noise});
+      if (is_long() || problems == 10)
+        all.push_back(
+            {"3 tied, 37 worse by 2 deviations", 40, 3, problems, noise, noise, 2 * noise});
+      if (!is_long()) continue;
+      all.push_back({"3 tied, 37 far worse", 40, 3, problems, noise, noise, 5});
+      all.push_back({"2 tied, 38 worse by 2 deviations", 40, 2, problems, noise, noise, 2 * noise});
+    }
+  for (const std::size_t problems : {10U, 17U})
+    for (const std::size_t k : many) {
+      Null unequal{"unequal variances", k, k, problems, 0.3, 1.5};
+      unequal.shift = balancing_shift(unequal);
+      all.push_back(unequal);
+      if (is_long()) all.push_back({"a fifth unsolved", k, k, problems, 1.5, 1.5, 0, 0.2});
+    }
+  all.push_back({"two settings a problem", 10, 10, 10, 1.5, 1.5, 0, 0, 2});
+  return all;
+}
+
+TEST(ErrorRates, NoBestMethodIsSaidToBeWorseInMoreThanOneDataSetOfTwenty) {
+  for (const Null& null : nulls()) {
+    const bool is_costly = null.problems > 10;  // 2¹⁶ flips
+    const std::size_t samples = is_long() ? (is_costly ? 1000 : 4000) : is_costly ? 40 : 200;
+    const Real error = error_of(null, samples);
+    EXPECT_LE(error, at_most(0.05, Real(samples))) << null.name << ", " << null.methods;
+    if (!is_long()) continue;
+    std::printf("%-34s k = %2zu, n = %2zu, %.1f and %.1f doublings: %.4f of %zu\n",
+                null.name.c_str(), null.methods, null.problems, null.doublings,
+                null.other_doublings, error, samples);
+    EXPECT_LE(error, is_costly ? at_most(0.05, Real(samples)) : 0.065)
+        << null.name << ", " << null.methods;
+  }
+}
+
+// --- coverage of intervals of scores
+
+// A score on one setting of a family with effect `family`.
+Real drawn_score(int kind, Real family, Draws& random) {
+  const auto rank_of = [](Real z) { return std::erfc(-z / std::sqrt(2.0)) / 2; };
+  const Real z = 0.6 * family + 0.8 * random.normal(), own = random.normal();
+  switch (kind) {
+    case 0:
+      return std::clamp(0.5 + 0.25 * z, 0.0, 1.0);  // in the middle
+    case 1:
+      return std::clamp(1.05 - 0.225 * std::abs(z), 0.0,
+                        1.0);  // first or nearly so
+    case 2:
+      return rank_of(z) < 0.3 ? 0 : std::clamp(0.75 + 0.2 * own, 0.0, 1.0);  // some unsolved
+    case 3:
+      return rank_of(z) < 0.75 ? 0 : std::clamp(0.6 + 0.25 * own, 0.0, 1.0);  // most unsolved
+    case 4:
+      return std::max(0.0, 1 - std::exp(0.8 * z - 1.2));  // a long tail
+    default:
+      return rank_of(z) < 0.12 ? 0 : std::clamp(0.97 + 0.05 * own, 0.0, 1.0);  // seldom not
+  }
+}
+
+TEST(ErrorRates, IntervalsOfScoresCoverTheirStatedShare) {
+  const int samples = is_long() ? 10000 : 1500;
+  for (int kind = 0; kind < 6; ++kind) {
+    Real truth = 0;
+    constexpr int kTruth = 200000;
+    Draws random(1, "score " + std::to_string(kind), "truth");
+    for (int i = 0; i < kTruth; ++i) truth += drawn_score(kind, random.normal(), random) / kTruth;
+    for (const std::size_t families : {6U, 8U, 10U, 13U, 17U})
+      for (const std::size_t settings : {1U, 2U}) {
+        int covered = 0;
+        Real width = 0;
+        for (int sample = 0; sample < samples; ++sample) {
+          random.restart(static_cast<std::uint64_t>(sample) + 1);
+          std::vector<FamilyScore> scores;
+          for (std::size_t g = 0; g < families; ++g) {
+            const Real family = random.normal();
+            scores.push_back({.settings = Real(settings)});
+            for (std::size_t i = 0; i < settings; ++i)
+              scores.back().sum += drawn_score(kind, family, random);
+          }
+          const Interval interval = score_interval(scores);
+          covered += interval.low <= truth && truth <= interval.high;
+          width += (interval.high - interval.low) / samples;
+        }
+        const Real share = Real(covered) / samples;
+        EXPECT_GE(share, 1 - at_most(0.05, samples)) << kind << ", " << families << " families";
+        if (is_long())
+          std::printf("score %.2f, %2zu families of %zu: covers %.3f, width %.2f\n", truth,
+                      families, settings, share, width);
+      }
+  }
+}
+
+// Five values of one source, and a sixth: on the scale on which they are
+// normal.
+TEST(ErrorRates, PredictionIntervalsHoldTheNextValue) {
+  const int samples = is_long() ? 100000 : 4000;
+  for (const std::size_t n : {2U, 3U, 6U, 10U}) {
+    int held = 0;
+    for (int sample = 0; sample < samples; ++sample) {
+      Draws random(static_cast<std::uint64_t>(sample), "prediction", "normal");
+      std::vector<Real> values;
+      for (std::size_t i = 0; i < n; ++i) values.push_back(random.normal());
+      const Interval interval = prediction_interval(values, 0);
+      const Real next = random.normal();
+      held += interval.low <= next && next <= interval.high;
+    }
+    const Real share = Real(held) / samples, error = 4 * std::sqrt(0.05 * 0.95 / samples);
+    EXPECT_NEAR(share, 0.95, error) << n;
+    if (is_long()) std::printf("prediction from %zu: %.4f\n", n, share);
+  }
+}
+
+// --- power
+
+// Differences of mean 0 and variance 1.
+Real drawn_difference(int kind, Draws& random) {
+  switch (kind) {
+    case 0:
+      return random.normal();
+    case 1:
+      return -std::log(1 - random.uniform()) - 1;  // one long tail
+    case 2:
+      return random.uniform() < 0.5 ? 0 : std::sqrt(2.0) * random.normal();  // half alike
+    default:
+      return random.normal() * (random.uniform() < 0.1 ? std::sqrt(5.0) : std::sqrt(5 / 9.0));
+  }
+}
+
+// A second sample whose mean is what the first calls detectable.
+TEST(ErrorRates, WhatIsCalledDetectableIsFoundInFourFifthsOfSamples) {
+  const int samples = is_long() ? 4000 : 400;
+  for (const std::size_t n : {7U, 8U, 10U, 13U, 17U})
+    for (int kind = 0; kind < 4; ++kind) {
+      if (!is_long() && n > 10) continue;
+      int found = 0;
+      for (int sample = 0; sample < samples; ++sample) {
+        Draws random(static_cast<std::uint64_t>(sample), "power", std::to_string(kind), n);
+        std::vector<Real> first, second;
+        for (std::size_t i = 0; i < n; ++i) first.push_back(drawn_difference(kind, random));
+        const Real mean = detectable_mean(deviation_of(first), n);
+        for (std::size_t i = 0; i < n; ++i) second.push_back(drawn_difference(kind, random) + mean);
+        found += sign_flip_p(second) <= kSignificant;
+      }
+      const Real share = Real(found) / samples;
+      if (is_long()) std::printf("power, n = %zu, kind %d: %.3f\n", n, kind, share);
+      // Tails differ: 0.75 to 0.91 at n = 7 to 17, against 0.56 to 0.79 without
+      // the correction.
+      EXPECT_GE(share, 0.75 - 4 * 0.4 / std::sqrt(samples)) << n << ", " << kind;
+      EXPECT_LE(share, 0.92 + 4 * 0.27 / std::sqrt(samples)) << n << ", " << kind;
+    }
+}
+
+}  // namespace
+}  // namespace isoline::results
