@@ -63,6 +63,24 @@ TEST(SpectralStep, EveryWayAgreesWithTheSvd) {
   });
 }
 
+// All σ within a hundredth of the largest, so that a Gram matrix rounds none of them away; some lie
+// below the cut-off, and count as it.
+TEST(SpectralStep, EveryWayClampsAlike) {
+  const Problem problem = network("3");
+  for (const Real kappa : {0.5, 1.0}) {
+    const SpectralFilter filter = clamped_power_filter(kappa, 0.3);
+    const Vector reference = step_of(problem, problem.start(), Way::svd, filter).step;
+    const Vector discarded =
+        step_of(problem, problem.start(), Way::svd, power_filter(kappa, 0.3)).step;
+    EXPECT_GT((discarded - reference).norm(), 0.01 * reference.norm());
+    for (const Way way : {Way::qr, Way::gram, Way::layers, Way::split, Way::automatic})
+      expect_near(step_of(problem, problem.start(), way, filter).step, reference, 1e-10,
+                  std::string(way_text(way)));
+    expect_near(step_of(problem, problem.start(), Way::lanczos, filter, {.tolerance = 0}).step,
+                reference, 1e-10, "Lanczos");
+  }
+}
+
 // With the published cut-offs, at which a Gram matrix alone would not do. The reference itself
 // knows a σ to rounding of the largest, so that a share of 1e-10 is left out here.
 TEST(SpectralStep, TheAutomaticWayAgreesWithTheSvd) {
@@ -174,6 +192,9 @@ TEST(Filters, AreTheirFormulas) {
   EXPECT_DOUBLE_EQ(power_filter(0.5, 0.1)(2, of), 1 / std::sqrt(2.0));
   EXPECT_EQ(power_filter(0.5, 0.5)(2, of), 0);  // strictly greater
   EXPECT_DOUBLE_EQ(clamped_power_filter(1, 0.5)(1e-9, of), 0.5);
+  for (const Real sigma : {1e-9, 0.7, 3.0})  // a function of σ², times σ
+    EXPECT_DOUBLE_EQ(sigma * clamped_power_filter(0.5, 0.5).over_sigma(sigma, of),
+                     clamped_power_filter(0.5, 0.5)(sigma, of));
   EXPECT_DOUBLE_EQ(truncated_inverse_filter(0.1)(2, of), 0.5);
   EXPECT_DOUBLE_EQ(tikhonov_filter(0.5)(2, of), 2 / (4 + 1.5));
   EXPECT_DOUBLE_EQ(decaying_filter(0.5, 0.25)(2, of), 2 / std::pow(4 + 4, 0.75));
