@@ -68,11 +68,48 @@ TEST(FixedDamping, IsItsFormulaWideAndTall) {
     }
 }
 
+// Wide by its layers, tall by JᵀJ; with a damping that squaring J alone would round to nothing.
 TEST(LevenbergMarquardt, StepsAlikeByQrAndByCholesky) {
-  const Problem problem = network("40,data=40");  // 80 residuals
-  const std::string spec = "levenberg-marquardt[initial-damping=1e-2,way=";
-  expect_near(run(problem, spec + "cholesky]", iterations(5)).theta,
-              run(problem, spec + "orthogonal]", iterations(5)).theta, 1e-8, "five steps");
+  for (const char* samples : {"40", "70"})  // 80 and 140 residuals for 92 unknowns
+    for (const char* scaling : {"more", "none", "jacobian"})
+      for (const char* damping : {"1e-2", "1e-6"}) {
+        const Problem problem = network(std::string(samples) + ",data=" + samples);
+        const std::string spec = std::string("levenberg-marquardt[initial-damping=") + damping +
+                                 ",scaling=" + scaling + ",way=";
+        expect_near(run(problem, spec + "cholesky]", iterations(5)).theta,
+                    run(problem, spec + "orthogonal]", iterations(5)).theta, 1e-7, spec);
+      }
+}
+
+TEST(LevenbergMarquardt, ScalesAsItIsAsked) {
+  const Problem problem = network("5");
+  const Linearized at = linearized(problem, problem.start());
+  for (const char* scaling : {"more", "none", "jacobian"}) {
+    const Vector D = std::string(scaling) == "none" ? Vector(Vector::Ones(at.J.cols()))
+                                                    : Vector(at.J.colwise().norm().transpose());
+    const Matrix A = at.J * D.cwiseInverse().asDiagonal();
+    Matrix K = A * A.transpose();
+    K.diagonal().array() += 0.1;
+    Vector z;
+    ASSERT_TRUE(solve_square(K, at.r, z));
+    const std::string spec =
+        std::string("levenberg-marquardt[initial-damping=0.1,scaling=") + scaling + "]";
+    expect_near(run(problem, spec, iterations(1)).theta - problem.start(),
+                -(A.transpose() * z).cwiseQuotient(D), 1e-10, scaling);
+  }
+}
+
+// Above 900 residuals the default damping was taken for too small to square J, and each step for
+// QR; and no Jacobian is formed where the layers are known.
+TEST(LevenbergMarquardt, OfManyResidualsTakesTheGramMatrixOfTheLayers) {
+  const Problem problem = published("poisson-hig[mode=learn,batch=16]");  // 1,024 residuals
+  const Outcome fixed = run(problem, "levenberg-marquardt[damping=fixed]", iterations(1));
+  EXPECT_STREQ(fixed.trace->claimed, "steps by Cholesky of the Gram matrix");
+  for (const char* spec : {"levenberg-marquardt", "levenberg-marquardt[damping=fixed]"}) {
+    const OracleCounts counts = run(problem, spec, iterations(2)).trace->last.counts;
+    EXPECT_EQ(counts[static_cast<std::size_t>(Oracle::jacobian)], 0) << spec;
+    EXPECT_GT(counts[static_cast<std::size_t>(Oracle::layer_factors)], 0) << spec;
+  }
 }
 
 TEST(Spring, IsFixedDampingWithoutMomentum) {
