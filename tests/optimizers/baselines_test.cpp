@@ -179,15 +179,18 @@ TEST(Muon, BringsSingularValuesNearOne) {
   }
 }
 
-// From one gradient G = U Σ Vᵀ both preconditioners leave the orthogonal factor U Vᵀ.
+// From one gradient G = U Σ Vᵀ both preconditioners leave the orthogonal factor U Vᵀ; SOAP's first
+// step fills its own, and the second has the same gradient.
 TEST(Shampoo, FirstStepIsTheOrthogonalFactorOfTheGradient) {
-  const Problem problem = learned_affine(6);
+  const Problem problem = learned_affine(6, 6);
   const Vector gradient = linearized(problem, problem.start()).gradient;
   Svd svd;
   ASSERT_TRUE(thin_svd(gradient.head(4).reshaped(2, 2), svd));
   const Matrix factor = svd.U * svd.Vt;
-  for (const char* spec : {"shampoo[rate=0.1,epsilon=1e-14]", "soap[rate=0.1,epsilon=1e-9]"}) {
-    const Vector step = run(problem, spec, iterations(1)).theta - problem.start();
+  EXPECT_EQ(run(problem, "soap", iterations(1)).theta, problem.start());
+  for (const auto& [spec, steps] :
+       {std::pair{"shampoo[rate=0.1,epsilon=1e-14]", 1}, {"soap[rate=0.1,epsilon=1e-9]", 2}}) {
+    const Vector step = run(problem, spec, iterations(steps)).theta - problem.start();
     EXPECT_LE((step.head(4).reshaped(2, 2) + 0.1 * factor).norm(), 1e-6) << spec;
   }
   const Vector step =
@@ -224,12 +227,29 @@ TEST(Shampoo, StandsGradientsWhoseSquaresSwampEpsilon) {
   }
 }
 
-// Without a basis of its own SOAP is Adam, of which the mean of squares decays alike.
+// Without a basis of its own SOAP is Adam, of which the mean of squares decays alike, a step later.
 TEST(Soap, IsAdamWithoutABasis) {
-  const Problem problem = network("6");
-  expect_near(run(problem, "soap[rate=0.01,longest=1,beta1=0.9,beta2=0.99]", iterations(10)).theta,
+  const Problem problem = network("6,data=6");
+  expect_near(run(problem, "soap[rate=0.01,longest=1,beta1=0.9,beta2=0.99]", iterations(11)).theta,
               run(problem, "adam[rate=0.01,beta1=0.9,beta2=0.99]", iterations(10)).theta, 1e-12,
               "adam");
+}
+
+// What another kernel of a library rounds otherwise stays rounding: no method makes a choice by it.
+TEST(Rounding, StaysRoundingThroughThreeStepsOfEveryMethod) {
+  for (const std::string samples : {"6", "20", "6,data=6"}) {
+    const Problem problem = network(samples);
+    RandomStream stream(1, "rounding", "start");
+    const Vector nudge = stream.normal_vector(problem.unknowns());
+    const Vector nudged = problem.start().array() * (1 + 4e-16 * nudge.array());
+    for (const auto& [name, entry] : optimizers()) {
+      if (!why_inapplicable(entry, options_of_spec(entry, name), problem).empty()) continue;
+      if (samples == "6,data=6" && !entry.needs_same_samples) continue;
+      const Vector one = run(problem, name, iterations(3)).theta,
+                   other = run_from(nudged, problem, name, iterations(3)).theta;
+      EXPECT_LE((one - other).norm(), 1e-8 * one.norm()) << name << ", " << samples;
+    }
+  }
 }
 
 TEST(MatrixMethods, AreForNetworks) {
