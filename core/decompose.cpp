@@ -117,10 +117,15 @@ bool symmetric_eigen(const Matrix& A, SymmetricEigen& out) {
                         as_int(A.rows()), out.lambda.data()) == 0;
 }
 
-bool solve_positive_definite(Matrix& A, Matrix& B) {
-  if (!is_finite(A) || !is_finite(B)) return false;
-  return LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', as_int(A.rows()), as_int(B.cols()), A.data(),
-                       as_int(A.rows()), B.data(), as_int(B.rows())) == 0;
+bool cholesky(Matrix& A) {
+  const lapack_int n = as_int(A.rows());
+  return is_finite(A) && LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, A.data(), n) == 0;
+}
+
+bool solve_by_cholesky(const Matrix& L, Matrix& B) {
+  const lapack_int n = as_int(L.rows());
+  return is_finite(B) && LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', n, as_int(B.cols()), L.data(), n,
+                                        B.data(), as_int(B.rows())) == 0;
 }
 
 bool solve_square(const Matrix& A, const Vector& b, Vector& x) {

@@ -39,9 +39,13 @@ struct SymmetricEigen {
 bool symmetric_eigen(const Matrix& A,
                      SymmetricEigen& out);  // A = V diag(λ) Vᵀ; false: no convergence
 
-// B ← A⁻¹ B by Cholesky, A (n, n) symmetric and overwritten, its lower half alone read, B (n, r);
-// false where A is not positive definite.
-bool solve_positive_definite(Matrix& A, Matrix& B);
+// A = L Lᵀ, A (n, n) symmetric, its lower half alone read and overwritten by L; false where A is
+// not positive definite. B ← (L Lᵀ)⁻¹ B, (n, r).
+bool cholesky(Matrix& A);
+bool solve_by_cholesky(const Matrix& L, Matrix& B);
+inline bool solve_positive_definite(Matrix& A, Matrix& B) {
+  return cholesky(A) && solve_by_cholesky(A, B);
+}
 
 // x = A⁻¹ b by LU with partial pivoting, A (n, n); false when A is exactly singular.
 bool solve_square(const Matrix& A, const Vector& b, Vector& x);

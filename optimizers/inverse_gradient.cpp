@@ -1,5 +1,5 @@
-// Inverse gradient, Holl, Koltun, Thuerey (2022), inverse gradients: Δx = J⁻¹ Δy with Δy = η (y* −
-// y), the linearized form of the physics inversion; the grey circles (x₁, x₂/2) of its Fig. 1.
+// Inverse gradient, Thuerey et al., Physics-based Deep Learning, chapter "Scale-Invariance and
+// Inversion": Δx = J⁻¹ Δy with Δy = η (y* − y), the linearized form of the physics inversion.
 #include <fmt/format.h>
 
 #include "core/decompose.h"
@@ -10,20 +10,28 @@ namespace {
 
 struct InverseGradient {
   Real rate = 1;
+  std::string fallback = "none";
 
   struct State {
     Linearization at;
     Vector dy, dx;  // (m·B), (n)
+    Index fallbacks = 0;
   };
-  static void persist(State&, Archive&) {}  // all of it is scratch
-  State init(Meter&, const Vector&) const { return {}; }
+  static void persist(State& s, Archive& archive) { archive(s.fallbacks); }
+  State init(Meter& f, const Vector&) const {
+    if (fallback == "gradient") f.name_series({"steps along the gradient"});
+    return {};
+  }
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
     s.dy = rate * (f.target() - s.at.y()).reshaped();
     if (!solve_square(s.at.jacobian(), s.dy, s.dx)) {
       f.claim("the Jacobian is singular");
-      return Status::stalled;
+      if (fallback == "none") return Status::stalled;
+      s.dx.noalias() = s.at.jacobian().transpose() * s.dy;
+      ++s.fallbacks;
     }
+    if (fallback == "gradient") f.note(0, static_cast<Real>(s.fallbacks));
     theta += s.dx;
     return Status::running;
   }
@@ -31,6 +39,8 @@ struct InverseGradient {
 
 void fields(InverseGradient& o, auto& field) {
   field("rate", o.rate, above(0), "step length η in y");
+  field("fallback", o.fallback, Choices{"none", "gradient"},
+        "where the Jacobian is singular: the method stops; or it steps by JᵀΔy, which is counted");
 }
 
 std::string objection(const OptionValues&, const Problem& problem) {
@@ -48,7 +58,8 @@ void register_inverse_gradient(OptimizerRegistry& registry) {
                                       .family = Family::inversion,
                                       .kind = Kind::inversion,
                                       .formula = "θ ← θ + J⁻¹ Δy,  Δy = η (y* − y)",
-                                      .source = "Holl, Koltun, Thuerey (2022), inverse gradients",
+                                      .source = "Thuerey et al., Physics-based Deep Learning, "
+                                                "chapter Scale-Invariance and Inversion",
                                       .needs = {Oracle::forward, Oracle::jacobian},
                                       .is_input_scale_invariant = true,
                                       .most_rank = 2048,

@@ -10,27 +10,52 @@
 namespace isoline::optimizers {
 namespace {
 
+// x̃ = x − η ∂L/∂x, L a sample's own loss: theorem 2 of Holl, Koltun, Thuerey (2022).
+class AlongGradient final : public Inversion {
+ public:
+  explicit AlongGradient(Real step) : step_(step) {}
+
+  Index invert(Meter&, Linearization& at, Matrix& found) override {
+    const auto samples = static_cast<Real>(at.x().cols());
+    at.cotangent(g_);
+    slope_.resizeLike(at.x());
+    at.physics_pullback(g_, slope_);
+    found = at.x() - step_ * samples * slope_;
+    return 0;
+  }
+
+ private:
+  Real step_;
+  Matrix g_, slope_;  // (m, B), (k, B) of the mean loss
+};
+
 // The problem's own: x̃ = P⁻¹(y + η (y* − y); x), or x + η (P⁻¹(y*; x) − x) where it does not undo
 // P.
 class ByProblem final : public Inversion {
  public:
-  explicit ByProblem(Real step) : step_(step) {}
+  ByProblem(Real step, bool falls_back) : step_(step), falls_back_(falls_back), gradient_(step) {}
 
-  // A sample whose inverse fails keeps its x, and gives no gradient.
-  void invert(Meter& f, Linearization& at, Matrix& found) override {
+  // A sample whose inverse fails keeps its x, and gives no gradient; or moves along its gradient.
+  Index invert(Meter& f, Linearization& at, Matrix& found) override {
     const bool undoes_physics = f.inverse_kind() == Inverse::exact;
     wanted_ = f.target();
     if (undoes_physics) wanted_ = at.y() + step_ * (f.target() - at.y());
     found = at.x();
     const Success success = at.local_inverse(wanted_, found);
     if (!undoes_physics) found = at.x() + step_ * (found - at.x());
+    if (success.all()) return 0;
+    instead_ = at.x();
+    if (falls_back_) gradient_.invert(f, at, instead_);
     for (Index b = 0; b < success.size(); ++b)
-      if (!success[b]) found.col(b) = at.x().col(b);
+      if (!success[b]) found.col(b) = instead_.col(b);
+    return falls_back_ ? success.size() - success.count() : 0;
   }
 
  private:
   Real step_;
-  Matrix wanted_;  // (m, B)
+  bool falls_back_;
+  AlongGradient gradient_;
+  Matrix wanted_, instead_;  // (m, B), (k, B)
 };
 
 // H = V diag(S) Vᵀ of symmetric H, for the sizes that a Jacobi rotation makes diagonal at once: its
@@ -88,16 +113,20 @@ class ByNewton final : public Inversion {
  public:
   ByNewton(Real step, Length length) : step_(step), length_(length) {}
 
-  void invert(Meter& f, Linearization& at, Matrix& found) override {
+  Index invert(Meter& f, Linearization& at, Matrix& found) override {
     const Index k = at.x().rows();
     misfit_ = at.y() - f.target();
     bend_.resize(k, at.x().size());
     at.curvature(misfit_, bend_);
     const Matrix& dy_dx = at.sensitivity();
     found = at.x();
-    if (k == 1) return step_all<1, Single>(dy_dx, found);
-    if (k == 2) return step_all<2, Pair>(dy_dx, found);
-    step_all<Eigen::Dynamic, General>(dy_dx, found);
+    if (k == 1)
+      step_all<1, Single>(dy_dx, found);
+    else if (k == 2)
+      step_all<2, Pair>(dy_dx, found);
+    else
+      step_all<Eigen::Dynamic, General>(dy_dx, found);
+    return 0;
   }
 
  private:
@@ -135,7 +164,7 @@ class ByLbfgs final : public Inversion {
   ByLbfgs(Real step, Index most_evaluations) : step_(step), most_evaluations_(most_evaluations) {}
 
   // To the rounding of what is wanted.
-  void invert(Meter& f, Linearization& at, Matrix& found) override {
+  Index invert(Meter& f, Linearization& at, Matrix& found) override {
     constexpr Real kRelativeMisfit = 1e-14;
     wanted_ = at.y() + step_ * (f.target() - at.y());
     const Index k = at.x().rows(), samples = at.x().cols();
@@ -152,6 +181,7 @@ class ByLbfgs final : public Inversion {
                     .is_over = [&] { return f.is_spent(); }},
                    flat_);
     found = flat_.reshaped(k, samples);
+    return 0;
   }
 
  private:
@@ -170,7 +200,9 @@ bool uses_own_inverse(const InversionOptions& o, Inverse kind) {
 }  // namespace
 
 std::unique_ptr<Inversion> make_inversion(const InversionOptions& o, Inverse kind) {
-  if (uses_own_inverse(o, kind)) return std::make_unique<ByProblem>(o.step);
+  if (uses_own_inverse(o, kind))
+    return std::make_unique<ByProblem>(o.step, o.fallback == "gradient");
+  if (o.inverse == "gradient") return std::make_unique<AlongGradient>(o.step);
   if (o.inverse == "newton")
     return std::make_unique<ByNewton<SaddleFree>>(o.step, SaddleFree{o.max_loss_change});
   return std::make_unique<ByLbfgs>(o.step, o.inverse_evaluations);
@@ -180,6 +212,7 @@ OracleSet needs_of(const InversionOptions& o, const Problem& problem) {
   OracleSet needs{Oracle::forward, Oracle::network};
   if (uses_own_inverse(o, problem.inverse_kind())) {
     needs.add(Oracle::inverse);
+    if (o.fallback == "gradient") needs.add(Oracle::pullback);
   } else if (o.inverse == "newton") {
     needs.add(Oracle::sensitivity);
     needs.add(Oracle::curvature);

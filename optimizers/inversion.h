@@ -54,21 +54,23 @@ LbfgsResult minimize_lbfgs(const ValueAndGradient& f, const LbfgsLimits& limits,
 class Inversion {
  public:
   virtual ~Inversion() = default;
-  virtual void invert(Meter& f, Linearization& at, Matrix& found) = 0;  // found: x̃, (k, B)
+  // found: x̃, (k, B). How many samples were moved along the gradient, their inverse having failed.
+  virtual Index invert(Meter& f, Linearization& at, Matrix& found) = 0;
 };
 
 // Which, and how: the options that all methods share that invert the physics.
 struct InversionOptions {
   Real step = 1, max_loss_change = 0.2;
-  std::string inverse = "auto";
+  std::string inverse = "auto", fallback = "none";
   Index inverse_evaluations = 200;
 };
 
 inline void fields(InversionOptions& o, auto& field) {
   field("step", o.step, above(0), "step length η toward y*");
-  field("inverse", o.inverse, Choices{"auto", "analytic", "damped", "newton", "lbfgs"},
-        "local inverse: the problem's own (damped requires a damped one); a saddle-free "
-        "Newton step; or L-BFGS; auto: the problem's own where there is one, else L-BFGS");
+  field("inverse", o.inverse, Choices{"auto", "analytic", "damped", "newton", "lbfgs", "gradient"},
+        "local inverse: the problem's own (damped requires a damped one); a saddle-free Newton "
+        "step; L-BFGS; or U = −η ∂L/∂x of each sample's loss, which is backpropagation; auto: the "
+        "problem's own where there is one, else L-BFGS");
   field("max-loss-change", o.max_loss_change, above(0),
         "of inverse=newton: limit Δ on the linear change of a sample's loss along a direction of "
         "low or negative curvature");

@@ -19,106 +19,207 @@
 namespace isoline::optimizers {
 namespace {
 
-struct DampedLeastSquares {
-  enum class Way { automatic, orthogonal, cholesky };
+constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
+constexpr Index kLeastSquared = 64;  // of min(m·B, n): below, QR takes no longer than Cholesky
 
-  void set(const Matrix& J, const Vector& minus_r, const Vector& D);
+// d = argmin ‖J d − b‖² + μ‖D d‖² for any μ. By QR of J and the damping below or beside it; or by
+// Cholesky of the smaller Gram matrix of A = J D⁻¹, which is formed once for all μ, and by the
+// layers of a network where they are known. What squaring A costs in digits is given back by
+// corrections, each from the residual by A itself; Björck (1996), section 6.6.5. Where they do not
+// converge QR is left.
+class DampedLeastSquares {
+ public:
+  enum class Way { automatic, orthogonal, cholesky };
+  enum class Scaling { more, none, jacobian };
+
+  void set(Meter& f, Linearization& at, const Vector& b, Scaling scaling);
   // d and J d; false where they are not finite.
   bool solve(Real mu, Way way, Vector& d, Vector& Jd);
-  Real misfit() const { return 0.5 * right.squaredNorm(); }  // ½‖r‖²
-  void persist(Archive& archive) { archive(augmented, right, scale, rows); }
-
-  Index rows = 0;    // m·B
-  Matrix augmented;  // (m·B + n, n) with J on top, or (m·B, n + m·B) with JD⁻¹ left
-  Vector right;      // −r, with n zeros below where J is not wide
-  Vector scale;      // (n) D
+  Real misfit() const { return 0.5 * right_.squaredNorm(); }  // ½‖b‖²
+  Real squared_length(const Vector& d) const { return scale_.cwiseProduct(d).squaredNorm(); }
+  void persist(Archive& archive) {
+    archive(rows_, is_layered_, J_, right_, scale_, inverse_, order_);
+    layered_.persist(archive);
+  }
 
  private:
-  bool is_wide() const { return rows < scale.size(); }
-  bool may_square(Real mu) const;
+  bool is_wide() const { return rows_ < scale_.size(); }
+  void push(const Vector& s);  // moved_ = A s
+  void pull(const Vector& y);  // pulled_ = Aᵀ y
+  void form_gram();
   bool by_cholesky(Real mu);
+  void correct(Real mu);  // correction_ = the residual of solution_
+  bool by_qr(Real mu, Vector& d);
+  void form_jacobian();  // from the layers
 
-  Matrix gram_, damped_, column_;  // (m·B, m·B) twice, (m·B, 1)
-  bool has_gram_ = false;
-  Vector solved_;  // (z, w) or d
+  Index rows_ = 0;  // m·B
+  bool is_layered_ = false, has_gram_ = false;
+  LayeredJacobian layered_;
+  Eigen::Matrix<Index, Eigen::Dynamic, 1> order_;  // (n) in θ of the layers' parameters
+  Matrix J_;                                       // (m·B, n), unless it is layered
+  Vector right_;                                   // b, with n zeros below where J is not wide
+  Vector scale_, inverse_;  // (n) D, and D⁻¹ in the order of the layers where they are used
+
+  // Scratch: r = min(m·B, n).
+  Matrix gram_, factor_;                         // (r, r)
+  Matrix solution_, correction_;                 // (r, 1)
+  Matrix scaled_, wide_, tall_;                  // A or what QR takes, (n, 1), (m·B, 1)
+  Vector norms_, step_, moved_, pulled_, rest_;  // (n) ‖J_j‖, s = D d; (m·B) A s; (n); (m·B)
 };
 
-// Least squares under a diagonal damping, by orthogonal factorization or by Cholesky.
-
-constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
-
-}  // namespace
-
-// A parameter that has done nothing yet has no scale, and no step.
-void DampedLeastSquares::set(const Matrix& J, const Vector& minus_r, const Vector& D) {
-  const Index n = J.cols();
-  rows = J.rows();
-  scale = D;
+void DampedLeastSquares::set(Meter& f, Linearization& at, const Vector& b, Scaling scaling) {
+  const Index n = f.unknowns();
+  rows_ = b.size();
   has_gram_ = false;
-  if (is_wide() && augmented.rows() != rows)
-    augmented.setZero(rows, n + rows);
-  else if (!is_wide() && augmented.rows() != rows + n)
-    augmented.setZero(rows + n, n);
-  if (is_wide()) {
-    for (Index j = 0; j < n; ++j) augmented.col(j) = J.col(j) / (scale[j] > 0 ? scale[j] : 1);
+  is_layered_ = f.is_granted(Oracle::layer_factors);
+  if (is_layered_) {
+    layered_.take(at);
+    layered_.order(f.layout(), order_);
+    layered_.squared_columns(pulled_);
+    norms_.resize(n);
+    norms_(order_) = pulled_.cwiseSqrt();
   } else {
-    augmented.topRows(rows) = J;
+    J_ = at.jacobian();
+    norms_ = J_.colwise().norm();
   }
-  if (right.size() != augmented.rows()) right.setZero(augmented.rows());
-  right.head(rows) = minus_r;
+  if (scale_.size() != n) scale_.setZero(n);
+  if (scaling == Scaling::more) scale_ = scale_.cwiseMax(norms_);
+  if (scaling == Scaling::none) scale_.setOnes();
+  if (scaling == Scaling::jacobian) scale_ = norms_;
+  // A parameter that has done nothing yet has no scale, and no step.
+  inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
+  if (is_layered_) inverse_ = inverse_(order_).eval();
+  const Index size = is_wide() ? rows_ : rows_ + n;
+  if (right_.size() != size) right_.setZero(size);
+  right_.head(rows_) = b;
 }
 
 bool DampedLeastSquares::solve(Real mu, Way way, Vector& d, Vector& Jd) {
-  const Index n = scale.size();
-  const Real root = std::sqrt(mu);
-  const bool squares =
-      is_wide() && (way == Way::cholesky || (way == Way::automatic && may_square(mu)));
-  if (!is_wide()) {
-    augmented.bottomRows(n).diagonal() = root * scale;
-    if (!least_squares(augmented, right, kEpsilon, d)) return false;
-    Jd.noalias() = augmented.topRows(rows) * d;
+  const bool is_large = std::min(rows_, scale_.size()) >= kLeastSquared;
+  const bool squares = way == Way::cholesky || (way == Way::automatic && is_large);
+  if (squares && by_cholesky(mu)) {
+    d.resize(scale_.size());
+    if (is_layered_)
+      d(order_) = step_.cwiseProduct(inverse_);
+    else
+      d = step_.cwiseProduct(inverse_);
+    d = (scale_.array() > 0).select(d, 0);
+    Jd = moved_;
     return true;
   }
-  augmented.rightCols(rows).diagonal().setConstant(root);
-  if (!(squares ? by_cholesky(mu) : least_squares(augmented, right, kEpsilon, solved_)))
-    return false;
-  d = (scale.array() > 0).select(solved_.head(n).cwiseQuotient(scale), 0);
-  Jd.noalias() = augmented.leftCols(n) * solved_.head(n);
+  if (is_layered_) form_jacobian();
+  if (!by_qr(mu, d)) return false;
+  Jd = moved_;
   return true;
 }
 
-// Large enough to be worth it, and μ at least 1e-10 of a bound on the largest σ².
-bool DampedLeastSquares::may_square(Real mu) const {
-  constexpr Index kLeastRows = 64;
-  constexpr Real kLeastShare = 1e-10;
-  return rows >= kLeastRows && mu >= kLeastShare * augmented.leftCols(scale.size()).squaredNorm();
-}
-
-bool DampedLeastSquares::by_cholesky(Real mu) {
-  const Eigen::Ref<const Matrix> A = augmented.leftCols(scale.size());
-  if (!has_gram_) {
-    gram_.resize(rows, rows);
-    product(Form::A_BH, A, A, gram_);
-    has_gram_ = true;
+void DampedLeastSquares::push(const Vector& s) {
+  wide_ = s.cwiseProduct(inverse_);
+  if (is_layered_) {
+    layered_.pushforward(wide_, tall_);
+    moved_ = tall_.col(0);
+  } else {
+    moved_.noalias() = J_ * wide_.col(0);
   }
-  damped_ = gram_;
-  damped_.diagonal().array() += mu;
-  column_ = right;
-  if (!solve_positive_definite(damped_, column_)) return false;
-  solved_.noalias() = A.transpose() * column_.col(0);
+}
+
+void DampedLeastSquares::pull(const Vector& y) {
+  if (is_layered_) {
+    tall_ = y;
+    layered_.pullback(tall_, wide_);
+    pulled_ = wide_.col(0).cwiseProduct(inverse_);
+  } else {
+    pulled_.noalias() = J_.transpose() * y;
+    pulled_.array() *= inverse_.array();
+  }
+}
+
+void DampedLeastSquares::form_gram() {
+  if (has_gram_) return;
+  has_gram_ = true;
+  if (is_layered_) {
+    pulled_ = inverse_.cwiseAbs2();
+    layered_.weighted_gram(pulled_, gram_);
+    return;
+  }
+  scaled_ = J_ * inverse_.asDiagonal();
+  const Index r = std::min(J_.rows(), J_.cols());
+  gram_.resize(r, r);
+  product(is_wide() ? Form::A_BH : Form::AH_B, scaled_, scaled_, gram_);
+}
+
+// (AAᵀ + μ) z = b and s = Aᵀz where A is wide, else (AᵀA + μ) s = Aᵀb.
+bool DampedLeastSquares::by_cholesky(Real mu) {
+  constexpr int kMostCorrections = 6;
+  constexpr Real kEnough = 1e-10;  // of the correction that is left out
+  form_gram();
+  factor_ = gram_;
+  factor_.diagonal().array() += mu;
+  if (!cholesky(factor_)) return false;
+  rest_ = right_.head(rows_);
+  if (!is_wide()) pull(rest_);
+  solution_ = is_wide() ? rest_ : pulled_;
+  if (!solve_by_cholesky(factor_, solution_)) return false;
+  for (int i = 0; i < kMostCorrections; ++i) {
+    correct(mu);
+    if (!solve_by_cholesky(factor_, correction_)) return false;
+    if (correction_.norm() <= kEnough * solution_.norm()) return true;
+    solution_ += correction_;
+  }
+  return false;
+}
+
+void DampedLeastSquares::correct(Real mu) {
+  rest_ = solution_.col(0);
+  if (is_wide()) {
+    pull(rest_);
+    step_ = pulled_;
+    push(step_);
+    correction_ = right_ - moved_ - mu * rest_;
+  } else {
+    step_ = rest_;
+    push(step_);
+    rest_ = right_.head(rows_) - moved_;
+    pull(rest_);
+    correction_ = pulled_ - mu * step_;
+  }
+}
+
+bool DampedLeastSquares::by_qr(Real mu, Vector& d) {
+  const Index n = J_.cols();
+  const Real root = std::sqrt(mu);
+  if (!is_wide()) {
+    scaled_.setZero(rows_ + n, n);
+    scaled_.topRows(rows_) = J_;
+    scaled_.bottomRows(n).diagonal() = root * scale_;
+    if (!least_squares(scaled_, right_, kEpsilon, d)) return false;
+    moved_.noalias() = scaled_.topRows(rows_) * d;
+    return true;
+  }
+  scaled_.setZero(rows_, n + rows_);
+  for (Index j = 0; j < n; ++j) scaled_.col(j) = J_.col(j) / (scale_[j] > 0 ? scale_[j] : 1);
+  scaled_.rightCols(rows_).diagonal().setConstant(root);
+  if (!least_squares(scaled_, right_, kEpsilon, step_)) return false;
+  d = (scale_.array() > 0).select(step_.head(n).cwiseQuotient(scale_), 0);
+  moved_.noalias() = scaled_.leftCols(n) * step_.head(n);
   return true;
 }
 
-namespace {
+void DampedLeastSquares::form_jacobian() {
+  layered_.pullback(Matrix::Identity(rows_, rows_), wide_);
+  J_.resize(rows_, wide_.rows());
+  for (Index i = 0; i < wide_.rows(); ++i) J_.col(order_[i]) = wide_.row(i).transpose();
+  inverse_ = (scale_.array() > 0).select(scale_.cwiseInverse(), 1);
+  is_layered_ = has_gram_ = false;
+}
 
 struct LevenbergMarquardt {
   Real initial_damping = 1e-4, rate = 1;
-  std::string damping = "adaptive", way = "auto";
+  std::string damping = "adaptive", way = "auto", scaling = "more";
 
   struct State {
     DampedLeastSquares squares;
     SpectralStep spectral;
-    Vector scale;  // (n) D
     NielsenDamping damping;
     bool has_point = false;
     Linearization at, trial;
@@ -128,14 +229,12 @@ struct LevenbergMarquardt {
   static void persist(State& s, Archive& archive) {
     s.squares.persist(archive);
     s.spectral.persist(archive);
-    archive(s.scale);
     s.damping.persist(archive);
     archive(s.has_point);
   }
 
-  State init(Meter&, const Vector& theta) const {
+  State init(Meter&, const Vector&) const {
     State s;
-    s.scale = Vector::Zero(theta.size());
     s.damping.mu = initial_damping;
     s.spectral = SpectralStep(spectral_way(way));
     return s;
@@ -176,10 +275,8 @@ struct LevenbergMarquardt {
 
   // J, −r and D at the point just accepted.
   void accept(Meter& f, State& s) const {
-    const Matrix& J = s.at.jacobian();
     s.residual = (f.target() - s.at.y()).reshaped();
-    s.scale = s.scale.cwiseMax(J.colwise().norm().transpose());
-    s.squares.set(J, s.residual, s.scale);
+    s.squares.set(f, s.at, s.residual, least_squares_scaling());
     s.has_point = true;
   }
 
@@ -187,7 +284,7 @@ struct LevenbergMarquardt {
   Real gain_ratio(Meter& f, const State& s) const {
     const Real after = 0.5 * (s.trial.y() - f.target()).squaredNorm();
     const Real predicted =
-        0.5 * s.Jd.squaredNorm() + s.damping.mu * s.scale.cwiseProduct(s.step).squaredNorm();
+        0.5 * s.Jd.squaredNorm() + s.damping.mu * s.squares.squared_length(s.step);
     return (s.squares.misfit() - after) / predicted;
   }
 
@@ -195,6 +292,11 @@ struct LevenbergMarquardt {
     using LeastSquares = DampedLeastSquares::Way;
     if (way == "cholesky") return LeastSquares::cholesky;
     return way == "orthogonal" ? LeastSquares::orthogonal : LeastSquares::automatic;
+  }
+  DampedLeastSquares::Scaling least_squares_scaling() const {
+    using Scaling = DampedLeastSquares::Scaling;
+    if (scaling == "none") return Scaling::none;
+    return scaling == "jacobian" ? Scaling::jacobian : Scaling::more;
   }
   static Way spectral_way(const std::string& way) {
     if (way == "orthogonal") return Way::qr;
@@ -209,10 +311,12 @@ void fields(LevenbergMarquardt& o, auto& field) {
   field("damping", o.damping, Choices{"adaptive", "fixed"},
         "by the gain of each step, or always the same");
   field("rate", o.rate, above(0), "of damping=fixed: step length η");
-  field(
-      "way", o.way, Choices{"auto", "orthogonal", "cholesky"},
-      "by QR, or by Cholesky of a Gram matrix, which of networks of dense layers and damping=fixed "
-      "is formed layer by layer; auto: by size and accuracy");
+  field("way", o.way, Choices{"auto", "orthogonal", "cholesky"},
+        "by QR, or by Cholesky of the smaller Gram matrix, which of networks of dense layers is "
+        "formed layer by layer; auto: by size and accuracy");
+  field("scaling", o.scaling, Choices{"more", "none", "jacobian"},
+        "of damping=adaptive: D of the largest norms that J's columns have had, as Moré has it; 1; "
+        "or of the norms they have now");
 }
 
 }  // namespace
@@ -225,16 +329,24 @@ void register_levenberg_marquardt(OptimizerRegistry& registry) {
        .kind = Kind::least_squares,
        .formula = "θ ← θ + argmin ‖J d + r‖² + μ‖D d‖²",
        .source = "Marquardt (1963); Moré (1978); Nielsen (1999)",
-       .note = "A rejected candidate is an iteration, too. With damping=fixed every step is taken, "
-               "D is 1, and μ a share of the mean diagonal of JJᵀ.",
-       .needs = {Oracle::forward, Oracle::jacobian},
+       .note =
+           "A rejected candidate is an iteration, too. With damping=fixed every step is taken, "
+           "D is 1, and μ a share of the mean diagonal of JJᵀ. On mini-batches the largest norms "
+           "that columns have had may belong to another batch: on coupled-oscillators with tanh "
+           "neurons D = 1 (scaling=none) converges from starts from which Moré's diverges.",
+       .needs = {Oracle::forward},
        .is_input_scale_invariant = true,
        .most_rank = 2048,
        .tunable = {.option = "initial-damping", .factor = 10}});
   entry.needs_for = [](const OptionValues& options, const Problem& problem) -> OracleSet {
-    if (options.text("damping") == "adaptive") return {Oracle::forward, Oracle::jacobian};
-    const Way way = LevenbergMarquardt::spectral_way(options.text("way"));
-    return needs_of(way, tikhonov_filter(1), problem);
+    const std::string way = options.text("way");
+    if (options.text("damping") == "fixed")
+      return needs_of(LevenbergMarquardt::spectral_way(way), tikhonov_filter(1), problem);
+    const bool is_wide = problem.residuals() < problem.unknowns();
+    const bool squares =
+        way == "cholesky" || (way == "auto" && problem.residuals() >= kLeastSquared);
+    const bool by_layers = is_wide && squares && problem.offers().contains(Oracle::layer_factors);
+    return {Oracle::forward, by_layers ? Oracle::layer_factors : Oracle::jacobian};
   };
   registry.add(std::move(entry));
 }

@@ -14,6 +14,8 @@ struct Options {
   InversionOptions inversion;
   std::string network_optimizer = "auto", proxy = "l2";
   Index inner_steps = 1, network_steps = 1;
+
+  bool falls_back() const { return inversion.fallback == "gradient"; }
 };
 
 void fields(Options& o, auto& field) {
@@ -21,6 +23,9 @@ void fields(Options& o, auto& field) {
   field("network-optimizer", o.network_optimizer, Choices{}, NetworkDescent::kDoc);
   field("proxy", o.proxy, Choices{"l2", "l1"}, "proxy loss: ½‖x − x̃‖² or Σ|x − x̃|");
   field("inner-steps", o.inner_steps, between(1, 1e6), "steps of the inversion per update");
+  field("fallback", o.inversion.fallback, Choices{"none", "gradient"},
+        "where the problem's own inverse fails: the sample keeps its x; or it moves as by "
+        "inverse=gradient, and a series of the record counts it");
   field("network-steps", o.network_steps, between(1, 1e6), "steps of the network toward each x̃");
 }
 
@@ -32,15 +37,17 @@ class Sip final : public ProxyMethod {
   void start(Meter& f, const Vector& theta) override {
     inversion_ = make_inversion(options_.inversion, f.inverse_kind());
     ProxyMethod::start(f, theta);
+    if (options_.falls_back()) f.name_series({"samples moved along the gradient"});
   }
 
   Status step(Meter& f, Vector& theta) override {
     f.linearize(theta, at_);
-    inversion_->invert(f, at_, found_);
+    fallbacks_ += inversion_->invert(f, at_, found_);
     for (Index i = 1; i < options_.inner_steps && !f.is_spent(); ++i) {
       f.linearize_physics(found_, inner_);
-      inversion_->invert(f, inner_, found_);
+      fallbacks_ += inversion_->invert(f, inner_, found_);
     }
+    if (options_.falls_back()) f.note(0, static_cast<Real>(fallbacks_));
     const Proxy proxy = options_.proxy == "l1" ? Proxy::l1 : Proxy::l2;
     descent_.approach(found_, proxy, at_, theta);
     for (Index i = 1; i < options_.network_steps && !f.is_spent(); ++i) {
@@ -50,10 +57,16 @@ class Sip final : public ProxyMethod {
     return Status::running;
   }
 
+  bool persist(Archive& archive) override {
+    archive(fallbacks_);
+    return ProxyMethod::persist(archive);
+  }
+
  private:
   const Options options_;
   std::unique_ptr<Inversion> inversion_;
   Linearization inner_;
+  Index fallbacks_ = 0;  // samples so far
 };
 
 }  // namespace

@@ -1,9 +1,11 @@
 // SOAP, Vyas and others (2024), arXiv 2409.11321, algorithm 3: Adam in the eigenbasis of Shampoo's
 // preconditioner. Of each matrix of weights with gradient G, L ← β₂ L + (1 − β₂) G Gᵀ and
 // R ← β₂ R + (1 − β₂) Gᵀ G have the eigenvectors Q_L and Q_R; G' = Q_Lᵀ G Q_R, M' = Q_Lᵀ M Q_R,
-// V ← β₂ V + (1 − β₂) G'², W ← W − η Q_L (M̂'/(√V̂ + ε)) Q_Rᵀ. The basis is renewed every few steps,
-// here by all eigenvectors instead of one step of power iteration, and the first step is taken. A
-// side longer than a limit keeps its own basis; vectors are stepped by Adam.
+// V ← β₂ V + (1 − β₂) G'², W ← W − η Q_L (M̂'/(√V̂ + ε)) Q_Rᵀ. As in the authors' code the first step
+// only fills L and R, and the basis is renewed after an update, every few steps; here by all
+// eigenvectors instead of one step of power iteration. A side longer than a limit keeps its own
+// basis; vectors are stepped by Adam. Directions in which L is rounding have no eigenvectors of
+// their own, though Adam's step depends on them: they get those of a fixed matrix.
 #include <cmath>
 
 #include "core/decompose.h"
@@ -51,6 +53,7 @@ struct Soap {
       prepare(sheet.left, block, block.rows);
       prepare(sheet.right, block, block.columns);
       sheet.M = sheet.V = Matrix::Zero(block.rows, block.columns);
+      sheet.G = sheet.turned = sheet.squares = sheet.M;
       s.sheets.push_back(std::move(sheet));
     }
     return s;
@@ -63,9 +66,8 @@ struct Soap {
   Status step(Meter& f, Vector& theta, State& s) const {
     f.linearize(theta, s.at);
     s.at.gradient(s.gradient);
+    if (s.steps > 0) update_all(theta, s);
     const bool renews = s.steps++ % static_cast<std::uint64_t>(every) == 0;
-    s.power1 *= beta1;
-    s.power2 *= beta2;
     for (std::size_t i = 0; i < s.blocks.size(); ++i) {
       Sheet& sheet = s.sheets[i];
       sheet.G = s.blocks[i].of(s.gradient);
@@ -74,24 +76,45 @@ struct Soap {
         f.claim("a preconditioner has no eigenvectors in finite numbers");
         return Status::stalled;
       }
-      update(sheet, s);
-      s.blocks[i].of(theta) -= rate / (1 - s.power1) * sheet.G;
     }
     return Status::running;
   }
 
+  void update_all(Vector& theta, State& s) const {
+    s.power1 *= beta1;
+    s.power2 *= beta2;
+    for (std::size_t i = 0; i < s.blocks.size(); ++i) {
+      Sheet& sheet = s.sheets[i];
+      sheet.G = s.blocks[i].of(s.gradient);
+      sheet.M = beta1 * sheet.M + (1 - beta1) * sheet.G;
+      update(sheet, s);
+      s.blocks[i].of(theta) -= rate / (1 - s.power1) * sheet.G;
+    }
+  }
+
   void observe(Sheet& sheet) const {
-    sheet.M = beta1 * sheet.M + (1 - beta1) * sheet.G;
     sheet.turned = std::sqrt(1 - beta2) * sheet.G;
     if (sheet.left.is_used) product(Form::A_BH, sheet.turned, sheet.turned, sheet.left.mean, beta2);
     if (sheet.right.is_used)
       product(Form::AH_B, sheet.turned, sheet.turned, sheet.right.mean, beta2);
   }
 
+  // Of eigenvalues up to 1e-6 of the largest, whose eigenvectors are rounded by 1e-10 and more, the
+  // eigenvectors of diag(1, 2, …) within the space that those of all others leave.
   static bool renew(Side& side, State& s) {
+    constexpr Real kRounded = 1e-6;
     if (!side.is_used) return true;
     if (!symmetric_eigen(side.mean, s.eigen)) return false;
     side.basis = s.eigen.V;
+    const Vector& lambda = s.eigen.lambda;
+    const Index n = lambda.size();
+    const Index rounded = (lambda.array() <= kRounded * lambda[n - 1]).count();
+    if (rounded == 0) return true;
+    const Matrix known = side.basis.rightCols(n - rounded);
+    const Matrix P = Matrix::Identity(n, n) - known * known.transpose();
+    const Vector order = Vector::LinSpaced(n, 1, static_cast<Real>(n));
+    if (!symmetric_eigen(P * order.asDiagonal() * P, s.eigen)) return false;
+    side.basis.leftCols(rounded) = s.eigen.V.rightCols(rounded);
     return true;
   }
 
@@ -142,7 +165,7 @@ void register_soap(OptimizerRegistry& registry) {
            "W ← W − η Q_L (Q_LᵀMQ_R/(√V̂ + ε)) Q_Rᵀ,  ⟨GGᵀ⟩ = Q_L Λ Q_Lᵀ,  ⟨GᵀG⟩ = Q_R Λ Q_Rᵀ",
        .source = "Vyas and others (2024), algorithm 3",
        .note = "Adam in the eigenbasis of Shampoo's preconditioner, which is recomputed every ten "
-               "steps. Adam updates vectors.",
+               "steps. Adam updates vectors. The first step only fills the preconditioner.",
        .needs = {Oracle::forward, Oracle::pullback},
        .tunable = {.option = "rate", .below = 1},
        .objection = objection}));

@@ -24,7 +24,7 @@ struct SpectralFilter {
 
   Real kappa;           // κ
   Real cutoff = 0;      // τ
-  bool clamps = false;  // σ up to the cut-off count as the cut-off, instead of nothing
+  bool clamps = false;  // of σ > 0 those up to the cut-off count as it, instead of nothing
   Real damping = 0;     // μ, in its unit
   Unit unit = Unit::largest;
 
@@ -38,7 +38,12 @@ struct SpectralFilter {
   // f(σ)/σ, which is what a function of JJᵀ or JᵀJ has to be.
   Real over_sigma(Real sigma, const Spectrum& of) const {
     if (damping > 0) return std::pow(sigma * sigma + mu(of), -(kappa + 1) / 2);
+    if (clamps) return sigma > 0 ? power(sigma, of, kappa) / sigma : 0;
     return power(sigma, of, kappa + 1);
+  }
+  // Whether σ adds to the step.
+  bool keeps(Real sigma, const Spectrum& of) const {
+    return clamps ? sigma > 0 : sigma > cutoff * of.largest;
   }
   // Below which σ makes no difference to f(σ)/σ any more, however small it is.
   Real least_that_matters(const Spectrum& of) const {
@@ -47,7 +52,7 @@ struct SpectralFilter {
 
  private:
   Real power(Real sigma, const Spectrum& of, Real exponent) const {
-    if (clamps) return std::pow(std::max(sigma, cutoff * of.largest), -exponent);
+    if (clamps && sigma > 0) return std::pow(std::max(sigma, cutoff * of.largest), -exponent);
     return sigma > cutoff * of.largest ? std::pow(sigma, -exponent) : 0;
   }
 };

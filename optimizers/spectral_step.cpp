@@ -105,7 +105,8 @@ bool SplitGram::solve(LayeredJacobian& J, const SymmetricEigen& eigen, const Spe
     const Real bound = share * spectrum.largest, *lambda = eigen.lambda.data();
     return std::lower_bound(lambda, lambda + r, bound * bound) - lambda;
   };
-  const Index n3 = filter.cutoff >= kLeastCutoff ? count_below(kFarBelow * filter.cutoff) : 0;
+  const bool discards = filter.cutoff >= kLeastCutoff && !filter.clamps;
+  const Index n3 = discards ? count_below(kFarBelow * filter.cutoff) : 0;
   const Index n2 = std::max(count_below(kSplit), n3) - n3, n1 = r - n3 - n2;
   const Eigen::Ref<const Matrix> V3 = eigen.V.leftCols(n3), V1 = eigen.V.rightCols(n1);
   V2_ = eigen.V.middleCols(n3, n2);
@@ -311,15 +312,19 @@ bool SpectralStep::solve_split(const SpectralFilter& filter, const Vector& w) {
   return true;
 }
 
-// σ₁² is at most the trace, which is all that is known of it: the condition number of what is
-// factorized is at most trace/μ.
+// σ₁² is at most Frobenius' norm of the Gram matrix, of which the lower half is there: the
+// condition number of what is factorized is at most that over μ.
 bool SpectralStep::solve_damped(const SpectralFilter& filter) {
-  const Real trace = gram_.trace(), mu = filter.mu(spectrum_);
+  const Real mu = filter.mu(spectrum_);
+  Real squares = -gram_.diagonal().squaredNorm();
+  for (Index j = 0; j < gram_.cols(); ++j)
+    squares += 2 * gram_.col(j).tail(gram_.rows() - j).squaredNorm();
+  const Real largest = std::sqrt(squares);
   gram_.diagonal().array() += mu;
   column_ = right_;
   if (!solve_positive_definite(gram_, column_)) return false;
   result_ = column_.col(0);
-  was_too_small_ = !(mu > 0 && kEpsilon * trace / mu <= kMostErrorByGram);
+  was_too_small_ = !(mu > 0 && kEpsilon * largest / mu <= kMostErrorByGram);
   return true;
 }
 
@@ -335,7 +340,7 @@ void SpectralStep::judge(Way way, const SpectralFilter& filter, bool is_wide, Re
   const Index r = along_.size();
   const bool is_ascending = sigma_[0] < sigma_[r - 1], is_split = way == Way::split;
   const auto at = [&](Index step) { return is_ascending ? r - 1 - step : step; };  // largest first
-  const auto is_kept = [&](Index i) { return sigma_[i] > filter.cutoff * largest; };
+  const auto is_kept = [&](Index i) { return filter.keeps(sigma_[i], spectrum_); };
   Real discarded = length * length;
   for (Index i = 0; i < r; ++i)
     if (is_kept(i)) discarded -= std::pow(along_[i] / filter(sigma_[i], spectrum_), 2);

@@ -236,9 +236,10 @@ class Examination {
       add("the scale of x is known", problem_.x_scale(problem_.batch()) > 0 ? 0 : 1, 0,
           "errors in x are relative to it");
     if (problem_.truth() && !std::isnan(problem_.x_error(*problem_.truth())))
-      add("the error in x of the truth is zero",
-          problem_.x_error(*problem_.truth()) / std::max(1.0, problem_.truth()->norm()), 1e-14,
-          kRounding);
+      add("the error in x of the truth is zero, or the floor where data of another solver have one",
+          (problem_.x_error(*problem_.truth()) - truth_floor()) /
+              std::max(1.0, problem_.truth()->norm()),
+          1e-14, kRounding);
   }
 
  private:
@@ -321,6 +322,9 @@ class Examination {
         .reshaped(problem_.outputs(), problem_.samples());
   }
   Vector near_start() { return near(problem_.start(), problem_.start_scale(), stream_); }
+
+  // The declared floor, where no x attains the minimum for certain.
+  Real truth_floor() const { return problem_.minimum() ? 0 : problem_.x_floor(problem_.batch()); }
 
   // (PᵀP)³ of noise of 0.1
   Matrix smoothed() {

@@ -62,7 +62,7 @@ void update(const Problem& problem, Point& at, Matrix& U) {
     if (!success[b]) U.col(b).setZero();
 }
 
-Batch part_of(const Batch& whole, Index first, Index count) {
+Batch batch_part(const Batch& whole, Index first, Index count) {
   const auto columns = [&](const Matrix& all) -> Matrix {
     return all.size() > 0 ? Matrix(all.middleCols(first, count)) : all;
   };
@@ -101,7 +101,7 @@ struct Parts {
     updates.resize(problem.unknowns(), count);
     g.resize(problem.outputs(), size);
     for (Index i = 0; i < count; ++i) {
-      const Batch part = part_of(judging, i * size, size);
+      const Batch part = batch_part(judging, i * size, size);
       problem.forward(theta, part, at);
       problem.cotangent(at, g);
       problem.pullback(g, gradients.col(i), at);

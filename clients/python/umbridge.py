@@ -52,7 +52,7 @@ def vector(text):
         return array.array("d", file.read()).tolist()
 
 
-def parts_of(values, sizes):
+def split_by_sizes(values, sizes):
     parts, begin = [], 0
     for size in sizes:
         parts.append([float(value) for value in values[begin : begin + size]])
@@ -165,7 +165,7 @@ class Model:
         x = [float(value) for value in x]
         if not all(map(math.isfinite, x)):  # many servers cannot parse such numbers
             return [math.nan] * sum(self.outputs)
-        output = self.ask("/Evaluate", name=self.name, input=parts_of(x, self.inputs))["output"]
+        output = self.ask("/Evaluate", name=self.name, input=split_by_sizes(x, self.inputs))["output"]
         if [len(part) for part in output] != self.outputs:
             raise RuntimeError(f"/Evaluate of the model '{self.name}' must return {sum(self.outputs)} "
                                f"numbers in {len(self.outputs)} lists")
@@ -174,13 +174,13 @@ class Model:
     def product(self, verb, name, x, along, to_sizes, from_sizes):
         """Each part of the result sums the contributions of all parts of `along`."""
         result, begin = [0.0] * sum(to_sizes), 0
-        given = parts_of(along, from_sizes)
+        given = split_by_sizes(along, from_sizes)
         is_pullback = verb == "Gradient"
         for to, size in enumerate(to_sizes):
             for source, part in enumerate(given):
                 which = {"inWrt": to, "outWrt": source} if is_pullback else {"inWrt": source, "outWrt": to}
                 for i, value in enumerate(self.numbers(verb, size, **which, **{name: part},
-                                                       input=parts_of(x, self.inputs))):
+                                                       input=split_by_sizes(x, self.inputs))):
                     result[begin + i] += value
             begin += size
         return result

@@ -139,7 +139,7 @@ enum Quantity : Index { kU, kV, kMarker };
 Eigen::Ref<const Vector> part(VectorRef all, Index which, Index cells) {
   return all.segment(which * cells, cells);
 }
-VectorOut part_of(VectorOut all, Index which, Index cells) {
+VectorOut component_part(VectorOut all, Index which, Index cells) {
   return all.segment(which * cells, cells);
 }
 
@@ -250,12 +250,12 @@ void FlowStep::forward(VectorRef state, VectorOut next, VectorOut projected) {
   const Real viscous = options_.viscosity * options_.dt / (options_.dx() * options_.dx());
   for (const Index which : {kU, kV}) {
     trace(which, state.head(2 * cells_));
-    advection_.value(part(state, which, cells_), part_of(projected, which, cells_));
+    advection_.value(part(state, which, cells_), component_part(projected, which, cells_));
   }
   projection_.apply(projected.head(cells_), projected.tail(cells_));
   for (const Index which : {kU, kV}) {
     const VectorRef before = part(state, which, cells_), after = part(projected, which, cells_);
-    VectorOut component = part_of(next, which, cells_);
+    VectorOut component = component_part(next, which, cells_);
     component = (options_.rescales ? Rescaling(before, after).factor : 1) * after;
     if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
   }
@@ -270,12 +270,12 @@ void FlowStep::pushforward(VectorRef state, VectorRef next, VectorRef projected,
     trace(which, state.head(2 * cells_));
     displace(which, tangent.head(2 * cells_), vdx_, vdy_);
     advection_.pushforward(part(state, which, cells_), part(tangent, which, cells_), vdx_, vdy_,
-                           part_of(out, which, cells_));
+                           component_part(out, which, cells_));
   }
   projection_.apply(out.head(cells_), out.segment(cells_, cells_));
   for (const Index which : {kU, kV}) {
     const auto own = [&](VectorRef all) { return part(all, which, cells_); };
-    VectorOut component = part_of(out, which, cells_);
+    VectorOut component = component_part(out, which, cells_);
     if (options_.rescales)
       Rescaling(own(state), own(projected))
           .pushforward(own(state), own(projected), own(tangent), component);
@@ -301,17 +301,17 @@ void FlowStep::pullback(VectorRef state, VectorRef next, VectorRef projected, Ve
     vdx_.setZero();
     vdy_.setZero();
     advection_.pullback(part(state, which, cells_), part(cotangent, which, cells_),
-                        part_of(before_, which, cells_), vdx_, vdy_);
+                        component_part(before_, which, cells_), vdx_, vdy_);
     add_displaced(which, vdx_, vdy_, of_velocity);
   };
   add_pulled(kMarker, next.head(2 * cells_), cotangent.head(2 * cells_));
   for (const Index which : {kU, kV}) {
     const auto own = [&](VectorRef all) { return part(all, which, cells_); };
-    VectorOut component = part_of(cotangent, which, cells_);
+    VectorOut component = component_part(cotangent, which, cells_);
     if (viscous > 0) diffuse(options_.N, viscous, component, scratch_);
     if (options_.rescales)
       Rescaling(own(state), own(projected))
-          .pullback(own(state), own(projected), component, part_of(before_, which, cells_));
+          .pullback(own(state), own(projected), component, component_part(before_, which, cells_));
   }
   projection_.apply(cotangent.head(cells_), cotangent.segment(cells_, cells_));
   for (const Index which : {kU, kV})

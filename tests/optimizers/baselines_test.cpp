@@ -68,11 +68,48 @@ TEST(FixedDamping, IsItsFormulaWideAndTall) {
     }
 }
 
+// Wide by its layers, tall by JᵀJ; with a damping that squaring J alone would round to nothing.
 TEST(LevenbergMarquardt, StepsAlikeByQrAndByCholesky) {
-  const Problem problem = network("40,data=40");  // 80 residuals
-  const std::string spec = "levenberg-marquardt[initial-damping=1e-2,way=";
-  expect_near(run(problem, spec + "cholesky]", iterations(5)).theta,
-              run(problem, spec + "orthogonal]", iterations(5)).theta, 1e-8, "five steps");
+  for (const char* samples : {"40", "70"})  // 80 and 140 residuals for 92 unknowns
+    for (const char* scaling : {"more", "none", "jacobian"})
+      for (const char* damping : {"1e-2", "1e-6"}) {
+        const Problem problem = network(std::string(samples) + ",data=" + samples);
+        const std::string spec = std::string("levenberg-marquardt[initial-damping=") + damping +
+                                 ",scaling=" + scaling + ",way=";
+        expect_near(run(problem, spec + "cholesky]", iterations(5)).theta,
+                    run(problem, spec + "orthogonal]", iterations(5)).theta, 1e-7, spec);
+      }
+}
+
+TEST(LevenbergMarquardt, ScalesAsItIsAsked) {
+  const Problem problem = network("5");
+  const Linearized at = linearized(problem, problem.start());
+  for (const char* scaling : {"more", "none", "jacobian"}) {
+    const Vector D = std::string(scaling) == "none" ? Vector(Vector::Ones(at.J.cols()))
+                                                    : Vector(at.J.colwise().norm().transpose());
+    const Matrix A = at.J * D.cwiseInverse().asDiagonal();
+    Matrix K = A * A.transpose();
+    K.diagonal().array() += 0.1;
+    Vector z;
+    ASSERT_TRUE(solve_square(K, at.r, z));
+    const std::string spec =
+        std::string("levenberg-marquardt[initial-damping=0.1,scaling=") + scaling + "]";
+    expect_near(run(problem, spec, iterations(1)).theta - problem.start(),
+                -(A.transpose() * z).cwiseQuotient(D), 1e-10, scaling);
+  }
+}
+
+// Above 900 residuals the default damping was taken for too small to square J, and each step for
+// QR; and no Jacobian is formed where the layers are known.
+TEST(LevenbergMarquardt, OfManyResidualsTakesTheGramMatrixOfTheLayers) {
+  const Problem problem = published("poisson-hig[mode=learn,batch=16]");  // 1,024 residuals
+  const Outcome fixed = run(problem, "levenberg-marquardt[damping=fixed]", iterations(1));
+  EXPECT_STREQ(fixed.trace->claimed, "steps by Cholesky of the Gram matrix");
+  for (const char* spec : {"levenberg-marquardt", "levenberg-marquardt[damping=fixed]"}) {
+    const OracleCounts counts = run(problem, spec, iterations(2)).trace->last.counts;
+    EXPECT_EQ(counts[static_cast<std::size_t>(Oracle::jacobian)], 0) << spec;
+    EXPECT_GT(counts[static_cast<std::size_t>(Oracle::layer_factors)], 0) << spec;
+  }
 }
 
 TEST(Spring, IsFixedDampingWithoutMomentum) {
@@ -142,15 +179,18 @@ TEST(Muon, BringsSingularValuesNearOne) {
   }
 }
 
-// From one gradient G = U Σ Vᵀ both preconditioners leave the orthogonal factor U Vᵀ.
+// From one gradient G = U Σ Vᵀ both preconditioners leave the orthogonal factor U Vᵀ; SOAP's first
+// step fills its own, and the second has the same gradient.
 TEST(Shampoo, FirstStepIsTheOrthogonalFactorOfTheGradient) {
-  const Problem problem = learned_affine(6);
+  const Problem problem = learned_affine(6, 6);
   const Vector gradient = linearized(problem, problem.start()).gradient;
   Svd svd;
   ASSERT_TRUE(thin_svd(gradient.head(4).reshaped(2, 2), svd));
   const Matrix factor = svd.U * svd.Vt;
-  for (const char* spec : {"shampoo[rate=0.1,epsilon=1e-14]", "soap[rate=0.1,epsilon=1e-9]"}) {
-    const Vector step = run(problem, spec, iterations(1)).theta - problem.start();
+  EXPECT_EQ(run(problem, "soap", iterations(1)).theta, problem.start());
+  for (const auto& [spec, steps] :
+       {std::pair{"shampoo[rate=0.1,epsilon=1e-14]", 1}, {"soap[rate=0.1,epsilon=1e-9]", 2}}) {
+    const Vector step = run(problem, spec, iterations(steps)).theta - problem.start();
     EXPECT_LE((step.head(4).reshaped(2, 2) + 0.1 * factor).norm(), 1e-6) << spec;
   }
   const Vector step =
@@ -187,12 +227,29 @@ TEST(Shampoo, StandsGradientsWhoseSquaresSwampEpsilon) {
   }
 }
 
-// Without a basis of its own SOAP is Adam, of which the mean of squares decays alike.
+// Without a basis of its own SOAP is Adam, of which the mean of squares decays alike, a step later.
 TEST(Soap, IsAdamWithoutABasis) {
-  const Problem problem = network("6");
-  expect_near(run(problem, "soap[rate=0.01,longest=1,beta1=0.9,beta2=0.99]", iterations(10)).theta,
+  const Problem problem = network("6,data=6");
+  expect_near(run(problem, "soap[rate=0.01,longest=1,beta1=0.9,beta2=0.99]", iterations(11)).theta,
               run(problem, "adam[rate=0.01,beta1=0.9,beta2=0.99]", iterations(10)).theta, 1e-12,
               "adam");
+}
+
+// What another kernel of a library rounds otherwise stays rounding: no method makes a choice by it.
+TEST(Rounding, StaysRoundingThroughThreeStepsOfEveryMethod) {
+  for (const std::string samples : {"6", "20", "6,data=6"}) {
+    const Problem problem = network(samples);
+    RandomStream stream(1, "rounding", "start");
+    const Vector nudge = stream.normal_vector(problem.unknowns());
+    const Vector nudged = problem.start().array() * (1 + 4e-16 * nudge.array());
+    for (const auto& [name, entry] : optimizers()) {
+      if (!why_inapplicable(entry, options_of_spec(entry, name), problem).empty()) continue;
+      if (samples == "6,data=6" && !entry.needs_same_samples) continue;
+      const Vector one = run(problem, name, iterations(3)).theta,
+                   other = run_from(nudged, problem, name, iterations(3)).theta;
+      EXPECT_LE((one - other).norm(), 1e-8 * one.norm()) << name << ", " << samples;
+    }
+  }
 }
 
 TEST(MatrixMethods, AreForNetworks) {

@@ -38,6 +38,22 @@ TEST(LayeredJacobian, HasTheGramMatrixOfTheJacobian) {
   EXPECT_LE((Matrix(K.triangularView<Eigen::Lower>()) - expected).norm(), 1e-13 * expected.norm());
 }
 
+TEST(LayeredJacobian, WeighsItsParametersInTheirOwnOrder) {
+  Layered layered;
+  const Matrix& J = layered.at.jacobian();
+  Eigen::Matrix<Index, Eigen::Dynamic, 1> order;
+  layered.J.order(layered.problem.layout(), order);
+  const Vector w = normal(J.cols(), 1).cwiseAbs2();
+  Vector squares;
+  layered.J.squared_columns(squares);
+  const Vector of_columns = J.colwise().squaredNorm().transpose();
+  EXPECT_LE((squares - of_columns(order)).norm(), 1e-13 * of_columns.norm());
+  Matrix K;
+  layered.J.weighted_gram(w(order), K);
+  const Matrix expected = (J * w.asDiagonal() * J.transpose()).triangularView<Eigen::Lower>();
+  EXPECT_LE((Matrix(K.triangularView<Eigen::Lower>()) - expected).norm(), 1e-13 * expected.norm());
+}
+
 // More columns than are taken at once; its order of parameters does not show in J Jᵀ.
 TEST(LayeredJacobian, ItsProductsAreThoseOfTheJacobian) {
   Layered layered;

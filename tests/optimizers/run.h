@@ -50,12 +50,13 @@ inline OptionValues options_of_spec(const OptimizerEntry& entry, const std::stri
   return complete_options(entry.options, entry.name, options_of(parse_spec(text)));
 }
 
-inline Outcome run(const Problem& problem, const std::string& spec, const Budget& budget) {
+inline Outcome run_from(const Vector& start, const Problem& problem, const std::string& spec,
+                        const Budget& budget) {
   const OptimizerEntry& entry = optimizers().at(parse_spec(spec).name);
   const OptionValues options = options_of_spec(entry, spec);
   const auto method = entry.make(options, optimizers());
   Outcome result;
-  result.theta = problem.start();
+  result.theta = start;
   Meter meter(problem, budget, needs_of(entry, options, problem), *result.trace);
   result.status = meter.begin(result.theta);
   method->start(meter, result.theta);
@@ -69,6 +70,10 @@ inline Outcome run(const Problem& problem, const std::string& spec, const Budget
   meter.finish(result.theta, result.status);
   result.status = result.trace->status;
   return result;
+}
+
+inline Outcome run(const Problem& problem, const std::string& spec, const Budget& budget) {
+  return run_from(problem.start(), problem, spec, budget);
 }
 
 // `count` iterations, come what may: no target, no stall in so few.

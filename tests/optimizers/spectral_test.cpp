@@ -37,7 +37,7 @@ const SpectralFilter kFilters[] = {power_filter(-1, 0),         power_filter(0, 
                                    tikhonov_filter(1e-3),       decaying_filter(0.5, 1e-6),
                                    decaying_filter(0.75, 1e-6), decaying_filter(1, 1e-6)};
 
-std::string text_of(const SpectralFilter& filter, const Problem& problem) {
+std::string filter_text(const SpectralFilter& filter, const Problem& problem) {
   return "κ " + std::to_string(filter.kappa) + ", μ " + std::to_string(filter.damping) + ", " +
          std::to_string(problem.residuals()) + " × " + std::to_string(problem.unknowns());
 }
@@ -47,7 +47,7 @@ TEST(SpectralStep, EveryWayAgreesWithTheSvd) {
     const bool is_wide = problem.residuals() < problem.unknowns();
     for (const SpectralFilter& filter : kFilters) {
       const Vector reference = step_of(problem, theta, Way::svd, filter).step;
-      const std::string what = text_of(filter, problem);
+      const std::string what = filter_text(filter, problem);
       expect_near(step_of(problem, theta, Way::qr, filter).step, reference, 1e-10, "qr, " + what);
       expect_near(step_of(problem, theta, Way::gram, filter).step, reference, 1e-8,
                   "gram, " + what);
@@ -59,8 +59,26 @@ TEST(SpectralStep, EveryWayAgreesWithTheSvd) {
     const SpectralFilter damped = tikhonov_filter(1e-4);
     const Vector reference = step_of(problem, theta, Way::svd, damped).step;
     expect_near(step_of(problem, theta, Way::cholesky, damped).step, reference, 1e-8,
-                "cholesky, " + text_of(damped, problem));
+                "cholesky, " + filter_text(damped, problem));
   });
+}
+
+// All σ within a hundredth of the largest, so that a Gram matrix rounds none of them away; some lie
+// below the cut-off, and count as it.
+TEST(SpectralStep, EveryWayClampsAlike) {
+  const Problem problem = network("3");
+  for (const Real kappa : {0.5, 1.0}) {
+    const SpectralFilter filter = clamped_power_filter(kappa, 0.3);
+    const Vector reference = step_of(problem, problem.start(), Way::svd, filter).step;
+    const Vector discarded =
+        step_of(problem, problem.start(), Way::svd, power_filter(kappa, 0.3)).step;
+    EXPECT_GT((discarded - reference).norm(), 0.01 * reference.norm());
+    for (const Way way : {Way::qr, Way::gram, Way::layers, Way::split, Way::automatic})
+      expect_near(step_of(problem, problem.start(), way, filter).step, reference, 1e-10,
+                  std::string(way_text(way)));
+    expect_near(step_of(problem, problem.start(), Way::lanczos, filter, {.tolerance = 0}).step,
+                reference, 1e-10, "Lanczos");
+  }
 }
 
 // With the published cut-offs, at which a Gram matrix alone would not do. The reference itself
@@ -72,7 +90,7 @@ TEST(SpectralStep, TheAutomaticWayAgreesWithTheSvd) {
         const SpectralFilter filter = power_filter(kappa, cutoff);
         expect_near(step_of(problem, theta, Way::automatic, filter).step,
                     step_of(problem, theta, Way::svd, filter).step, 1e-8,
-                    std::to_string(cutoff) + ", " + text_of(filter, problem));
+                    std::to_string(cutoff) + ", " + filter_text(filter, problem));
       }
   });
 }
@@ -106,8 +124,8 @@ TEST(SpectralStep, TheErrorOfAGramMatrixIsEstimated) {
       const Vector reference = step_of(problem, theta, Way::svd, filter).step;
       const Computed by_gram = step_of(problem, theta, Way::gram, filter);
       const Real error = (by_gram.step - reference).norm() / reference.norm();
-      EXPECT_LE(error, 5 * by_gram.estimate) << text_of(filter, problem);
-      EXPECT_LE(by_gram.estimate, cutoff < 1e-3 ? 1e-6 : 1e-8) << text_of(filter, problem);
+      EXPECT_LE(error, 5 * by_gram.estimate) << filter_text(filter, problem);
+      EXPECT_LE(by_gram.estimate, cutoff < 1e-3 ? 1e-6 : 1e-8) << filter_text(filter, problem);
     }
   });
 }
@@ -152,9 +170,9 @@ TEST(SpectralStep, LanczosComesAsNearAsItSays) {
           decaying_filter(0.5, 1e-4), decaying_filter(1, 1e-4)}) {
       const Vector reference = step_of(problem, theta, Way::svd, filter).step;
       expect_near(step_of(problem, theta, Way::lanczos, filter, {.tolerance = 1e-3}).step,
-                  reference, 1e-3, text_of(filter, problem));
+                  reference, 1e-3, filter_text(filter, problem));
       expect_near(step_of(problem, theta, Way::lanczos, filter, {.tolerance = 0}).step, reference,
-                  1e-8, "whole space, " + text_of(filter, problem));
+                  1e-8, "whole space, " + filter_text(filter, problem));
     }
   });
 }
@@ -174,6 +192,9 @@ TEST(Filters, AreTheirFormulas) {
   EXPECT_DOUBLE_EQ(power_filter(0.5, 0.1)(2, of), 1 / std::sqrt(2.0));
   EXPECT_EQ(power_filter(0.5, 0.5)(2, of), 0);  // strictly greater
   EXPECT_DOUBLE_EQ(clamped_power_filter(1, 0.5)(1e-9, of), 0.5);
+  for (const Real sigma : {1e-9, 0.7, 3.0})  // a function of σ², times σ
+    EXPECT_DOUBLE_EQ(sigma * clamped_power_filter(0.5, 0.5).over_sigma(sigma, of),
+                     clamped_power_filter(0.5, 0.5)(sigma, of));
   EXPECT_DOUBLE_EQ(truncated_inverse_filter(0.1)(2, of), 0.5);
   EXPECT_DOUBLE_EQ(tikhonov_filter(0.5)(2, of), 2 / (4 + 1.5));
   EXPECT_DOUBLE_EQ(decaying_filter(0.5, 0.25)(2, of), 2 / std::pow(4 + 4, 0.75));

@@ -135,6 +135,49 @@ TEST(Sip, UpdatesRunToConvergenceInvertThePhysics) {
   }
 }
 
+// Theorem 2: with U = −λ ∂L/∂x the network is taught by backpropagation.
+TEST(Sip, ByTheGradientIsBackpropagation) {
+  const Problem problem = published(
+      "sine[mode=learn,xi=2,network=mlp[layers=8-6,activation=tanh,precision=double],batch=7]");
+  for (const auto& [inside, alone] :
+       {std::pair{"step=1,network-optimizer=gd[rate=0.1]", "gd[rate=0.1]"},
+        {"step=0.25,network-optimizer=gd[rate=0.4]", "gd[rate=0.1]"},
+        {"step=1,network-optimizer=adam[rate=1e-2]", "adam[rate=1e-2]"}}) {
+    const std::string spec = std::string("sip[inverse=gradient,") + inside + "]";
+    const Vector one = run(problem, spec, iterations(20)).theta,
+                 other = run(problem, alone, iterations(20)).theta;
+    EXPECT_LE((one - other).norm(), 1e-12 * other.norm()) << inside;
+  }
+}
+
+// The last of four samples lies out of the physics' reach, L = ½(x² + 1)²: it moves by −2x(x² + 1),
+// and the others by their inverses.
+TEST(Sip, FallsBackToTheGradientWhereTheInverseFails) {
+  const Problem problem = learned_line(true);
+  const std::string rest = "network-optimizer=gd[rate=0.1]]";
+  const Outcome moved = run(problem, "sip[fallback=gradient," + rest, iterations(1)),
+                stayed = run(problem, "sip[" + rest, iterations(1));
+  EXPECT_EQ(shown(moved, "samples moved along the gradient"), 1);
+  const Real pull = 0.1 * 2 * 1 * (1 + 1) / 4;  // at x = 1, of the mean over four, at that rate
+  EXPECT_LE((moved.theta - stayed.theta + pull * Eigen::Vector2d(1, 1)).norm(), 1e-14);
+  EXPECT_EQ(shown(run(problem, "sip[fallback=gradient," + rest, iterations(3)),
+                  "samples moved along the gradient"),
+            3);
+}
+
+TEST(Newton, FallsBackToTheGradientWhereTheHessianIsSingular) {
+  const Matrix M = Eigen::Vector2d(1, 0).asDiagonal();
+  const Problem problem = linear(M, Eigen::Vector2d(1, 2), Eigen::Vector2d(0, 1));
+  for (const std::string name : {"newton", "inverse-gradient"}) {
+    EXPECT_EQ(run(problem, name, iterations(3)).theta, problem.start()) << name;
+    const Outcome result = run(problem, name + "[fallback=gradient,rate=0.5]", iterations(3));
+    EXPECT_EQ(result.theta, run(problem, "gd[rate=0.5]", iterations(3)).theta) << name;
+    EXPECT_EQ(shown(result, "steps along the gradient"), 3) << name;
+  }
+  const Outcome regular = run(easy(), "newton[fallback=gradient]", iterations(1));
+  EXPECT_EQ(shown(regular, "steps along the gradient"), 0);
+}
+
 // What a method shows stands behind what the problem shows, and changes nothing.
 TEST(Series, OfProblemAndMethodStandSideBySide) {
   const std::string learned = "hig-toy[network=mlp[layers=3,activation=tanh,precision=double]";

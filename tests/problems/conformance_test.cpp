@@ -23,6 +23,7 @@ std::vector<std::string> specs() {
                                   "poisson[N=9]",
                                   "heat[N=9]",
                                   "navier-stokes[N=8,loss=amplitude]",
+                                  "navier-stokes[N=8,ground-truth=collocated]",
                                   "sine[mode=learn,batch=4]",
                                   "coupled-oscillators[mode=learn,batch=2]",
                                   "box3d[m=3]",

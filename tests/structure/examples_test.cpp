@@ -12,7 +12,7 @@ namespace {
 
 // Words as a shell has them, as far as the examples go: single quotes, and no others. What follows
 // two blanks or more tells what the command is for.
-std::vector<std::string> words_of(const std::string& line) {
+std::vector<std::string> example_words(const std::string& line) {
   std::vector<std::string> words(1);
   bool is_quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -39,7 +39,7 @@ std::vector<std::string> examples_in(const std::string& help) {
 }
 
 void expect_read(const std::string& example) {
-  std::vector<std::string> words = words_of(example);
+  std::vector<std::string> words = example_words(example);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   try {

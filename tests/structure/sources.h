@@ -37,7 +37,7 @@ inline const std::filesystem::path& root() {
   return path;
 }
 
-inline std::string text_of(const std::filesystem::path& path) {
+inline std::string file_text(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
@@ -52,7 +52,7 @@ inline const std::vector<Source>& sources() {
       for (const auto& entry : std::filesystem::recursive_directory_iterator(root() / room)) {
         const std::string extension = entry.path().extension();
         if (extension != ".h" && extension != ".cpp") continue;
-        const std::string text = text_of(entry.path());
+        const std::string text = file_text(entry.path());
         found.push_back(
             {std::filesystem::relative(entry.path(), root()).string(), text, lines_of(text)});
       }

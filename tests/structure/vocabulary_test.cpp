@@ -157,7 +157,7 @@ TEST(Vocabulary, OfPagesIsPlain) {
   for (const std::filesystem::path& page : pages()) {
     bool is_code = false;
     int number = 0;
-    for (const std::string& line : lines_of(text_of(root() / page))) {
+    for (const std::string& line : lines_of(file_text(root() / page))) {
       ++number;
       if (line.starts_with("```")) is_code = !is_code;
       if (is_code) continue;
@@ -177,7 +177,7 @@ TEST(Vocabulary, OfSourcesIsPlain) {
       const bool is_code = std::ranges::find(kCode, extension) != std::end(kCode);
       if (!is_code && std::ranges::find(kText, extension) == std::end(kText)) continue;
       int number = 0;
-      for (const std::string& line : lines_of(text_of(entry.path()))) {
+      for (const std::string& line : lines_of(file_text(entry.path()))) {
         ++number;
         if (extension == ".py" && line.find("None") != std::string::npos) continue;  // "is None"
         const std::string text = is_code ? prose(comment_and_strings(line)) : lower(line);
