@@ -87,9 +87,13 @@ class Gate {
   GateResult run(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after) {
     const Pairs pairs = paired(before, after);
     for (const auto& [a, b] : pairs.both)
-      a->key == b->key || a->terms == b->terms ? compare(*a, *b) : part(*a, *b);
+      if (a->key == b->key || a->terms == b->terms)
+        compare(*a, *b);
+      else
+        part(*a, *b);
     for (const ComparedCell* cell : pairs.only_before)
-      if (!is_allowed(*cell, false)) lack(*cell), lacking_.push_back(cell);
+      if (!is_allowed(*cell, false)) lacking_.push_back(cell);
+    for (const ComparedCell* cell : lacking_) result_.only_before.push_back(cell->title);
     for (const ComparedCell* cell : pairs.only_after) result_.only_after.push_back(cell->title);
     result_.lack = lack_text(lacking_, before);
     name_what_changed();
@@ -153,13 +157,11 @@ class Gate {
     return true;
   }
 
-  void lack(const ComparedCell& cell) { result_.only_before.push_back(cell.title); }
-
   // Another budget is another question: NEW lacks the cell of BASE, and has one of its own.
   void part(const ComparedCell& a, const ComparedCell& b) {
     result_.only_after.push_back(b.title);
     if (is_allowed(a, false)) return;
-    lack(a);
+    result_.only_before.push_back(a.title);
     group_of(result_.other_terms, change_of_terms(a, b)).add(a);
   }
 
