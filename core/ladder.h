@@ -28,6 +28,13 @@ inline Real x_goal(Real tau, Real x_scale, Real x_floor) {
   return std::max(tau * x_scale, kAboveFloor * x_floor);
 }
 
+// Where the data leave that goal above a tenth of ‖x*‖, no method can be said to find x*: such a
+// setting is not ranked.
+inline bool is_beyond_ranking(Real x_scale, Real x_floor) {
+  constexpr Real kMost = 0.1;
+  return x_goal(0, x_scale, x_floor) > kMost * x_scale;
+}
+
 // Which iterations a curve keeps: 0 to 100, then 32 a decade.
 
 std::int64_t next_kept_after(std::int64_t iteration);
