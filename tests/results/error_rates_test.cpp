@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/draws.h"
@@ -134,6 +135,66 @@ TEST(ErrorRates, NoBestMethodIsSaidToBeWorseInMoreThanOneDataSetOfTwenty) {
     EXPECT_LE(error, is_costly ? at_most(0.05, Real(samples)) : 0.065)
         << null.name << ", " << null.methods;
   }
+}
+
+// --- labels of real results, permuted
+
+// The median work to 1e-6 of loss of every method that was run on these problems, from the baseline
+// of the suite quick: [problem][method].
+Costs quick_costs(std::size_t most_problems) {
+  const Json baseline = read_json(ISOLINE_SOURCE_DIR "/benchmarks/baselines/quick.json");
+  constexpr std::size_t kTightest = 2;
+  std::map<std::string, std::map<std::string, std::vector<Real>>> runs;
+  for (const Json& cell : baseline.at("cells")) {
+    const auto name_of = [&](std::size_t which) {
+      const Json& given = baseline["given"][cell.at("given")[which].get<std::size_t>()];
+      return given.at(which == 0 ? "spec" : "name").get<std::string>();
+    };
+    if (cell.contains("work") && !cell["work"].is_null())
+      runs[name_of(0)][name_of(1)].push_back(real_of(cell["work"].at(kTightest)));
+  }
+  // Larger grids were run with some methods only.
+  std::erase_if(runs, [](const auto& row) { return row.second.size() < 30; });
+  while (runs.size() > most_problems) runs.erase(std::prev(runs.end()));
+  Costs costs(runs.size());
+  for (const auto& [method, ignored] : runs.begin()->second) {
+    const auto is_run = [&](const auto& row) { return row.second.contains(method); };
+    if (!std::ranges::all_of(runs, is_run)) continue;
+    std::size_t p = 0;
+    for (const auto& row : runs) costs[p++].emplace_back(median_of(row.second.at(method)));
+  }
+  return costs;
+}
+
+// Whatever the costs of a problem are, which method has which is drawn: none is better than
+// another.
+TEST(ErrorRates, PermutedLabelsOfRealResultsSetNoMethodApart) {
+  const Costs costs = quick_costs(is_long() ? 100 : 10);
+  ASSERT_GE(costs.size(), 10U);
+  ASSERT_GE(costs[0].size(), 20U);
+  const std::size_t samples = is_long() ? 400 : 300;
+  std::size_t errors = 0;
+  for (std::size_t sample = 0; sample < samples; ++sample) {
+    Draws random(sample, "quick", "labels");
+    Rows sums;
+    for (const auto& row : costs) {
+      sums.emplace_back();
+      for (const auto& ratio : cost_ratios(row))
+        sums.back().push_back(score_of(*ratio, kProfileEnd));
+      for (std::size_t s = sums.back().size(); s > 1; --s)
+        std::swap(sums.back()[s - 1],
+                  sums.back()[static_cast<std::size_t>(random.uniform() * Real(s))]);
+    }
+    const FlipLevels levels = flip_levels(sums);
+    bool is_wrong = false;
+    for (std::size_t s = 0; s < sums[0].size(); ++s) is_wrong = is_wrong || !levels.is_in_group(s);
+    errors += is_wrong;
+  }
+  const Real error = Real(errors) / Real(samples);
+  EXPECT_LE(error, at_most(0.05, Real(samples)));
+  if (is_long())
+    std::printf("labels of quick permuted: k = %zu, n = %zu: %.4f of %zu\n", costs[0].size(),
+                costs.size(), error, samples);
 }
 
 // --- coverage of intervals of scores
