@@ -191,11 +191,18 @@ fs::path temporary_of(const fs::path& path) {
   return path.string() + fmt::format(".{}-{}.tmp", this_machine(), ::getpid());
 }
 
-bool is_abandoned(const fs::path& path) {
+namespace {
+
+bool is_of_a_dead_process(const fs::path& path) {
   const std::optional<pid_t> writer = writer_of(path);
+  return writer && ::kill(*writer, 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+bool is_abandoned(const fs::path& path) {
   struct stat found {};
-  return writer && ::lstat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode) &&
-         ::kill(*writer, 0) != 0 && errno == ESRCH;
+  return ::lstat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode) && is_of_a_dead_process(path);
 }
 
 fs::path move_into(const fs::path& folder, const fs::path& path) {
@@ -230,8 +237,6 @@ void flush_all(const fs::path& folder) {
   if (::syncfs(file.descriptor()) != 0) fail("flush", folder);
 }
 
-// Folders by mkdtemp.
-
 HiddenFolder::HiddenFolder() {
   std::error_code error;
   const std::filesystem::path among = std::filesystem::temp_directory_path(error);
@@ -240,11 +245,20 @@ HiddenFolder::HiddenFolder() {
     return fmt::format("TMPDIR must name a folder for temporary files, got {}",
                        printable(named != nullptr ? named : "none"));
   });
-  std::string pattern = (among / "isoline-XXXXXX").string();
-  require(mkdtemp(pattern.data()) != nullptr, [&] {
-    return fmt::format("cannot make a folder {}: {}", pattern, std::strerror(errno));
-  });
-  path_ = pattern;
+  // Named after this process, so that the next run finds what one that was killed left.
+  std::error_code unreadable;
+  for (fs::directory_iterator at(among, unreadable), end; !unreadable && at != end;
+       at.increment(unreadable))
+    if (at->path().filename().string().starts_with("isoline-") && is_of_a_dead_process(at->path()))
+      fs::remove_all(at->path(), unreadable);
+  constexpr int kMost = 1000;  // of one process, or of those that had its number before
+  for (int i = 1; i <= kMost; ++i) {
+    path_ = temporary_of(among / fmt::format("isoline-{}", i));
+    if (mkdir(path_.c_str(), 0700) == 0) return;
+    if (errno != EEXIST) break;
+  }
+  throw UsageError(
+      fmt::format("cannot make a folder {}: {}", path_.string(), std::strerror(errno)));
 }
 
 HiddenFolder::~HiddenFolder() {

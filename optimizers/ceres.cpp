@@ -33,6 +33,8 @@ struct Evaluation {
     try {
       if (point_theta.size() == 0 || point_theta != theta) f.linearize(point_theta = theta, point);
       read(point);
+    } catch (const BudgetSpent&) {  // as the meter knows from then on
+      return false;
     } catch (...) {
       error = std::current_exception();
       return false;

@@ -29,7 +29,11 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
       best_loss_(kInfinity),
       next_target_(kNone),
       target_loss_(kNone),
-      stall_loss_(std::numeric_limits<Real>::max()) {
+      stall_loss_(std::numeric_limits<Real>::max()),
+      target_x_error_(kNone),
+      most_work_(budget.work -
+                 (problem.is_learned() ? 0 : prices_[static_cast<std::size_t>(Oracle::forward)])),
+      paid_loss_(std::nan("")) {
   trace_.prices = prices_;
   trace_.is_learned = problem.is_learned();
   name_series({});
@@ -42,7 +46,7 @@ Meter::Meter(const Problem& problem, const Budget& budget, OracleSet granted, Tr
 }
 
 void Meter::linearize(VectorRef theta, Linearization& at) {
-  charge(Oracle::forward);
+  charge_forward(theta);
   at.meter_ = this;
   at.has_jacobian_ = at.has_hessian_ = false;
   problem_.forward(theta, *samples_, at.point_);
@@ -63,7 +67,7 @@ const Matrix& Meter::truth() {
 }
 
 Real Meter::loss(VectorRef theta) {
-  charge(Oracle::forward);
+  charge_forward(theta);
   problem_.forward(theta, *samples_, point_);
   see(point_.loss);
   return point_.loss;
@@ -72,6 +76,38 @@ Real Meter::loss(VectorRef theta) {
 void Meter::refuse(Oracle oracle) const {
   throw std::logic_error(fmt::format(
       "the method called the oracle '{}', which it does not declare as needed", name_of(oracle)));
+}
+
+void Meter::exhaust() {
+  is_exhausted_ = true;
+  throw BudgetSpent();
+}
+
+// A point that was paid for when it was judged is not paid for twice.
+void Meter::charge_forward(VectorRef theta) {
+  const bool is_paid =
+      is_prepaid_ && theta.size() == judged_theta_.size() && theta == judged_theta_;
+  if (is_paid && is_granted(Oracle::forward))
+    is_prepaid_ = false;
+  else
+    charge(Oracle::forward);
+}
+
+// Of a direct problem, a judged point that is neither the last nor the best one that was paid for
+// costs a forward; false if the budget has none left.
+bool Meter::pay_for_judged() {
+  if (problem_.is_learned() || judged_.loss == paid_loss_ || judged_.loss == best_loss_)
+    return true;
+  constexpr auto kForward = static_cast<std::size_t>(Oracle::forward);
+  if (work_ + prices_[kForward] > budget_.work) {
+    is_exhausted_ = true;
+    return false;
+  }
+  work_ += prices_[kForward];
+  trace_.last.work = work_;
+  trace_.last.counts[kForward] = ++counts_[kForward];
+  paid_loss_ = judged_.loss;
+  return is_prepaid_ = true;
 }
 
 void Meter::claim(std::string_view words) { set_text(trace_.claimed, words); }
@@ -119,6 +155,7 @@ Status Meter::begin(VectorRef theta) {
   open_pictures();
   previous_ = theta;
   measure(theta);
+  accepted_ = theta;
   trace_.start_loss = judged_.loss;
   trace_.start_x_error = trace_.last.x_error;
   set_scales();
@@ -130,10 +167,12 @@ Status Meter::begin(VectorRef theta) {
 }
 
 // s = min(f₀ − f_L, the problem's scale). If the criterion is the error in x, a target τ refers to
-// it: the loss is quadratic in that error, and the run stops at τ².
+// that error.
 void Meter::set_scales() {
   trace_.x_scale = problem_.x_scale(judging());
   trace_.x_floor = problem_.x_floor(judging());
+  if (trace_.aim == Aim::x && budget_.target > 0 && std::isfinite(trace_.x_scale))
+    target_x_error_ = x_goal(budget_.target, trace_.x_scale, trace_.x_floor);
   if (!problem_.minimum()) return;
   const Real descent = trace_.start_loss - trace_.minimum;
   const Real own = problem_.loss_scale(judging());
@@ -143,9 +182,7 @@ void Meter::set_scales() {
   next_target_ = kInfinity;
   // The minimum of a learned problem is the best loss known, which a longer run may better.
   if (budget_.target == 0 && problem_.is_learned()) return;
-  const bool is_x_sought = trace_.aim == Aim::x;
-  target_loss_ =
-      target_at(is_x_sought ? budget_.target * std::abs(budget_.target) : budget_.target);
+  if (trace_.aim == Aim::loss) target_loss_ = target_at(budget_.target);
 }
 
 void Meter::prepare() {
@@ -160,14 +197,16 @@ void Meter::prepare() {
 void Meter::persist(Archive& archive) {
   double wall = watch_.seconds(), processor = watch_.processor_seconds();
   archive(counts_, work_, iteration_, next_kept_, best_loss_, next_target_, target_loss_,
-          targets_met_, stall_loss_, stall_iteration_, status_, batch_loss_, batch_x_error_,
-          judged_.loss, judged_theta_, previous_, wall, processor);
+          target_x_error_, targets_met_, stall_loss_, stall_iteration_, status_, batch_loss_,
+          batch_x_error_, judged_.loss, judged_theta_, paid_loss_, is_prepaid_, previous_, wall,
+          processor);
   const bool are_spectra_wanted =
       trace_.spectra.are_wanted;        // the caller decides this, not the file
   archive.raw(&trace_, sizeof trace_);  // plain data; no reader waits for its atomics
   trace_.spectra.are_wanted = are_spectra_wanted;
   if (!archive.is_reading()) return;
   require_sound();
+  accepted_ = judged_theta_;
   trace_.is_finished = false;
   watch_.set(wall, processor);
   prepare();
@@ -190,9 +229,7 @@ Status Meter::iterate(VectorRef theta) {
   ++iteration_;
   if (iteration_ >= next_kept_ || best_loss_ <= target_loss_) {
     watch_.pause();
-    measure(theta);
-    observe(judged_.loss);
-    if (iteration_ >= next_kept_) keep_point();
+    if (look_at(theta) && iteration_ >= next_kept_) keep_point();
     watch_.resume();
   }
   if (iteration_ + 1 >= next_kept_) previous_ = theta;
@@ -220,12 +257,10 @@ void Meter::note_batch(const Point& at) {
   watch_.resume();
 }
 
-void Meter::finish(VectorRef theta, Status verdict) {
+Vector Meter::finish(VectorRef theta, Status verdict) {
   watch_.pause();
-  if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch) {
-    measure(theta);
-    observe(judged_.loss);
-  }
+  if (trace_.last.iteration != iteration_ || judged_theta_ != theta || !judged_.batch)
+    look_at(theta);
   trace_.last.counts = counts_;  // a library may have made many calls since its last iteration
   trace_.last.work = work_;
   trace_.last.wall_seconds = watch_.seconds();
@@ -236,15 +271,29 @@ void Meter::finish(VectorRef theta, Status verdict) {
   keep_spectrum(true);
   if (problem_.is_learned() && !problem_.field()) show();
   if (verdict == Status::running) verdict = Status::converged;
-  if (judged_.loss <= target_loss_) verdict = Status::target;
+  if (is_target_met()) verdict = Status::target;
   if (!std::isfinite(judged_.loss)) verdict = Status::diverged;
   trace_.status = verdict;
+  return judged_theta_;
+}
+
+// Judges θ, or the last that was, where the budget has no more for this one: then false.
+bool Meter::look_at(VectorRef theta) {
+  measure(theta);
+  if (!pay_for_judged()) {
+    measure(accepted_);
+    return false;
+  }
+  accepted_ = judged_theta_;
+  observe(judged_.loss);
+  return true;
 }
 
 // The loss and related values at θ, evaluated by the harness; they count for no oracle.
 void Meter::measure(VectorRef theta) {
-  judged_theta_ = theta;
+  is_prepaid_ = is_prepaid_ && judged_theta_ == theta;
   problem_.forward(theta, judging(), judged_);
+  judged_theta_ = theta;  // only where it could be
   TracePoint& last = trace_.last;
   last.iteration = iteration_;
   last.counts = counts_;
@@ -253,7 +302,8 @@ void Meter::measure(VectorRef theta) {
   last.processor_seconds = watch_.processor_seconds();
   last.loss = judged_.loss;
   last.x_error = problem_.x_error(judged_.x(), judging());
-  const bool has_gradient = !problem_.is_learned() && problem_.products().has_pullback;
+  const bool has_gradient =
+      measures_gradients_ && !problem_.is_learned() && problem_.products().has_pullback;
   last.gradient_norm = has_gradient ? judged_gradient_norm() : TracePoint::kAbsent;
   last.step_norm = (theta - previous_).norm();
   for (int i = 0; i < 2; ++i) {
@@ -290,9 +340,9 @@ Status Meter::judge(VectorRef theta) {
   if (!is_finite(theta) || !std::isfinite(loss) || loss > kDivergence * trace_.start_loss)
     return Status::diverged;
   if (std::isnan(batch_loss_.last())) return Status::diverged;
-  if (loss <= target_loss_) return Status::target;
+  if (is_target_met()) return Status::target;
   if (!problem_.is_learned() && has_stalled()) return Status::stalled;
-  if (work_ >= budget_.work || iteration_ >= budget_.iterations) return Status::budget;
+  if (is_out_of_work() || iteration_ >= budget_.iterations) return Status::budget;
   if (is_out_of_time()) {
     trace_.stopped_by_clock = true;
     return Status::budget;

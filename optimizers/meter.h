@@ -50,6 +50,10 @@ using problems::Problem;
 
 class Meter;
 
+// An oracle throws it if its call would exceed the budget of work: the step is not taken, and the
+// run ends with the status `budget`. No library may let it pass.
+struct BudgetSpent {};
+
 // One forward pass and its products, which never repeat it. Owned and reused by the method.
 class Linearization {
  public:
@@ -107,7 +111,7 @@ class Meter {
   Status iterate(VectorRef theta);
   // Whether work or time is spent, for inner loops and library callbacks; the harness's loop knows.
   bool is_spent() const {
-    return work_ >= budget_.work || iteration_ >= budget_.iterations || is_out_of_time();
+    return is_out_of_work() || iteration_ >= budget_.iterations || is_out_of_time();
   }
   Status status() const { return status_; }
   void reject_step() { ++trace_.rejected_steps; }
@@ -121,7 +125,10 @@ class Meter {
   Status begin(VectorRef theta);
   // All that a run has come to, to be gone on with by another process; reading it begins the run.
   void persist(Archive& archive);
-  void finish(VectorRef theta, Status verdict);
+  // Returns the θ that the run comes to: this one, or the last that was judged where the budget has
+  // no forward left for this one.
+  Vector finish(VectorRef theta, Status verdict);
+  void leave_gradients_out() { measures_gradients_ = false; }  // of what is judged
   const Problem& problem() const { return problem_; }
 
  private:
@@ -129,13 +136,22 @@ class Meter {
   void charge(Oracle oracle) {
     const auto kind = static_cast<std::size_t>(oracle);
     if (!granted_.contains(oracle)) refuse(oracle);
+    if (work_ + prices_[kind] > most_work_) exhaust();
     ++counts_[kind];
     work_ += prices_[kind];
   }
   [[noreturn]] void refuse(Oracle oracle) const;
+  [[noreturn]] void exhaust();
+  void charge_forward(VectorRef theta);
+  bool look_at(VectorRef theta);
+  bool pay_for_judged();
+  bool is_out_of_work() const {
+    return is_exhausted_ || work_ + prices_[static_cast<std::size_t>(Oracle::forward)] > most_work_;
+  }
   // A learning problem is judged by its validation samples, not by the batch of a step.
   void see(Real loss) {
     if (problem_.is_learned()) return;
+    paid_loss_ = loss;
     observe(loss);
   }
   void observe(Real loss) {
@@ -159,6 +175,10 @@ class Meter {
   void note_batch(const Point& at);
   Status judge(VectorRef theta);
   bool has_stalled();
+  // By the last point that was judged.
+  bool is_target_met() const {
+    return judged_.loss <= target_loss_ || trace_.last.x_error <= target_x_error_;
+  }
   bool is_out_of_time() const { return most_ticks_ != kNoLimit && watch_.elapsed() >= most_ticks_; }
   static constexpr auto kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
@@ -185,6 +205,14 @@ class Meter {
   Point judged_;  // for the harness's own evaluations, and their ∂L/∂y (m, B) and ∇L (n)
   Matrix judged_g_;
   Vector judged_gradient_, judged_theta_, previous_;
+  Real target_x_error_;  // −∞: the loss decides
+  // One forward of the budget is left for the returned point.
+  std::int64_t most_work_;
+  bool is_exhausted_ = false;  // an oracle would have cost more
+  Real paid_loss_;             // of the last point that the method has paid for
+  bool is_prepaid_ = false;    // a forward at judged_theta_
+  Vector accepted_;            // (n), the last θ that was judged and is paid for
+  bool measures_gradients_ = true;
 };
 
 }  // namespace isoline::optimizers

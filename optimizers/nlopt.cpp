@@ -41,6 +41,8 @@ double evaluate(unsigned, const double* at, double* out, void* self) {
       const Real loss = solve.evaluate(at, out);
       return std::isfinite(loss) ? loss : kWall;
     }
+  } catch (const BudgetSpent&) {  // of a whole solve the meter knows from then on
+    if (!Solve::kIsWhole) solve.error = std::current_exception();
   } catch (...) {
     solve.error = std::current_exception();
   }
@@ -60,6 +62,7 @@ nlopt_result minimize(Solve& solve, Vector& theta) {
 
 // One solve, as seen from NLopt's calls back.
 struct Search {
+  static constexpr bool kIsWhole = true;
   Meter& f;
   nlopt_opt handle;
   Linearization at;
@@ -196,6 +199,7 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
 // test ‖∇f‖ ≤ 1e-8 make sense in units of the start: f₀, and Polyak's step f₀/‖∇f₀‖ for lengths,
 // which also keeps the first step on the branch of the start.
 struct Minimization {
+  static constexpr bool kIsWhole = false;  // part of a step
   const ValueAndGradient& f;
   const LbfgsLimits& limits;
   Vector origin, x, gradient, best;  // (n)

@@ -53,6 +53,9 @@ int answer(isoline_oracles* asked, const Answer& of) noexcept {
   try {
     of(all);
     return 0;
+  } catch (const BudgetSpent&) {  // a whole solve ends where it is; a step is not taken
+    if (!all.is_whole_solve) all.error = std::current_exception();
+    return 1;
   } catch (...) {
     all.error = std::current_exception();
     return 1;

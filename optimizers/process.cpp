@@ -44,6 +44,9 @@ class Service {
       }
       try {
         answer(verb, head);
+      } catch (const BudgetSpent&) {
+        open_ = verb;
+        return Status::budget;
       } catch (const std::exception& error) {
         line_.send_text(verb, static_cast<std::uint32_t>(Answer::failed), error.what());
         throw;

@@ -79,7 +79,8 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
   verb.whole("--jobs", given.jobs, "Cells at a time (default: one per core)", kJobs);
   verb.flag("--exclusive", given.exclusive, "One cell at a time, for reliable times");
   verb.whole("--repeat", given.repeat, "Timings per cell", {1, 1000});
-  verb.memory("--memory", given.memory_bytes, "Memory limit of a cell (default: 4GB)");
+  verb.memory("--memory", given.memory_bytes,
+              "Memory limit of a cell, 256MB or more (default: 4GB)");
   declare_what_is_done(verb, given);
   declare_what_is_kept(verb, given);
   verb.text("--shard", given.shard,
@@ -96,6 +97,10 @@ void declare_run(VerbArguments& verb, RunArguments& given) {
 }
 
 PlannedRun planned_run(const RunArguments& given, const Catalog& catalog) {
+  constexpr std::int64_t kLeastMemory = 256'000'000;  // the libraries' own arrays take half of it
+  require(given.memory_bytes == 0 || given.memory_bytes >= kLeastMemory, [&] {
+    return fmt::format("--memory must be at least 256MB, got {} bytes", given.memory_bytes);
+  });
   const bool is_limited = !given.problem.empty() || !given.optimizer.empty();
   const bool is_suite = !given.suite.empty() || !is_limited;
   Suite suite;

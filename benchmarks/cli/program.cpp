@@ -2,7 +2,9 @@
 #include "benchmarks/cli/program.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <new>
@@ -77,12 +79,16 @@ int left_with(int code, const std::string& program, const char* what) {
 int main(int count, char** arguments, const std::function<benchmarks::Catalog()>& catalog,
          const SourceTree& tree) {
   prepare_libraries(arguments);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a write that fails, and says so
   if (!tree.commit.empty()) set_program_tree(tree.commit, tree.is_dirty);
   benchmarks::set_program_sources(tree.sources);
   const std::string program = std::filesystem::path(arguments[0]).filename().string();
   benchmarks::Session session(command_of(program, count, arguments), catalog);
   try {
-    return benchmarks::parse_and_run(program, count, arguments, session);
+    const int code = benchmarks::parse_and_run(program, count, arguments, session);
+    if (session.plugins().empty()) return code;
+    std::fflush(nullptr);
+    _exit(code);  // what a library does when it is unloaded costs nothing that is done
   } catch (const UsageError& error) {
     return left_with(kUsage, program, error.what());
   } catch (const std::bad_alloc&) {

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/isolate.h"
 #include "optimizers/optimizer.h"
 #include "problems/conformance.h"
@@ -68,17 +69,25 @@ std::string broken_law_of(const Catalog& catalog, const Request& request) {
 }  // namespace
 
 void require_certified(const Catalog& catalog, const std::vector<Request>& requests,
-                       const Store& store) {
+                       const Store& store, Progress::Style style) {
   std::set<std::string> seen;
-  for (const Request& request : requests) {
-    if (!request.problem.foreign || store.has(request)) continue;
-    if (!seen.insert(request.problem.spec).second) continue;
-    const std::optional<std::string> broken =
-        isolated_text([&] { return broken_law_of(catalog, request); }, kCertificateSeconds).text;
-    require(!broken || broken->empty(), [&] {
+  std::vector<const Request*> firsts;
+  for (const Request& request : requests)
+    if (request.problem.foreign && !store.has(request) && seen.insert(request.problem.spec).second)
+      firsts.push_back(&request);
+  Progress progress(style, "certified", static_cast<std::int64_t>(firsts.size()), 0);
+  for (const Request* request : firsts) {
+    progress.started(request->problem.spec);
+    const auto [broken, failure] =
+        isolated_text([&] { return broken_law_of(catalog, *request); }, kCertificateSeconds,
+                      Limits{}.memory_bytes, [&] { progress.show(); });
+    if (asked_to_end() != Asked::nothing) return;
+    const std::string reason = broken.value_or("it cannot be examined: " + failure);
+    require(reason.empty(), [&] {
       return fmt::format("{} is not certified, and not run: {}; `isoline check` lists all laws",
-                         request.problem.spec, *broken);
+                         request->problem.spec, reason);
     });
+    progress.finished({});
   }
 }
 

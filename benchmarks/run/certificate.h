@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/progress.h"
 #include "benchmarks/run/store.h"
 
 namespace isoline::benchmarks {
@@ -17,11 +18,11 @@ void require_sound(const Catalog& catalog, const std::vector<Request>& requests)
 // this tree: its products by Taylor's slopes, the adjoint identity and its Jacobian, its inverse by
 // the way back, and that the same call gives the same bits.
 
-// UsageError with the first law that a problem of these requests breaks, and the measured figure.
-// Only what the store has no record of is looked at, each problem at the first of its seeds, in a
-// process of its own. One that cannot be examined, since it fails or never answers, is left to its
-// cells: each says why.
+// UsageError with the first law that a problem of these requests breaks, and the measured figure;
+// or with the reason where one cannot be examined, since it fails or never answers. Only what the
+// store has no record of is looked at, each problem at the first of its seeds, in a process of its
+// own.
 void require_certified(const Catalog& catalog, const std::vector<Request>& requests,
-                       const Store& store);
+                       const Store& store, Progress::Style style = Progress::Style::silent);
 
 }  // namespace isoline::benchmarks

@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "core/foreign/line.h"
 #include "core/random.h"
 
 namespace isoline::benchmarks {
@@ -28,6 +29,7 @@ Vector perturbed_start(Vector start, const Request& request, int number) {
 
 // The run loop, and the verdict on it.
 
+using optimizers::BudgetSpent;
 using optimizers::privileges_of;
 namespace {
 
@@ -65,20 +67,27 @@ void require_size(const Vector& theta, const Meter& meter) {
 
 Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint) {
   Status verdict = Status::running;
-  if (!checkpoint.restore(method, meter, theta)) {
-    verdict = meter.begin(theta);
-    if (verdict == Status::running) method.start(meter, theta);
+  Vector before;  // (n), where the step began
+  try {
+    if (!checkpoint.restore(method, meter, theta)) {
+      before = theta;
+      verdict = meter.begin(theta);
+      if (verdict == Status::running) method.start(meter, theta);
+    }
+    while (verdict == Status::running) {
+      before = theta;
+      verdict = method.step(meter, theta);
+      require_size(theta, meter);
+      if (method.reports_iterations()) break;
+      const Status judged = meter.iterate(theta);
+      if (judged != Status::running) verdict = judged;
+      if (verdict == Status::running && checkpoint.save_if_due(method, meter, theta)) return theta;
+    }
+  } catch (const BudgetSpent&) {  // in the midst of a step
+    theta = before;
+    verdict = Status::budget;
   }
-  while (verdict == Status::running) {
-    verdict = method.step(meter, theta);
-    require_size(theta, meter);
-    if (method.reports_iterations()) break;
-    const Status judged = meter.iterate(theta);
-    if (judged != Status::running) verdict = judged;
-    if (verdict == Status::running && checkpoint.save_if_due(method, meter, theta)) return theta;
-  }
-  meter.finish(theta, verdict);
-  return theta;
+  return meter.finish(theta, verdict);
 }
 
 void execute(const Catalog& catalog, const Request& request, Trace& trace, Checkpoint checkpoint,
@@ -96,6 +105,8 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
     conclude(trace, Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {
     conclude(trace, Status::memory, "out of its memory limit");
+  } catch (const KilledProgram& error) {
+    conclude(trace, Status::interrupted, error.what());
   } catch (const std::exception& error) {
     conclude(trace, Status::failed, error.what());
   } catch (...) {

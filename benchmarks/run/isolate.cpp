@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/process_group.h"
 #include "core/clock.h"
 #include "core/foreign/child.h"
@@ -219,8 +220,6 @@ void Worker::conclude(Status status, const std::string& message) {
   set_text(trace_->message, message);
 }
 
-void Worker::dispute(const std::string& message) { conclude(Status::failed, message); }
-
 bool Worker::poll() {
   if (!is_running()) return true;
   output_.drain();
@@ -271,6 +270,9 @@ void Worker::finish(const ProcessGroup::End& end) {
     return;
   }
   judge_end(end.wait_status);
+  if (trace_->is_finished && trace_->status == Status::memory)
+    conclude(Status::memory, fmt::format("out of its memory limit of {} MiB; --memory allows more",
+                                         watch_.limits().memory_bytes >> 20));
 }
 
 void Worker::judge_end(int wait_status) {
@@ -286,8 +288,9 @@ void Worker::judge_end(int wait_status) {
 // whole.
 
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
-                           std::int64_t memory_bytes) {
+                           std::int64_t memory_bytes, const std::function<void()>& waiting) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
+  constexpr double kIdleSeconds = 60;
   constexpr int kMilliseconds = 20;  // how often limits are looked at
   const Descriptor answer(memfd_create("answer", MFD_CLOEXEC));
   Worker worker;
@@ -302,13 +305,19 @@ IsolatedText isolated_text(const std::function<std::string()>& work, double seco
         },
         {.startup_seconds = seconds,
          .hard_seconds = seconds,
-         .idle_seconds = seconds,
+         .idle_seconds = std::min(seconds, kIdleSeconds),
+         .waits_for_others = false,
          .memory_bytes = memory_bytes},
         1);
   } catch (const std::runtime_error& error) {  // of the system, out of processes or of files
     return {{}, error.what()};
   }
   while (!worker.poll()) {
+    if (asked_to_end() != Asked::nothing) {
+      worker.interrupt();
+      return {{}, "this program was asked to end"};
+    }
+    if (waiting) waiting();
     pollfd ending{worker.descriptor(), POLLIN, 0};
     ::poll(&ending, 1, kMilliseconds);
   }
@@ -318,7 +327,10 @@ IsolatedText isolated_text(const std::function<std::string()>& work, double seco
     case Status::failed:
       return {{}, fmt::format("it threw: {}", valid_utf8(trace.message))};
     case Status::timeout:
-      return {{}, fmt::format("it took more than {} s", seconds)};
+      return {{},
+              worker.was_idle() ? fmt::format("it took more than {} s in which it did nothing",
+                                              std::min(seconds, kIdleSeconds))
+                                : fmt::format("it took more than {} s", seconds)};
     case Status::memory:
       return {{}, "it ran out of memory"};
     default: {

@@ -106,12 +106,14 @@ class Worker {
 
   void start(const std::function<void(Trace&)>& work, const Limits& limits, int threads);
   bool is_running() const { return group_.is_running(); }
+  bool was_idle() const { return breach_ && breach_->is_idleness; }  // and was ended for it
   // Ends the child where it is over a limit, collects it where it has ended. True once it has.
   bool poll();
   // Asks the child to keep its state and end. So that many may be asked before one is waited for.
   void ask_to_stop();
   void interrupt();  // asks, waits a little, ends it: what was not done by then is `interrupted`
-  void dispute(const std::string& message);  // of a child that has ended: it failed after all
+  // Of a child that has ended: it came to something else after all.
+  void dispute(Status status, const std::string& message) { conclude(status, message); }
   const Trace& trace() const { return *trace_; }
   const CapturedOutput& output() const { return output_; }
   // What the child said that it returned, to be judged by another process, which inherits the
@@ -143,8 +145,11 @@ struct IsolatedText {
   std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
 };
 
-// Ended after so many seconds of processor time, or of idleness, or five times as many in all.
+// Ended after so many seconds of processor time, or five times as many in all; or where it and all
+// that it started do nothing for as long, or for a minute where that is less. `waiting` is called
+// fifty times a second. Where this process is asked to end (interrupts.h), it ends too.
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
-                           std::int64_t memory_bytes = Limits{}.memory_bytes);
+                           std::int64_t memory_bytes = Limits{}.memory_bytes,
+                           const std::function<void()>& waiting = {});
 
 }  // namespace isoline::benchmarks

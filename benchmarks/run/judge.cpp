@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,9 +13,11 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "benchmarks/run/process_group.h"
 #include "core/clock.h"
+#include "core/foreign/line.h"
 #include "core/threads.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
@@ -55,28 +58,39 @@ std::string contradiction(const Judged& told, const Judged& judged) {
   return "";
 }
 
-Judges::Judges(const Catalog& catalog, const std::vector<Worker>& workers, double patience_seconds)
-    : catalog_(catalog), workers_(workers), patience_seconds_(patience_seconds) {}
-
 Judges::~Judges() {
   for (Judge& judge : judges_) end(judge);
 }
 
-void Judges::ask(std::size_t slot, const Request& request) {
-  send(judge_of(request.problem), {slot, &request, monotonic_nanoseconds()});
+// To make the problem anew takes what its startup may.
+void Judges::ask(std::size_t slot, const Request& request, const Limits& limits) {
+  Question question{slot, &request, limits};
+  question.limits.hard_seconds = std::max(limits.hard_seconds, limits.startup_seconds);
+  try {
+    send(judge_of(request.problem), question);
+  } catch (const std::runtime_error& error) {
+    unjudged_.push_back({slot, {}, error.what(), true});
+  }
 }
 
 Judges::Judge& Judges::judge_of(const Component& problem) {
   const auto known = std::ranges::find(judges_, problem.spec, &Judge::problem);
   if (known != judges_.end()) {
     judges_.splice(judges_.begin(), judges_, known);
-    return judges_.front();
+    if (!known->group.is_running()) start(*known, problem);
+    return *known;
   }
   if (judges_.size() > workers_.size() && judges_.back().open.empty()) {
     end(judges_.back());  // the one that was not asked for longest
     judges_.pop_back();
   }
-  start(judges_.emplace_front(problem.spec), problem);
+  judges_.emplace_front(problem.spec);
+  try {
+    start(judges_.front(), problem);
+  } catch (...) {
+    judges_.pop_front();
+    throw;
+  }
   return judges_.front();
 }
 
@@ -84,57 +98,85 @@ void Judges::start(Judge& judge, const Component& problem) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::runtime_error(fmt::format("no socket to a judge: {}", std::strerror(errno)));
-  judge.group.start([&] {
-    close(ends[0]);
-    judge_points(catalog_, problem, workers_, ends[1]);
-  });
-  close(ends[1]);
   judge.socket = ends[0];
+  try {
+    judge.group.start([&] {
+      close(ends[0]);
+      judge_points(catalog_, problem, workers_, ends[1]);
+    });
+  } catch (...) {
+    close(ends[1]);
+    close(std::exchange(judge.socket, -1));
+    throw;
+  }
+  close(ends[1]);
 }
 
 void Judges::send(Judge& judge, const Question& question) {
   const Request& request = *question.request;
   const PointToJudge asked{question.slot, request.seed, request.threads};
   judge.open.push_back(question);
+  if (judge.open.size() == 1) watch_first(judge);
   ::send(judge.socket, &asked, sizeof asked, MSG_NOSIGNAL);  // a dead judge is met when collected
 }
 
-// A judge holds nothing that could be lost.
-std::string Judges::end(Judge& judge) {
-  const ProcessGroup::End ended = judge.group.end();
-  close(judge.socket);
-  return end_of_process(ended.wait_status);
+void Judges::watch_first(Judge& judge) {
+  if (judge.open.empty()) return;
+  const Question& first = judge.open.front();
+  judge.watch = LimitWatch(first.limits, first.request->threads, monotonic_nanoseconds());
 }
 
-// All that it was asked goes to a new judge; but a point that two have died of, or that was waited
-// for too long, is answered so.
+// A judge holds nothing that could be lost.
+int Judges::end(Judge& judge) {
+  const ProcessGroup::End ended = judge.group.end();
+  if (judge.socket >= 0) close(std::exchange(judge.socket, -1));
+  return ended.wait_status;
+}
+
+// All that it was asked goes to a new judge; but a point that two have died of, or that was over
+// its limits, is answered so.
 void Judges::lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts) {
-  const std::string ended = end(judge);
+  const int status = end(judge);
   std::deque<Question> open;
   open.swap(judge.open);
-  start(judge, open.front().request->problem);
   if (open.front().is_asked_again || !reason.empty()) {
-    verdicts.push_back({open.front().slot, {}, reason.empty() ? ended : reason});
+    const bool is_killed =
+        reason.empty() && WIFSIGNALED(status) && is_from_outside(WTERMSIG(status));
+    const std::string why = reason.empty() ? end_of_process(status) : reason;
+    verdicts.push_back({open.front().slot, {}, why, is_killed});
     open.pop_front();
   } else {
     open.front().is_asked_again = true;
   }
-  for (Question& question : open) {
-    question.asked = monotonic_nanoseconds();
-    send(judge, question);
+  if (open.empty()) return;  // the next question starts another one
+  try {
+    start(judge, open.front().request->problem);
+    for (const Question& question : open) send(judge, question);
+  } catch (const std::runtime_error& error) {
+    for (const Question& question : open)
+      verdicts.push_back({question.slot, {}, error.what(), true});
   }
 }
 
 std::vector<Verdict> Judges::collect() {
-  std::vector<Verdict> verdicts;
+  std::vector<Verdict> verdicts = std::exchange(unjudged_, {});
   for (Judge& judge : judges_) {
     collect(judge, verdicts);
-    if (judge.open.empty()) continue;
-    const std::int64_t waited = monotonic_nanoseconds() - judge.open.front().asked;
-    if (1e-9 * static_cast<double>(waited) > patience_seconds_)
-      lose(judge, fmt::format("it took more than {} s", patience_seconds_), verdicts);
+    if (!judge.open.empty()) enforce(judge, verdicts);
   }
   return verdicts;
+}
+
+void Judges::enforce(Judge& judge, std::vector<Verdict>& verdicts) {
+  const std::int64_t now = monotonic_nanoseconds();
+  if (!judge.watch.is_due(now)) return;
+  const Limits& limits = judge.watch.limits();
+  const auto breach = judge.watch.check(judge.group.usage(limits.memory_bytes), true, now);
+  if (!breach) return;
+  const std::string reason = breach->status == Status::memory
+                                 ? "it ran out of memory"
+                                 : fmt::format("it took more than {} s", limits.hard_seconds);
+  lose(judge, reason, verdicts);
 }
 
 void Judges::collect(Judge& judge, std::vector<Verdict>& verdicts) {
@@ -147,9 +189,10 @@ void Judges::collect(Judge& judge, std::vector<Verdict>& verdicts) {
       continue;
     }
     judge.open.pop_front();
+    watch_first(judge);
     reply.failure[Trace::kText - 1] = '\0';
-    verdicts.push_back(
-        {reply.slot, reply.is_judged ? std::optional(reply.judged) : std::nullopt, reply.failure});
+    verdicts.push_back({reply.slot, reply.is_judged ? std::optional(reply.judged) : std::nullopt,
+                        reply.failure, reply.is_interrupted});
   }
 }
 
@@ -165,6 +208,7 @@ namespace {
 // One instance of a problem, made afresh, and the meter that measures on it as on any run.
 struct Instance {
   explicit Instance(Problem made) : problem(std::move(made)), meter(problem, {}, {}, trace) {
+    meter.leave_gradients_out();
     meter.begin(problem.start());
   }
   Judged judged(VectorRef theta) {
@@ -200,7 +244,18 @@ class Chamber {
   }
 
  private:
+  // An instance that failed is thrown away: who knows what it holds. A fresh one is asked once
+  // more.
   JudgesReply reply_to(const PointToJudge& asked) {
+    const JudgesReply first = tried(asked);
+    if (first.is_judged) return first;
+    instances_.erase(asked.seed);
+    const JudgesReply second = tried(asked);
+    if (!second.is_judged) instances_.erase(asked.seed);
+    return second;
+  }
+
+  JudgesReply tried(const PointToJudge& asked) {
     JudgesReply reply{.slot = asked.slot};
     try {
       set_library_threads(asked.threads);
@@ -209,6 +264,9 @@ class Chamber {
           instance(asked.seed)
               .judged(Eigen::Map<const Vector>(worker.returned(), worker.returned_size()));
       reply.is_judged = true;
+    } catch (const KilledProgram& error) {
+      reply.is_interrupted = true;
+      set_text(reply.failure, error.what());
     } catch (const std::exception& error) {
       set_text(reply.failure, error.what());
     } catch (...) {
@@ -222,7 +280,8 @@ class Chamber {
     constexpr std::size_t kMost = 8;
     if (const auto found = instances_.find(seed); found != instances_.end()) return *found->second;
     if (instances_.size() >= kMost) instances_.clear();
-    return *(instances_[seed] = std::make_unique<Instance>(make_problem(catalog_, problem_, seed)));
+    auto made = std::make_unique<Instance>(make_problem(catalog_, problem_, seed));
+    return *(instances_[seed] = std::move(made));
   }
 
   const Catalog& catalog_;

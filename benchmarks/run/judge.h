@@ -35,19 +35,21 @@ struct Verdict {
   std::size_t slot;
   std::optional<Judged> judged;
   std::string failure;  // why there is none: "it was ended by signal 11 (Segmentation fault)"
+  bool is_interrupted = false;  // somebody killed the judge, or none could be started: once more
 };
 
 class Judges {
  public:
   // `workers` are those whose returned points are to be judged; they are made before the first
   // judge is started, which sees their shared memory.
-  Judges(const Catalog& catalog, const std::vector<Worker>& workers, double patience_seconds);
+  Judges(const Catalog& catalog, const std::vector<Worker>& workers)
+      : catalog_(catalog), workers_(workers) {}
   ~Judges();
   Judges(const Judges&) = delete;
   Judges& operator=(const Judges&) = delete;
 
-  // Has the point judged that the worker of this slot returned.
-  void ask(std::size_t slot, const Request& request);
+  // Has the point judged that the worker of this slot returned, within the limits of its cell.
+  void ask(std::size_t slot, const Request& request, const Limits& limits);
   std::vector<Verdict> collect();  // those that have come by now
   void add_to(std::vector<pollfd>& waiting) const;
 
@@ -55,7 +57,7 @@ class Judges {
   struct Question {
     std::size_t slot;
     const Request* request;
-    std::int64_t asked;           // monotonic nanoseconds
+    Limits limits;
     bool is_asked_again = false;  // a judge has died of it, or was killed over it
   };
   struct Judge {
@@ -63,18 +65,21 @@ class Judges {
     ProcessGroup group = {};
     int socket = -1;
     std::deque<Question> open = {};
+    LimitWatch watch = {};  // over the first of them
   };
   Judge& judge_of(const Component& problem);
   void start(Judge& judge, const Component& problem);
   void send(Judge& judge, const Question& question);
-  std::string end(Judge& judge);  // how it ended
+  int end(Judge& judge);  // how it ended, as wait() has it
+  void watch_first(Judge& judge);
+  void enforce(Judge& judge, std::vector<Verdict>& verdicts);
   void lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts);
   void collect(Judge& judge, std::vector<Verdict>& verdicts);
 
   const Catalog& catalog_;
   const std::vector<Worker>& workers_;
-  double patience_seconds_;
-  std::list<Judge> judges_;  // the last asked first
+  std::vector<Verdict> unjudged_;  // those that no judge could be started for
+  std::list<Judge> judges_;        // the last asked first
 };
 
 // What a judge does in its own process.
@@ -88,7 +93,7 @@ struct PointToJudge {
 
 struct JudgesReply {
   std::size_t slot;
-  bool is_judged;
+  bool is_judged, is_interrupted;
   Judged judged;
   char failure[Trace::kText];
 };

@@ -81,10 +81,11 @@ std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& u
                   fmt::format("killed: more than {} MiB resident; --memory allows more",
                               limits_.memory_bytes >> 20)};
   if (auto breach = check_time(has_asked_oracle, now)) return breach;
-  if (is_idle(usage, now))
-    return timeout(
-        fmt::format("killed: it used less than 1 % of a core for {} s", limits_.idle_seconds));
-  return std::nullopt;
+  if (!is_idle(usage, now)) return std::nullopt;
+  Breach breach = timeout(
+      fmt::format("killed: it used less than 1 % of a core for {} s", limits_.idle_seconds));
+  breach.is_idleness = true;
+  return breach;
 }
 
 std::optional<LimitWatch::Breach> LimitWatch::check_time(bool has_asked_oracle, const Mark& now) {
@@ -106,8 +107,9 @@ std::optional<LimitWatch::Breach> LimitWatch::check_time(bool has_asked_oracle, 
 }
 
 bool LimitWatch::is_idle(const ProcessGroup::Usage& usage, const Mark& now) {
-  const bool is_active = usage.processes > 1 || (now.processor - active_.processor) * threads_ >=
-                                                    kIdleShare * limits_.idle_seconds;
+  const bool is_active =
+      (limits_.waits_for_others && usage.processes > 1) ||
+      (now.processor - active_.processor) * threads_ >= kIdleShare * limits_.idle_seconds;
   if (is_active) active_ = now;
   return now.awake - active_.awake > limits_.idle_seconds;
 }

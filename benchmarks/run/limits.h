@@ -20,9 +20,10 @@ namespace isoline::benchmarks {
 // times that, is for those who wait. What a machine spends on others counts for neither limit but
 // the second.
 struct Limits {
-  double startup_seconds = 30;  // of processor time, from the fork to the first oracle call
-  double hard_seconds = 60;     // of processor time, from the first oracle call
-  double idle_seconds = 60;     // with less than 1 % of a core, and no other process to wait for
+  double startup_seconds = 30;   // of processor time, from the fork to the first oracle call
+  double hard_seconds = 60;      // of processor time, from the first oracle call
+  double idle_seconds = 60;      // with less than 1 % of a core
+  bool waits_for_others = true;  // while a process that it started lives it is not idle
   std::int64_t memory_bytes = std::int64_t{4} << 30;
 
   static constexpr double kWallFactor = 5;
@@ -55,6 +56,7 @@ class LimitWatch {
   struct Breach {
     Status status;  // timeout or memory
     std::string message;
+    bool is_idleness = false;
   };
 
   LimitWatch() = default;

@@ -179,22 +179,6 @@ void leave() {
   _exit(0);
 }
 
-bool is_from_outside(int signal) {
-  switch (signal) {
-    case SIGKILL:
-    case SIGTERM:
-    case SIGINT:
-    case SIGQUIT:
-    case SIGHUP:
-    case SIGXCPU:
-    case SIGUSR1:
-    case SIGUSR2:
-      return true;
-    default:
-      return false;
-  }
-}
-
 std::string signal_name(int signal) {
   return fmt::format("signal {} ({})", signal, strsignal(signal));
 }
@@ -253,7 +237,7 @@ void settle(pid_t parent, std::uint64_t mark) {
   mark_this_process(mark);
   for (auto& leader : leaders) leader = 0;  // they are its parent's
   std::signal(SIGINT, SIG_IGN);
-  for (const int signal : {SIGTERM, SIGHUP, SIGTSTP}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGTERM, SIGHUP, SIGTSTP, SIGXFSZ}) std::signal(signal, SIG_DFL);
   const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -268,11 +252,12 @@ ProcessGroup::~ProcessGroup() {
 
 ProcessGroup::End ProcessGroup::end() {
   kill();
-  for (;;) {
+  while (is_running()) {
     if (const auto end = collect()) return *end;
     siginfo_t ended{};
     waitid(P_PID, static_cast<id_t>(leader_), &ended, WEXITED | WNOWAIT);
   }
+  return {};
 }
 
 void ProcessGroup::start(const std::function<void()>& work) {

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "core/foreign/child.h"
+
 namespace isoline::benchmarks {
 
 struct ProcessFigures {
@@ -60,10 +62,6 @@ class HeldSignals {
 void limit_memory(std::int64_t bytes);
 
 [[noreturn]] void leave();  // with its output written, and nothing else done
-
-// A signal that somebody sends, a scheduler, a user or the kernel out of memory, as opposed to one
-// that a fault of its own raises.
-bool is_from_outside(int signal);
 
 std::string signal_name(int signal);  // "signal 11 (Segmentation fault)"
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/run/certificate.h"
+#include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/sheets.h"
 #include "benchmarks/run/store.h"
 #include "core/clock.h"
@@ -91,13 +92,17 @@ Outcome run_plan(const Catalog& catalog, const WholePlan& whole,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
                  const RunOptions& options) {
   const std::int64_t begun = monotonic_nanoseconds();
+  const InterruptGuard guard;
+  Outcome outcome{.planned = static_cast<std::int64_t>(requests.size()), .is_interrupted = true};
   require_sound(catalog, requests);
   Store store(folder);
-  require_certified(catalog, requests, store);
+  require_certified(catalog, requests, store, options.progress);
+  if (asked_to_end() != Asked::nothing) return outcome;
   store.plan(whole.name, whole.cells);
   write_used_rates(whole.rates, requests, store);
-  write_sheets(catalog, requests, store);
-  Outcome outcome = run_all(catalog, requests, store, options);
+  write_sheets(catalog, requests, store, options.progress);
+  if (asked_to_end() != Asked::nothing) return outcome;
+  outcome = run_all(catalog, requests, store, options);
   if (!outcome.missing.empty()) {
     store.make_folders();
     store.plan(whole.name, whole.cells);

@@ -1,4 +1,4 @@
-// The run of a whole plan, the same runs from perturbed starts, and who may interrupt them.
+// The run of a whole plan, and the same runs from perturbed starts.
 #include "benchmarks/run/runner.h"
 
 #include <fmt/format.h>
@@ -7,12 +7,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <memory>
 #include <thread>
 
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/execute.h"
+#include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/judge.h"
 #include "benchmarks/run/pending.h"
 #include "benchmarks/run/prediction.h"
@@ -47,79 +47,6 @@ std::string title_of(const Request& request) {
 
 namespace {
 
-constexpr std::sig_atomic_t kFinish = 1, kStop = 2;
-
-volatile std::sig_atomic_t heard = 0;
-
-void hear(int signal, siginfo_t* sent, void*) {
-  if (sent->si_code <= 0 && is_of_a_group(sent->si_pid)) return;  // by a process, and one of ours
-  if (heard == kStop) {
-    signal_all_groups(SIGKILL);
-    _exit(kInterrupted);
-  }
-  heard = signal == SIGINT && heard < kFinish ? kFinish : kStop;
-}
-
-void stop_with_cells(int) {
-  signal_all_groups(SIGSTOP);
-  raise(SIGSTOP);
-  signal_all_groups(SIGCONT);
-}
-
-// What is ignored stays so: nohup, and a shell that runs in the background, had it so.
-void handle(int signal, const struct sigaction& action, struct sigaction& old) {
-  sigaction(signal, nullptr, &old);
-  if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
-}
-
-enum class Asked { nothing, finish, stop };
-
-// While it lives, who asks this process to end is heard in order. Ctrl-C asks to finish what runs;
-// a second one, a polite kill (of a scheduler, say) or a closed terminal ask to stop it; one more
-// ends this process and all its cells at once. Ctrl-Z stops the cells too, until they all go on.
-// What a handler calls is safe there: a flag, a table of numbers and plain calls of the system.
-class InterruptGuard {
- public:
-  InterruptGuard();
-  ~InterruptGuard();
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
-  Asked asked() const;  // so far; a cell that asks its parent is not heard
-
- private:
-  struct sigaction old_int_ {
-  }, old_term_{}, old_hup_{}, old_stop_{};
-};
-
-InterruptGuard::InterruptGuard() {
-  heard = 0;
-  struct sigaction hearing {};
-  hearing.sa_sigaction = hear;
-  hearing.sa_flags = SA_SIGINFO;
-  handle(SIGINT, hearing, old_int_);
-  handle(SIGTERM, hearing, old_term_);
-  handle(SIGHUP, hearing, old_hup_);
-  struct sigaction stopping {};
-  stopping.sa_handler = stop_with_cells;
-  stopping.sa_flags = SA_RESTART;
-  handle(SIGTSTP, stopping, old_stop_);
-}
-
-InterruptGuard::~InterruptGuard() {
-  sigaction(SIGINT, &old_int_, nullptr);
-  sigaction(SIGTERM, &old_term_, nullptr);
-  sigaction(SIGHUP, &old_hup_, nullptr);
-  sigaction(SIGTSTP, &old_stop_, nullptr);
-}
-
-Asked InterruptGuard::asked() const {
-  if (heard == kStop) return Asked::stop;
-  return heard == kFinish ? Asked::finish : Asked::nothing;
-}
-
-constexpr double kJudgeSeconds = 300;  // that a point may take, its problem made afresh
-
 class Runner {
  public:
   Runner(const Catalog& catalog, Store& store, const RunOptions& options)
@@ -129,7 +56,7 @@ class Runner {
         jobs_(options.exclusive ? 1 : options.jobs),
         workers_(static_cast<std::size_t>(options_.exclusive ? 1 : jobs_ + 1)),
         tasks_(workers_.size()),
-        judges_(catalog, workers_, kJudgeSeconds),
+        judges_(catalog, workers_),
         declared_(catalog, store.folder()) {}
 
   Outcome run(const std::vector<Request>& requests) {
@@ -144,12 +71,12 @@ class Runner {
       earlier_ = EarlierTimes(record_outlines({store_.folder()}));
     for (const Request* request : pending.queued()) progress.expect(earlier_.of(*request));
     malloc_trim(0);  // what planning freed: a fork copies the tables of all pages that are held
-    while (guard.asked() != Asked::stop) {
-      if (guard.asked() == Asked::nothing) start_some(progress);
+    while (asked_to_end() != Asked::stop) {
+      if (asked_to_end() == Asked::nothing) start_some(progress);
       keep_judged(progress);
-      const bool is_over = guard.asked() == Asked::finish || pending.is_empty();
+      const bool is_over = asked_to_end() == Asked::finish || pending.is_empty();
       if (is_over && is_idle()) break;
-      tell_once(guard.asked());
+      tell_once(asked_to_end());
       wait();
       collect(progress);
       progress.show();
@@ -187,8 +114,12 @@ class Runner {
                     options_.perturbation);
             workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
           },
-          limits_of(*request, options_.limits, declared_.of(*request)), request->threads);
+          limits(*request), request->threads);
     }
+  }
+
+  Limits limits(const Request& request) {
+    return limits_of(request, options_.limits, declared_.of(request));
   }
 
   void tell_once(Asked asked) {
@@ -234,7 +165,7 @@ class Runner {
       if (!task.request || task.is_being_judged || !workers_[i].poll()) continue;
       task.is_being_judged = has_point(workers_[i].trace());
       if (task.is_being_judged)
-        judges_.ask(i, *task.request);
+        judges_.ask(i, *task.request, limits(*task.request));
       else
         keep(i, progress);
     }
@@ -254,9 +185,11 @@ class Runner {
 
   void settle(const Verdict& verdict) {
     Worker& worker = workers_[verdict.slot];
-    if (!verdict.judged) return worker.dispute("its point could not be judged: " + verdict.failure);
+    if (!verdict.judged)
+      return worker.dispute(verdict.is_interrupted ? Status::interrupted : Status::failed,
+                            "its point could not be judged: " + verdict.failure);
     const std::string found = contradiction(told_by(worker.trace()), *verdict.judged);
-    if (!found.empty()) worker.dispute(found);
+    if (!found.empty()) worker.dispute(Status::failed, found);
   }
 
   // Cells that run keep their state and end; a point that no judge has seen by then is found again.

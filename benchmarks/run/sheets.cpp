@@ -14,6 +14,7 @@
 #include <set>
 
 #include "benchmarks/plan/build_parts.h"
+#include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/isolate.h"
 #include "core/clock.h"
 #include "core/decompose.h"
@@ -452,10 +453,12 @@ constexpr double kSheetSeconds = 30;
 // Makes sheets, each in a process of its own: what goes wrong there costs that sheet its figures.
 class SheetWriter {
  public:
-  SheetWriter(const Catalog& catalog, Store& store) : catalog_(catalog), store_(store) {}
+  SheetWriter(const Catalog& catalog, Store& store, Progress::Style style)
+      : catalog_(catalog), store_(store), progress_(style, "sheets", 0, 0) {}
 
   void write_problem(const Component& component) {
     if (!known_.insert("problem " + component.spec).second) return;
+    progress_.started(component.spec);
     Sheet sheet = described_problem(catalog_, component);
     if (replace(sheet, [&] { return problem_sheet(catalog_, component); }))
       sheet.prices = prices_of(component, sheet.file_name());
@@ -472,7 +475,7 @@ class SheetWriter {
  private:
   // By the whole one, where that can be made.
   bool replace(Sheet& sheet, const std::function<Sheet()>& make) {
-    const IsolatedText made = isolated_text([&] { return file_text(make()); }, kSheetSeconds);
+    const IsolatedText made = isolated([&] { return file_text(make()); });
     std::string reason = made.failure;
     if (made.text) try {
         sheet = sheet_from_text(*made.text, "what it wrote");
@@ -516,7 +519,7 @@ class SheetWriter {
       sheet.prices = measure_prices(make_problem(catalog_, component, 0), build);
       return file_text(sheet);
     };
-    const auto text = isolated_text(measured, kSheetSeconds).text;
+    const auto text = isolated(measured).text;
     if (text) try {
         return sheet_from_text(*text, "prices of " + component.spec).prices;
       } catch (const UsageError&) {  // declared ones are counted with
@@ -524,16 +527,23 @@ class SheetWriter {
     return std::nullopt;
   }
 
+  IsolatedText isolated(const std::function<std::string()>& work) {
+    return isolated_text(work, kSheetSeconds, Limits{}.memory_bytes, [&] { progress_.show(); });
+  }
+
   const Catalog& catalog_;
   Store& store_;
+  Progress progress_;
   std::set<std::string> known_;
 };
 
 }  // namespace
 
-void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store) {
-  SheetWriter writer(catalog, store);
+void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
+                  Progress::Style style) {
+  SheetWriter writer(catalog, store, style);
   for (const Request& request : requests) {
+    if (asked_to_end() != Asked::nothing) return;
     writer.write_problem(request.problem);
     writer.write_optimizer(request.optimizer);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/progress.h"
 #include "benchmarks/run/store.h"
 #include "core/records/plan.h"
 #include "core/records/request.h"
@@ -44,6 +45,7 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& optimizer);
 // A sheet for every component of the plan, each made in a process of its own; a problem's with the
 // measured prices of its oracles. Where it cannot be made, its sheet tells what the registry knows,
 // and the store has a remark.
-void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store);
+void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
+                  Progress::Style style = Progress::Style::silent);
 
 }  // namespace isoline::benchmarks

@@ -198,6 +198,12 @@ void ChildProgram::take(const char* bytes, std::size_t count) {
   if (tail_.size() > kTail) tail_.erase(0, tail_.size() - kTail);
 }
 
+bool is_from_outside(int signal) {
+  for (const int sent : {SIGKILL, SIGTERM, SIGINT, SIGQUIT, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2})
+    if (signal == sent) return true;
+  return false;
+}
+
 bool ChildProgram::has_ended() {
   drain();
   siginfo_t ended{};

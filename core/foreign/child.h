@@ -13,6 +13,10 @@
 
 namespace isoline {
 
+// A signal that somebody sends, a scheduler, a user or the kernel out of memory, as opposed to one
+// that a fault of its own raises.
+bool is_from_outside(int signal);
+
 // In a process that is one cell: programs started from now on belong to its process group, so that
 // ending the cell ends them. Their output, up to one MiB, goes to the output of this process, which
 // is captured. In other processes each program leads its own group, and its output is not shown.
@@ -41,6 +45,7 @@ class ChildProgram {
   bool has_ended();  // without waiting
   // "it left with exit code 1", or that it still runs; where it is ending, that is waited for.
   std::string end_in_words();
+  bool was_killed() const { return end_ && !end_->is_exit && is_from_outside(end_->number); }
   // What it printed last, some lines of it, as valid UTF-8; empty where it said nothing.
   std::string last_words() const;
 

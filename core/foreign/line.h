@@ -72,6 +72,11 @@ struct LineError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Somebody killed the other program: it may be asked again.
+struct KilledProgram : LineError {
+  using LineError::LineError;
+};
+
 inline constexpr double kNoDeadline = std::numeric_limits<double>::infinity();
 
 class Line {

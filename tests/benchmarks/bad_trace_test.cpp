@@ -11,11 +11,7 @@
 namespace isoline::benchmarks {
 namespace {
 
-Request square_by_gd() {
-  return named({.problem = complete_problem(catalog(), "square", {}),
-                .optimizer = complete_optimizer(catalog(), "gd", {}),
-                .budget = {.iterations = 20}});
-}
+Request square_by_gd() { return cell_of("square", "gd", {.iterations = 20}); }
 
 // Of a cell that ran as it should, and then wrote to its trace.
 Record record_after(const std::function<void(Trace&)>& wild_write) {

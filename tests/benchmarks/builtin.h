@@ -1,4 +1,4 @@
-// What is built into the program, for tests of suites and of rates: its catalog, and the cells of a
+// What is built into the program: its catalog, one of its cells by its specs, and the cells of a
 // suite at its own rates.
 #pragma once
 
@@ -13,6 +13,13 @@ namespace isoline::benchmarks {
 inline const Catalog& catalog() {
   static const Catalog all = builtin_catalog();
   return all;
+}
+
+inline Request cell_of(const std::string& problem, const std::string& optimizer,
+                       const Budget& budget = {}) {
+  return named({.problem = complete_problem(catalog(), parse_spec(problem)),
+                .optimizer = complete_optimizer(catalog(), parse_spec(optimizer)),
+                .budget = budget});
 }
 
 inline std::vector<Request> cells_of(const std::string& suite) {

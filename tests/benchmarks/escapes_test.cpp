@@ -18,20 +18,24 @@ namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
 
-// Goes where it is told, at once, and stays.
+// Goes where it is told, at once, and stays; it may ask what the loss is there.
 struct Jump {
   Real to = 0;
+  bool asks = true;
   struct State {
     Linearization at;
   };
   State init(Meter&, const Vector&) const { return {}; }
   Status step(Meter& f, Vector& theta, State& s) const {
     theta.setConstant(to);
-    f.linearize(theta, s.at);
+    if (asks) f.linearize(theta, s.at);
     return Status::converged;
   }
 };
-void fields(Jump& o, auto& field) { field("to", o.to, any(), "each component of θ"); }
+void fields(Jump& o, auto& field) {
+  field("to", o.to, any(), "each component of θ");
+  field("asks", o.asks, "whether it asks for the loss there");
+}
 
 // y = eˣ − c, one number, against y* = 0: with c = 0.35 the least of ½y² is 0 at log c.
 class Cliff final : public DensePhysics {
@@ -98,11 +102,12 @@ Catalog with_escapes() {
   return catalog;
 }
 
-Record run(const std::string& problem, Real to) {
+Record run(const std::string& problem, Real to, bool asks = true) {
   const Catalog catalog = with_escapes();
-  const Request request = named({.problem = complete_problem(catalog, problem, OptionValues()),
-                                 .optimizer = complete_optimizer(catalog, "jump", {{"to", to}}),
-                                 .budget = {.iterations = 5}});
+  const Request request =
+      named({.problem = complete_problem(catalog, problem, OptionValues()),
+             .optimizer = complete_optimizer(catalog, "jump", {{"to", to}, {"asks", asks}}),
+             .budget = {.iterations = 5}});
   const auto trace = std::make_unique<Trace>();
   execute(catalog, request, *trace);
   return record_of(request, *trace);
@@ -124,6 +129,15 @@ TEST(Escapes, OfAStartAtTenToTheHundredSixVerifyNothing) {
   const Record near = run("cliff", std::log(0.35));
   EXPECT_EQ(near.verified.at("1e-6"), true);
   EXPECT_EQ(near.status, Status::target);
+}
+
+TEST(Escapes, OfAMethodThatAsksNothingCostTheForwardOfTheirPoint) {
+  for (const bool asks : {true, false}) {
+    const Record near = run("cliff", std::log(0.35), asks);
+    EXPECT_EQ(near.status, Status::target);
+    EXPECT_EQ(near.summary.work, 1) << asks;
+    EXPECT_EQ(near.hits->work.at(50), 1) << asks;
+  }
 }
 
 TEST(Escapes, ToAPlateauOfThriceTheLeastLossVerifyNothing) {

@@ -136,16 +136,21 @@ inline void fields(Hostile& o, auto& field) {
       "what it does after two good steps");
 }
 
-// A problem that cannot be made: "hang", "segfault" or "exit".
+// A problem that cannot be made.
 struct BrokenOptions {
   std::string misdeed = "hang";
 };
 inline void fields(BrokenOptions& o, auto& field) {
-  field("misdeed", o.misdeed, Choices{"hang", "segfault", "exit"}, "what its making does");
+  field("misdeed", o.misdeed, Choices{"hang", "segfault", "exit", "end-parent"},
+        "what its making does");
 }
 inline ProblemParts make_broken(const BrokenOptions& o, const Draw&) {
   if (o.misdeed == "segfault") std::raise(SIGSEGV);
   if (o.misdeed == "exit") std::exit(0);
+  if (o.misdeed == "end-parent") {
+    kill(getppid(), SIGTERM);
+    throw std::runtime_error("not made");
+  }
   for (volatile bool go_on = true; go_on;) {
   }
   return {};

@@ -16,6 +16,15 @@ inline bool lives(pid_t process) {
   return figures && figures->resident_bytes > 0;
 }
 
+// A worker that has done this, or was ended.
+inline std::unique_ptr<Worker> ended_worker(const std::function<void(Trace&)>& work,
+                                            const Limits& limits = {}) {
+  auto worker = std::make_unique<Worker>();
+  worker->start(work, limits, 1);
+  wait_until([&] { return worker->poll(); });
+  return worker;
+}
+
 class HostileCells : public testing::Test {
  protected:
   HostileCells() { told() = 0; }

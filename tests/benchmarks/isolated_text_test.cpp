@@ -57,8 +57,19 @@ TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
   }
 }
 
-// Whoever it leaves behind holds the pipe, and would for ever.
-TEST(IsolatedText, IsNotWaitedForOnADescendantThatHoldsThePipe) {
+// As a script that never answers.
+TEST(IsolatedText, OfAProcessThatWaitsForAnIdleOneIsGivenUpAsIdle) {
+  const IsolatedText found = isolated_text(
+      []() -> std::string {
+        if (fork() == 0)
+          for (;;) pause();
+        for (;;) pause();
+      },
+      0.2);
+  EXPECT_NE(found.failure.find("in which it did nothing"), std::string::npos) << found.failure;
+}
+
+TEST(IsolatedText, IsNotWaitedForOnADescendantThatLives) {
   told() = 0;
   const IsolatedText found = isolated_text(
       [] {

@@ -34,33 +34,43 @@ void fields(Cheat& o, auto& field) {
   field("deed", o.deed, Choices{"nothing", "target"}, "what it does to its problem");
 }
 
-// How often the trap has been made, in whatever process.
-int& times_made() {
+// How often the trap has been made, and has failed, in whatever process.
+int* shared_counts() {
   static auto* const shared = static_cast<int*>(
-      mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-  return *shared;
+      mmap(nullptr, 2 * sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  return shared;
 }
+int& times_made() { return shared_counts()[0]; }
+int& times_failed() { return shared_counts()[1]; }
 
 // y = x, made well for its cell, which comes first, and ill for the judges after it.
 struct TrapOptions {
   std::string deed = "crash-once";
 };
 void fields(TrapOptions& o, auto& field) {
-  field("deed", o.deed, Choices{"crash-once", "crash", "hang", "throw"}, "what befalls a judge");
+  field("deed", o.deed, Choices{"crash-once", "crash", "hang", "throw", "fail-once", "killed"},
+        "what befalls a judge");
 }
 class Trap final : public DensePhysics {
  public:
-  Trap() : DensePhysics(1, 1) {}
-  void value(VectorRef x, VectorOut y) const override { y = x; }
+  explicit Trap(bool fails_once) : DensePhysics(1, 1), fails_once_(fails_once) {}
+  void value(VectorRef x, VectorOut y) const override {
+    if (fails_once_ && x[0] == 2 && ++times_failed() == 1) throw std::runtime_error("no value");
+    y = x;
+  }
   void derivative(VectorRef, BatchOut J) const override { J(0, 0) = 1; }
+
+ private:
+  bool fails_once_;
 };
 ProblemParts make_trap(const TrapOptions& o, const Draw&) {
   const int times = ++times_made();
   if (o.deed == "crash-once" && times == 2) std::raise(SIGSEGV);
   if (o.deed == "crash" && times > 1) std::raise(SIGSEGV);
+  if (o.deed == "killed" && times > 1) std::raise(SIGKILL);
   if (o.deed == "throw" && times > 1) throw std::runtime_error("no second instance");
   while (o.deed == "hang" && times > 1) pause();
-  return {.physics = std::make_unique<Trap>(),
+  return {.physics = std::make_unique<Trap>(o.deed == "fail-once"),
           .start = Vector::Ones(1),
           .target = Vector::Zero(1),
           .minimum = 0};
@@ -91,6 +101,23 @@ class Judging : public testing::Test {
   Record record_of_trap(const std::string& deed) {
     times_made() = 0;
     return record_after(asked("trap", {{"deed", deed}}, "gd", {{"rate", 1.0}}));
+  }
+
+  // On points of one trap, in order.
+  std::vector<Verdict> verdicts_on(const std::vector<Real>& points, const std::string& deed) {
+    std::vector<Worker> workers(points.size());
+    Judges judges(catalog, workers);
+    const Request request = asked("trap", {{"deed", deed}}, "gd", {});
+    for (std::size_t slot = 0; slot < workers.size(); ++slot) {
+      workers[slot].keep_returned(std::vector<Real>{points[slot]});
+      judges.ask(slot, request, {});
+    }
+    std::vector<Verdict> all;
+    wait_until([&] {
+      for (const Verdict& verdict : judges.collect()) all.push_back(verdict);
+      return all.size() == workers.size();
+    });
+    return all;
   }
 
   Catalog catalog = catalog_of_judges();
@@ -139,35 +166,47 @@ TEST_F(Judging, AJudgeThatHangsIsGivenUp) {
   times_made() = 1;
   std::vector<Worker> workers(1);
   workers[0].keep_returned(std::vector<Real>{1});
-  Judges judges(catalog, workers, kPatience);
+  Judges judges(catalog, workers);
   const Request request = asked("trap", {{"deed", "hang"}}, "gd", {});
-  judges.ask(0, request);
+  judges.ask(0, request, {.startup_seconds = kPatience, .hard_seconds = kPatience});
   std::vector<Verdict> verdicts;
-  while (verdicts.empty()) verdicts = judges.collect();
+  wait_until([&] {
+    verdicts = judges.collect();
+    return !verdicts.empty();
+  });
   EXPECT_FALSE(verdicts[0].judged.has_value());
   EXPECT_EQ(verdicts[0].failure, "it took more than 0.2 s");
 }
 
 TEST_F(Judging, ManyPointsOfOneProblemAreJudgedByOneProcess) {
   times_made() = 2;
-  std::vector<Worker> workers(3);
-  Judges judges(catalog, workers, 100);
-  const Request request = asked("trap", {{"deed", "crash-once"}}, "gd", {});
-  for (std::size_t slot = 0; slot < workers.size(); ++slot) {
-    workers[slot].keep_returned(std::vector<Real>{static_cast<Real>(slot)});
-    judges.ask(slot, request);
-  }
-  std::vector<Verdict> all;
-  wait_until([&] {
-    for (const Verdict& verdict : judges.collect()) all.push_back(verdict);
-    return all.size() == workers.size();
-  });
+  const std::vector<Verdict> all = verdicts_on({0, 1, 2}, "crash-once");
   for (std::size_t slot = 0; slot < all.size(); ++slot) {
     ASSERT_TRUE(all[slot].judged.has_value()) << all[slot].failure;
     EXPECT_EQ(all[slot].slot, slot);
     EXPECT_EQ(all[slot].judged->loss, 0.5 * static_cast<Real>(slot * slot));
   }
   EXPECT_EQ(times_made(), 3);
+}
+
+// The second would be told the loss at the start, where the first was left.
+TEST_F(Judging, AnInstanceThatFailedAnswersNobodyElse) {
+  times_failed() = 0;
+  for (const Verdict& verdict : verdicts_on({2, 2}, "fail-once")) {
+    ASSERT_TRUE(verdict.judged.has_value()) << verdict.failure;
+    EXPECT_EQ(verdict.judged->loss, 2);
+  }
+}
+
+TEST_F(Judging, APointWhoseJudgesWereKilledIsInterruptedAndRunsAgain) {
+  const Record record = record_of_trap("killed");
+  EXPECT_FALSE(store.find(record.request).has_value());
+  times_made() = 0;
+  const Request trap = asked("trap", {{"deed", "killed"}}, "gd", {{"rate", 1.0}});
+  const Outcome outcome = run_all(catalog, {trap}, store, {});
+  EXPECT_EQ(outcome.run, 1) << "it was not done";
+  EXPECT_EQ(outcome.interrupted, 1);
+  EXPECT_TRUE(outcome.failures.empty());
 }
 
 TEST(Contradictions, RoundingIsNoneAndWhatIsNotFiniteMustBeSoInBoth) {

@@ -7,20 +7,15 @@
 #include <memory>
 
 #include "benchmarks/plan/catalog.h"
-#include "benchmarks/run/execute.h"
 #include "tests/benchmarks/builtin.h"
+#include "tests/benchmarks/pieces.h"
 
 namespace isoline::benchmarks {
 namespace {
 
 Record run_of(const char* problem, const char* optimizer, std::int64_t iterations = 20) {
-  const Request request = named({.problem = complete_problem(catalog(), parse_spec(problem)),
-                                 .optimizer = complete_optimizer(catalog(), parse_spec(optimizer)),
-                                 .budget = {.iterations = iterations, .target = 0}});
-  const auto trace = std::make_unique<Trace>();
-  execute(catalog(), request, *trace);
-  trace->is_finished = true;
-  return record_of(request, *trace);
+  const Request request = cell_of(problem, optimizer, {.iterations = iterations, .target = 0});
+  return executed(catalog(), request);
 }
 
 TEST(SameResult, IsThatOfTheSameCellRunTwice) {

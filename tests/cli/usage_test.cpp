@@ -105,6 +105,7 @@ const std::vector<Mistake> kMistakes = {
     {"run --problem square --optimizer gd --seeds many", "many"},
     {"run --problem square --optimizer gd --time soon", "soon"},
     {"run --problem square --optimizer gd --memory lots", "2GB, got 'lots'"},
+    {"run --problem square --optimizer gd --memory 100MB", "at least 256MB, got 100000000"},
     {"run --problem square --optimizer gd --memory=-1",
      "from 16MB to 1024TB, such as 2GB, got '-1'"},
     {"run --problem square --optimizer gd --memory=0", "got '0'"},

@@ -59,15 +59,22 @@ inline Outcome run_from(const Vector& start, const Problem& problem, const std::
   result.theta = start;
   Meter meter(problem, budget, needs_of(entry, options, problem), *result.trace);
   result.status = meter.begin(result.theta);
-  method->start(meter, result.theta);
-  while (result.status == Status::running) {
-    result.status = method->step(meter, result.theta);
-    if (method->reports_iterations()) break;
-    const Status seen = meter.iterate(result.theta);
-    if (result.status == Status::running) result.status = seen;
-    result.path.push_back(result.theta);
+  Vector before = result.theta;
+  try {
+    method->start(meter, result.theta);
+    while (result.status == Status::running) {
+      before = result.theta;
+      result.status = method->step(meter, result.theta);
+      if (method->reports_iterations()) break;
+      const Status seen = meter.iterate(result.theta);
+      if (result.status == Status::running) result.status = seen;
+      result.path.push_back(result.theta);
+    }
+  } catch (const BudgetSpent&) {  // the step is not taken
+    result.theta = before;
+    result.status = Status::budget;
   }
-  meter.finish(result.theta, result.status);
+  result.theta = meter.finish(result.theta, result.status);
   result.status = result.trace->status;
   return result;
 }
