@@ -16,6 +16,10 @@
 #include "core/text.h"
 
 namespace isoline::benchmarks {
+static bool is_selected(const ProblemEntry&, const std::string& selector) {
+  return selector == "*";
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,8 +58,6 @@ MatrixBlock block_from(const Json& json) {
 }
 
 bool is_selector(const std::string& text) { return text == "*" || text.starts_with('@'); }
-
-bool is_selected(const ProblemEntry&, const std::string& selector) { return selector == "*"; }
 
 // What a block names, with the names that a selector stands for in its place.
 template <class Registered>
