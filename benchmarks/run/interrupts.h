@@ -1,4 +1,4 @@
-// Who asks this process to end while it runs cells, or examines what they need.
+// Signals that ask this process to end while it runs cells, or checks their components.
 #pragma once
 
 #include <csignal>
@@ -7,10 +7,10 @@ namespace isoline::benchmarks {
 
 enum class Asked { nothing, finish, stop };
 
-// While one lives, who asks this process to end is heard in order. Ctrl-C asks to finish what runs;
-// a second one, a polite kill (of a scheduler, say) or a closed terminal ask to stop it; one more
-// ends this process and all its cells at once. Ctrl-Z stops the cells too, until they all go on.
-// A cell that asks its parent is not heard. Within another one it does nothing.
+// While a guard exists, Ctrl-C asks to finish the running cells. A second Ctrl-C, SIGTERM (of a
+// scheduler, for example) or a closed terminal asks to stop them; one more ends this process and
+// all cells at once. Ctrl-Z stops the cells too, until all continue. Signals that a cell sends to
+// its parent are ignored. A guard within another one does nothing.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -24,6 +24,6 @@ class InterruptGuard {
   }, old_term_{}, old_hup_{}, old_stop_{};
 };
 
-Asked asked_to_end();  // so far, of the guard that lives
+Asked asked_to_end();  // what the signals since the outermost guard began ask for
 
 }  // namespace isoline::benchmarks

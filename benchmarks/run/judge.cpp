@@ -244,7 +244,7 @@ class Chamber {
   }
 
  private:
-  // An instance that failed is thrown away: who knows what it holds. A fresh one is asked once
+  // An instance that failed may hold anything and is thrown away. A fresh one is asked once
   // more.
   JudgesReply reply_to(const PointToJudge& asked) {
     const JudgesReply first = tried(asked);

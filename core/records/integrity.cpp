@@ -202,8 +202,11 @@ class Invariants {
       });
     if (record_.status != Status::target || !record_.scale) return;
     const Real tau = record_.request.budget.target;
-    hold(record_.minimum &&
-             summary_.best_loss <= goal_at(record_.aim == Aim::x ? tau * tau : tau) + slack(),
+    // Older runs whose criterion is the error in x were stopped at τ² of the loss.
+    const bool is_in_x = record_.aim == Aim::x && record_.x_scale &&
+                         summary_.x_error <= x_goal(tau, *record_.x_scale, record_.x_floor);
+    const Real of_loss = record_.aim == Aim::x ? tau * tau : tau;
+    hold(is_in_x || (record_.minimum && summary_.best_loss <= goal_at(of_loss) + slack()),
          fmt::format("its status is target, and its best loss, {}, is above it",
                      summary_.best_loss));
   }

@@ -16,6 +16,7 @@
 #include "core/json.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/pieces.h"
+#include "tests/deadline.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline::benchmarks {
@@ -190,8 +191,9 @@ TEST_F(Resume, AKilledRunGoesOnToTheSameRecords) {
       run(killed.path(), 2);
       _exit(0);
     }
-    while (count_runs(killed.path()) < kill_after && waitpid(child, nullptr, WNOHANG) == 0) {
-    }
+    wait_until([&] {
+      return count_runs(killed.path()) >= kill_after || waitpid(child, nullptr, WNOHANG) != 0;
+    });
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const std::size_t kept = results(killed.path()).size();
@@ -229,8 +231,8 @@ TEST_F(Resume, AnInterruptedRunKeepsWhatIsDoneAndGoesOn) {
     run(first.path(), 1);
     _exit(0);
   }
-  while (count_runs(first.path()) < 2 && waitpid(child, nullptr, WNOHANG) == 0) {
-  }
+  wait_until(
+      [&] { return count_runs(first.path()) >= 2 || waitpid(child, nullptr, WNOHANG) != 0; });
   kill(child, SIGINT);
   waitpid(child, nullptr, 0);
   run(first.path(), 2);

@@ -127,11 +127,11 @@ class KilledRuns : public testing::Test {
     return child;
   }
   void wait_for(pid_t child, std::size_t files) {
-    while (count_files(folder.path()) < files) {
+    wait_until([&] {
       siginfo_t ended{};
       waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
-      if (ended.si_pid != 0) return;
-    }
+      return ended.si_pid != 0 || count_files(folder.path()) >= files;
+    });
   }
   static std::map<std::string, Json> results_of(const fs::path& folder) {
     std::map<std::string, Json> results;
