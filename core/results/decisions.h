@@ -25,6 +25,7 @@ namespace isoline::results {
 
 inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's area ranks
 inline constexpr Real kSignificant = 0.05;
+inline constexpr std::size_t kExactFlips = 20;  // families; of more, kDrawnFlips fixed flips
 
 // What all methods came to on one setting from one instance and start.
 struct Repetition {

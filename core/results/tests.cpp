@@ -87,23 +87,6 @@ std::size_t interval_order(std::size_t n, std::size_t m) {
   return k;
 }
 
-// min over the j ≥ i of factor(j) p_(j), in the order of p.
-template <class Factor>
-std::vector<Real> adjusted(const std::vector<Real>& p, bool from_above, Factor factor) {
-  std::vector<std::size_t> order(p.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return p[i]; });
-  std::vector<Real> out(p.size());
-  Real extreme = from_above ? 1 : 0;
-  for (std::size_t step = 0; step < order.size(); ++step) {
-    const std::size_t i = from_above ? order.size() - 1 - step : step;
-    const Real value = std::min(1.0, factor(i) * p[order[i]]);
-    extreme = from_above ? std::min(extreme, value) : std::max(extreme, value);
-    out[order[i]] = extreme;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::vector<Real> mid_ranks(const std::vector<Real>& values) {
@@ -141,12 +124,18 @@ RatioEstimate ratio_estimate(const std::vector<Real>& a, const std::vector<Real>
   return estimate;
 }
 
+// From the greatest p down: min over those from it on of n / rank · p.
 std::vector<Real> benjamini_hochberg(const std::vector<Real>& p) {
-  return adjusted(p, true, [&](std::size_t i) { return Real(p.size()) / Real(i + 1); });
-}
-
-std::vector<Real> holm(const std::vector<Real>& p) {
-  return adjusted(p, false, [&](std::size_t i) { return Real(p.size() - i); });
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return p[i]; });
+  std::vector<Real> adjusted(p.size());
+  Real least = 1;
+  for (std::size_t i = order.size(); i-- > 0;) {
+    least = std::min(least, Real(p.size()) / Real(i + 1) * p[order[i]]);
+    adjusted[order[i]] = least;
+  }
+  return adjusted;
 }
 
 MedianInterval median_interval(std::vector<Real> values) {
@@ -289,64 +278,7 @@ Real friedman_p(const std::vector<std::vector<Real>>& values) {
   return chi_square_tail(squares_of_sums(ranks) * freedom / spread, freedom);
 }
 
-// Flips of signs, counted out where they are few enough.
-
-namespace {
-
-constexpr Real kRounding = 1e-9;  // of sums, relative: flips as far out as the data count as such
-
-// Of all 2^left signs of the last sizes, how many bring |sum| to `far`. Sizes descend, so that most
-// branches are decided early; after[i] is the sum from i on.
-struct Counter {
-  const std::vector<Real>& sizes;
-  const std::vector<Real>& after;
-  Real far = 0;
-
-  Real count(std::size_t i, Real sum) const {
-    const Real left = after[i];
-    if (std::abs(sum) + left < far) return 0;
-    if (std::abs(sum) - left >= far) return std::exp2(Real(sizes.size() - i));
-    return count(i + 1, sum + sizes[i]) + count(i + 1, sum - sizes[i]);
-  }
-};
-
-Real exact_p(const std::vector<Real>& sizes, Real far) {
-  std::vector<Real> after(sizes.size() + 1, 0);
-  for (std::size_t i = sizes.size(); i-- > 0;) after[i] = after[i + 1] + sizes[i];
-  return Counter{sizes, after, far}.count(0, 0) / std::exp2(Real(sizes.size()));
-}
-
-// With the data themselves among the flips, so that no p is 0.
-Real drawn_p(const std::vector<Real>& sizes, Real far) {
-  constexpr int kBits = 52;  // of one draw
-  Draws random(0, "report", "signs");
-  std::size_t hits = 0;
-  for (std::size_t flip = 0; flip < kDrawnFlips; ++flip) {
-    Real sum = 0;
-    std::uint64_t signs = 0;
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-      if (i % kBits == 0)
-        signs = static_cast<std::uint64_t>(random.uniform() * std::exp2(Real(kBits)));
-      sum += (signs & 1U) == 1 ? sizes[i] : -sizes[i];
-      signs >>= 1U;
-    }
-    hits += std::abs(sum) >= far;
-  }
-  return Real(hits + 1) / Real(kDrawnFlips + 1);
-}
-
-}  // namespace
-
-Real sign_flip_p(const std::vector<Real>& differences) {
-  std::vector<Real> sizes;
-  for (const Real difference : differences)
-    if (difference != 0) sizes.push_back(std::abs(difference));
-  std::ranges::sort(sizes, std::ranges::greater{});
-  const Real observed = std::abs(std::accumulate(differences.begin(), differences.end(), 0.0));
-  const Real far = observed - kRounding * std::accumulate(sizes.begin(), sizes.end(), 0.0);
-  if (far <= 0) return 1;
-  return sizes.size() <= kExactFlips ? exact_p(sizes, far) : drawn_p(sizes, far);
-}
+// Student's t, and what tests find.
 
 Real deviation_of(const std::vector<Real>& values) {
   if (values.size() < 2) return 0;
@@ -393,13 +325,12 @@ Real detectable_mean(Real deviation, std::size_t n) {
   return (1 + 2 / Real(n - 3)) * quantiles * deviation / std::sqrt(Real(n));
 }
 
-Interval prediction_interval(const std::vector<Real>& values, Real reading) {
+Interval prediction_interval(const std::vector<Real>& values) {
   if (values.size() < 2) return {.low = -kNever, .high = kNever};
   const Real n = Real(values.size());
   const Real mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
   const Real half =
-      student_quantile(0.975, values.size() - 1) * deviation_of(values) * std::sqrt(1 + 1 / n) +
-      reading;
+      student_quantile(0.975, values.size() - 1) * deviation_of(values) * std::sqrt(1 + 1 / n);
   return {mean - half, mean + half};
 }
 

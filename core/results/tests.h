@@ -1,4 +1,4 @@
-// Tests of differences between methods: by ranks, over all methods, and by flips of signs.
+// Tests of differences between methods by ranks, and what tests by flips of signs can find.
 #pragma once
 
 #include <cstddef>
@@ -32,10 +32,9 @@ struct MedianInterval {
 };
 MedianInterval median_interval(std::vector<Real> values);
 
-// p adjusted for their number, in the order given: at most q of the discoveries below q are false
-// (Benjamini, Hochberg 1995); the chance of any false one below q is at most q (Holm 1979).
+// p adjusted for their number, in the order given: at most q of the discoveries below q are false.
+// Benjamini, Hochberg (1995).
 std::vector<Real> benjamini_hochberg(const std::vector<Real>& p);
-std::vector<Real> holm(const std::vector<Real>& p);
 
 inline constexpr std::size_t kExact = 100;  // values up to which distributions are counted out
 
@@ -51,13 +50,7 @@ inline constexpr std::size_t kSmallDesign = 60, kDrawnFlips = 1U << 16U;
 // P(χ² with so many degrees of freedom ≥ x).
 Real chi_square_tail(Real x, Real freedom);
 
-// The paired test by sign flips: could differences of this size have had either sign?
-
-// The two-sided p of the mean of paired differences: the share of all flips of their signs whose
-// mean is as far from 0. Fisher (1935). Exact up to kExactFlips of them, beyond that over
-// kDrawnFlips fixed ones. 1 where all are 0. Differences are finite.
-Real sign_flip_p(const std::vector<Real>& differences);
-inline constexpr std::size_t kExactFlips = 20;
+// What a paired test by sign flips can find.
 
 // The standard deviation of a sample; 0 of fewer than two.
 Real deviation_of(const std::vector<Real>& values);
@@ -72,8 +65,8 @@ Real student_quantile(Real share, std::size_t freedom);
 Real detectable_mean(Real deviation, std::size_t n);
 
 // Where a single further value lies in 95 % of all cases, by values of the same kind (on the scale
-// on which they are normal): mean ± (t √(v (1 + 1/n)) + reading), reading the error with which the
-// further one was read off a figure. Everywhere, of fewer than two values.
-Interval prediction_interval(const std::vector<Real>& values, Real reading);
+// on which they are normal), of variance v: mean ± t √(v (1 + 1/n)). Everywhere, of fewer than two
+// values.
+Interval prediction_interval(const std::vector<Real>& values);
 
 }  // namespace isoline::results

@@ -2,13 +2,13 @@
 #include "reports/sections/quantities.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "core/json.h"
 #include "core/results/statistics.h"
+#include "core/results/tests.h"
 #include "reports/sections/claim_terms.h"
 
 namespace isoline::reports {
@@ -145,28 +145,16 @@ std::vector<Real> values_of_seeds(const std::string& kind, const std::vector<Ter
   return values;
 }
 
-// Of Student's t with so many degrees of freedom, two-sided 95 %.
-Real student_quantile(std::size_t freedom) {
-  constexpr std::array kQuantiles = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365,
-                                     2.306,  2.262, 2.228, 2.201, 2.179, 2.160, 2.145,
-                                     2.131,  2.120, 2.110, 2.101, 2.093, 2.086};
-  return freedom > kQuantiles.size() ? 1.96 : kQuantiles.at(freedom - 1);
-}
-
-// Where one further run lies, by the mean and the variance v of the logarithms of n: the variance
-// of its difference from their mean is v (1 + 1/n).
+// Where one further run lies: runs are normal in their logarithms.
 std::optional<Interval> prediction_of(const std::vector<Real>& values) {
-  const auto n = static_cast<Real>(values.size());
-  Real mean = 0, squares = 0;
+  std::vector<Real> logarithms;
   for (const Real value : values) {
     if (!(value > 0) || !std::isfinite(value)) return std::nullopt;
-    mean += std::log(value) / n;
+    logarithms.push_back(std::log(value));
   }
-  for (const Real value : values) squares += std::pow(std::log(value) - mean, 2);
   if (values.size() < 2) return std::nullopt;
-  const Real half =
-      student_quantile(values.size() - 1) * std::sqrt(squares / (n - 1) * (1 + 1 / n));
-  return Interval{std::exp(mean - half), std::exp(mean + half)};
+  const auto [low, high] = results::prediction_interval(logarithms);
+  return Interval{std::exp(low), std::exp(high)};
 }
 
 }  // namespace

@@ -134,13 +134,14 @@ TEST(Claims, ThatAreBetterThanPublishedAreStrongerWhereTheySayWhichSideThatIs) {
   EXPECT_TRUE(is_supported(Verdict::stronger));
 }
 
-// By hand: logarithms −1, 0, 1, mean 0, variance 1; t of 2 degrees 4.303; exp(± 4.303 √(4/3)).
+// By hand: logarithms −1, 0, 1, mean 0, variance 1; t(2) = 4.30265273; exp(± t √(4/3)).
 TEST(Claims, OfOnePublishedRunAreComparedWithWhereOneFurtherRunOfOursWouldLie) {
   const Real e = std::exp(1.0);
   const Measurement three = measure("value", {{.figures = {{1 / e, 1, e}}}}, "test");
   ASSERT_TRUE(three.predicted.has_value());
-  EXPECT_NEAR(three.predicted->low, 1 / 143.85, 1e-4);
-  EXPECT_NEAR(three.predicted->high, 143.85, 0.05);
+  const Real factor = std::exp(4.30265273 * std::sqrt(4 / 3.0));
+  EXPECT_NEAR(three.predicted->low, 1 / factor, 1e-8);
+  EXPECT_NEAR(three.predicted->high, factor, 1e-4);
   EXPECT_FALSE(measure("value", {{.figures = {{-1, 1, 2}}}}, "test").predicted.has_value());
   // Seeds lie from 1 to 3, one further run from 0.5 to 6: 5 ± 5 % may be one, though no median.
   Measurement six = over(1, 2, 3);
