@@ -1,8 +1,7 @@
 // The report of a study: one page for people, and the same figures as Markdown, LaTeX, CSV, JSON.
-// Rooms from the ground up; each may see those above it in this list.
+// Folders from the ground up, above core/results; each may include those above it in this list.
 //
-// - statistics/: numbers in, numbers out: medians, profiles, ranks, tests, the bootstrap.
-// - read/: folders to records, records to cells, axes, standings, costs and curves.
+// - read/: the table of runs to curves, sweeps and fields.
 // - sections/: cells to sections of sentences, tables and plots, one file a topic; `Document`.
 // - formats/: a document to text, one file a format.
 // - page/: a document to the page, its charts' data, its style and its scripts.

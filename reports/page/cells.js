@@ -9,7 +9,7 @@ for (const problem of DATA.problems) {
   problem.cells = problem.cells.map(([s, reached = [], medians = [], failed = 0, missing = 0, records = []]) =>
     ({s, reached, medians, failed, missing, records, origin: problem.origins?.[s]}));
   if (problem.learned !== undefined)
-    problem.learned.rows = problem.learned.rows.map(([s, error, low, high, loss, runs]) => ({s, error, low, high, loss, runs}));
+    problem.learned.rows = problem.learned.rows.map(([s, error, low, high, loss, runs, diverged]) => ({s, error, low, high, loss, runs, diverged}));
 }
 
 const isMeasured = (cell) => cell.reached.length > 0;

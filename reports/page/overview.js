@@ -57,7 +57,7 @@ function learnedCell(problem, s) {
   const row = problem.learned.rows.find((one) => one.s === s), least = problem.learned.rows[0]?.error;
   if (row === undefined) return heatCell(cellOf(problem, s), 0, 0);
   if (row.error === null) return cellWith('✗', '', {className: 'no'});
-  return cellWith(short(row.error), '', {className: row.error === least ? 'h0 best' : heatOf(row.error, least)});
+  return cellWith(short(row.error), row.diverged > 0 ? `${row.diverged} diverged` : '', {className: row.error === least ? 'h0 best' : heatOf(row.error, least)});
 }
 
 // Best first; where all is learned, by how often each is nearest in x at equal work.

@@ -95,14 +95,16 @@ std::string origins_json(const Comparison& c, std::size_t p) {
   return text.empty() ? "" : ",\"origins\":{" + text + "}";
 }
 
-// What is learned, at equal work: [optimizer, error in x, its least, its greatest, loss, runs].
+// What is learned, at equal work: [optimizer, error in x, its least, its greatest, loss, runs, how
+// many of them diverged].
 std::string learned_json(const Comparison& c, std::size_t p) {
   if (!c.problems[p].is_learned) return "";
   const EqualWork equal = equal_work(c, p);
   const auto row = [&](std::size_t s) {
     const AtEqualWork& at = *equal.methods[s];
-    return fmt::format("[{},{},{},{},{},{}]", s, number(at.x_error.median), number(at.x_error.low),
-                       number(at.x_error.high), number(at.loss.median), at.x_error.n);
+    return fmt::format("[{},{},{},{},{},{},{}]", s, number(at.x_error.median),
+                       number(at.x_error.low), number(at.x_error.high), number(at.loss.median),
+                       at.x_error.n, at.diverged);
   };
   return fmt::format(",\"learned\":{{\"work\":{},\"rows\":{}}}", number(equal.work),
                      list(equal.nearest_first(), row));
