@@ -168,6 +168,24 @@ TEST(Vocabulary, OfPagesIsPlain) {
   }
 }
 
+TEST(Vocabulary, OfLauncherAndScriptsIsPlain) {
+  for (const char* file : {"isoline", "CMakeLists.txt", "CMakePresets.json", ".ci/run",
+                           ".ci/compare", ".github/workflows/ci.yml", "CITATION.cff"}) {
+    const std::vector<std::string> lines = lines_of(text_of(root() / file));
+    EXPECT_FALSE(lines.empty()) << file;
+    for (const std::string& line : lines)
+      EXPECT_EQ(avoidable(lower(line), kArchaic), "") << file << ": " << line;
+  }
+}
+
+TEST(Vocabulary, TheGlossaryHasAtMostTwentyFiveTerms) {
+  const std::vector<std::string> lines = lines_of(text_of(root() / "docs/glossary.md"));
+  const auto rows =
+      std::ranges::count_if(lines, [](const std::string& line) { return line.starts_with("| "); });
+  EXPECT_GT(rows, 10);
+  EXPECT_LE(rows - 1, 25) << "without the header";
+}
+
 TEST(Vocabulary, OfSourcesIsPlain) {
   constexpr std::string_view kCode[] = {".h", ".cpp", ".c"};
   constexpr std::string_view kText[] = {".json", ".js", ".css", ".cmake", ".txt", ".html", ".py"};
