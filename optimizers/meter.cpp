@@ -350,8 +350,8 @@ Status Meter::judge(VectorRef theta) {
   return Status::running;
 }
 
-// What a run keeps of its way, off the clock: its curve, its path, its fields, the spectrum of J,
-// and samples of what was learned.
+// The data that a run keeps about its path, off the clock: its curve, its path, its fields, the
+// spectrum of J, and samples of the learned results.
 
 namespace {
 

@@ -57,7 +57,7 @@ bool is_selector(const std::string& text) { return text == "*" || text.starts_wi
 
 bool is_selected(const ProblemEntry&, const std::string& selector) { return selector == "*"; }
 
-// What a block names, with the names that a selector stands for in its place.
+// The names in a block, with selectors replaced by the names that they match.
 template <class Registered>
 std::vector<std::string> named_specs(const Registered& registry,
                                      const std::vector<std::string>& texts,
@@ -206,7 +206,7 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
 using optimizers::Family;
 namespace {
 
-// What a step costs, which decides the grids that a method can be given.
+// The cost class of a step, which decides the grids that a method can run on.
 std::string_view cost_class(const OptimizerEntry& entry) {
   if (entry.family == Family::nlopt_derivative_free) return "derivative-free";
   constexpr Index kUnlimited = std::numeric_limits<Index>::max();

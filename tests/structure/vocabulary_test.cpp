@@ -145,10 +145,21 @@ std::string avoidable(const std::string& text, const Phrase (&phrases)[N]) {
   return "";
 }
 
+// Whether a comment begins with a relative clause, as "What a run keeps." does.
+bool begins_with_a_relative(const std::string& line) {
+  const std::size_t begin = line.find_first_not_of(' ');
+  if (begin == std::string::npos || line.find('?') != std::string::npos) return false;
+  for (const char* word : {"// What ", "// Who ", "// Of "})
+    if (line.compare(begin, std::string_view(word).size(), word) == 0) return true;
+  return false;
+}
+
 TEST(Vocabulary, APhraseIsFoundAsAWordAndOutsideCode) {
   EXPECT_NE(avoidable(prose("Whoever runs it is told so."), kArchaic), "");
   EXPECT_NE(avoidable(prose("A door to FFTW."), kReplaced), "");
   EXPECT_EQ(avoidable(prose("Who wins?"), kArchaic), "");
+  EXPECT_TRUE(begins_with_a_relative("  // What a run keeps."));
+  EXPECT_FALSE(begins_with_a_relative("// What does a run keep?"));
   EXPECT_EQ(avoidable(prose("The whole; `--sheets`, \"doors\", outdoors, in-door."), kReplaced),
             "");
 }
@@ -200,6 +211,8 @@ TEST(Vocabulary, OfSourcesIsPlain) {
         if (extension == ".py" && line.find("None") != std::string::npos) continue;  // "is None"
         const std::string text = is_code ? prose(comment_and_strings(line)) : lower(line);
         EXPECT_EQ(avoidable(text, kArchaic), "") << entry.path() << ":" << number << ": " << line;
+        EXPECT_FALSE(is_code && begins_with_a_relative(line))
+            << entry.path() << ":" << number << ": begin with a noun: " << line;
       }
     }
 }
