@@ -182,7 +182,7 @@ TEST(Vocabulary, OfPagesIsPlain) {
 TEST(Vocabulary, OfLauncherAndScriptsIsPlain) {
   for (const char* file : {"isoline", "CMakeLists.txt", "CMakePresets.json", ".ci/run",
                            ".ci/compare", ".github/workflows/ci.yml", "CITATION.cff"}) {
-    const std::vector<std::string> lines = lines_of(text_of(root() / file));
+    const std::vector<std::string> lines = lines_of(file_text(root() / file));
     EXPECT_FALSE(lines.empty()) << file;
     for (const std::string& line : lines)
       EXPECT_EQ(avoidable(lower(line), kArchaic), "") << file << ": " << line;
@@ -190,7 +190,7 @@ TEST(Vocabulary, OfLauncherAndScriptsIsPlain) {
 }
 
 TEST(Vocabulary, TheGlossaryHasAtMostTwentyFiveTerms) {
-  const std::vector<std::string> lines = lines_of(text_of(root() / "docs/glossary.md"));
+  const std::vector<std::string> lines = lines_of(file_text(root() / "docs/glossary.md"));
   const auto rows =
       std::ranges::count_if(lines, [](const std::string& line) { return line.starts_with("| "); });
   EXPECT_GT(rows, 10);
