@@ -15,7 +15,8 @@ volatile std::sig_atomic_t heard = 0;
 bool is_guarded = false;
 
 void hear(int signal, siginfo_t* sent, void*) {
-  if (sent->si_code <= 0 && is_of_a_group(sent->si_pid)) return;  // by a process, and one of ours
+  if (sent->si_code <= 0 && is_of_a_group(sent->si_pid))
+    return;  // from a process of one of our groups
   if (heard == kStop) {
     signal_all_groups(SIGKILL);
     _exit(kInterrupted);

@@ -1,4 +1,4 @@
-// Who asks this process to end while it runs cells, or examines what they need.
+// Handles signals that end this process while it runs or checks cells.
 #pragma once
 
 #include <csignal>
@@ -7,10 +7,10 @@ namespace isoline::benchmarks {
 
 enum class Asked { nothing, finish, stop };
 
-// While one lives, who asks this process to end is heard in order. Ctrl-C asks to finish what runs;
-// a second one, a polite kill (of a scheduler, say) or a closed terminal ask to stop it; one more
-// ends this process and all its cells at once. Ctrl-Z stops the cells too, until they all go on.
-// A cell that asks its parent is not heard. Within another one it does nothing.
+// While an object lives, signals end this process in order. The first Ctrl-C finishes the running
+// cells; a second one, SIGTERM (from a scheduler, say) or a closed terminal stops them; one more
+// ends this process and all its cells at once. Ctrl-Z also stops the cells until they continue
+// together. Signals from a cell to its parent are ignored. Inside another object it does nothing.
 class InterruptGuard {
  public:
   InterruptGuard();

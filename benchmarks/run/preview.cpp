@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kProbeSeconds = 30;
 
-// Why an optimizer cannot be run on a problem, by its spec; empty: it can.
+// The reason why an optimizer cannot run on a problem, by its spec; empty if it can.
 using Reasons = std::map<std::string, std::string>;
 
 // The requests of one problem's setting, one for each optimizer's.

@@ -32,8 +32,8 @@ struct PreviewCounts {
   std::size_t cells = 0, cached = 0, inapplicable = 0, missing = 0;
 
   void add(const PreviewedCell& cell);
-  // Of those that are missing, one at a time: those that no earlier run tells of count as the mean
-  // of the others. None where no earlier run tells of any.
+  // For the missing cells, one at a time; cells without a prediction count as the mean of the
+  // others. Nothing if no earlier run predicts any.
   std::optional<double> seconds() const;
 
  private:

@@ -8,9 +8,8 @@
 
 namespace isoline::benchmarks {
 
-// Cells are weighed by what they are predicted to take, so that cheap ones promise nothing for dear
-// ones, and the weight of all others is the mean of these. What those that have ended took corrects
-// the predictions of the rest.
+// Cells are weighed by their predicted times; cells without a prediction get the mean. Finished
+// cells correct the predictions of the rest.
 class TimeLeft {
  public:
   void expect(std::optional<double> predicted_seconds) { expected_.add(predicted_seconds); }

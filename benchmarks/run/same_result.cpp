@@ -67,7 +67,7 @@ std::size_t common_points(const Curve& a, const Curve& b) {
   return static_cast<std::size_t>(std::min(before(a), before(b)));
 }
 
-// Of the spectra that both keep, at an iteration where both have theirs; then of the fields.
+// For spectra, at an iteration where both records have one; then for fields.
 std::string difference_in_what_is_kept(const Record& a, const Record& b) {
   if (a.spectrum && b.spectrum)
     for (std::size_t i = 0; i < a.spectrum->iterations.size(); ++i) {

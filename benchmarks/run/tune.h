@@ -23,11 +23,11 @@ struct Knob {
   Real standard = 1;
   Range range;
   bool is_whole = false;
-  optimizers::Tunable tunable;  // of whose option it is
+  optimizers::Tunable tunable;  // the tunable option of the method
 };
 
-// The knob of a method; nothing where there is nothing to tune. `given` are the options that the
-// pair has anyway.
+// The tunable option of a method; nothing if there is none. `given` are the options that the pair
+// has anyway.
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
                             const Component& problem, const OptionValues& given);
 // The same for an option that is named; UsageError where the method has no such number.
@@ -119,15 +119,15 @@ struct TunedOption {
 
 struct TuningResult {
   std::shared_ptr<const Json> rows;  // of a table isoline.rates/1
-  std::vector<TunedOption> tuned;    // the same, one a row
+  std::vector<TunedOption> tuned;    // the same, one per row
   std::size_t inapplicable = 0;      // pairs without a row
   Outcome outcome;                   // runs and seconds are those of all rounds
 };
 
-// A row tells the values, their scores, the expected least loss (or error in x) of the best of b of
-// them drawn at random, for b = 1 to all, whether the best still stands at an edge, and the budget
-// of work where it is not that of the first pair. Pairs that are inapplicable have none; where
-// every value failed the one nearest to the default stays.
+// A row has the values, their scores, the expected least loss (or error in x) of the best of b
+// randomly sampled ones, for b = 1 to all, whether the best is at an edge, and the budget of work
+// if it differs from that of the first pair. Inapplicable pairs have none; if every value failed,
+// the one nearest to the default is used.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options);
 
