@@ -55,7 +55,7 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   if (returned) *returned = theta;
 }
 
-// Of other sizes the harness would read what is not there.
+// With other sizes the harness would read beyond the array.
 void require_size(const Vector& theta, const Meter& meter) {
   if (theta.size() == meter.unknowns()) return;
   throw std::runtime_error(fmt::format(

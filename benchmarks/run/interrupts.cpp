@@ -1,4 +1,4 @@
-// What a handler calls is safe there: a flag, a table of numbers and plain calls of the system.
+// Handlers call only safe functions: a flag, a table of numbers and plain system calls.
 #include "benchmarks/run/interrupts.h"
 
 #include <unistd.h>
@@ -30,7 +30,7 @@ void stop_with_cells(int) {
   signal_all_groups(SIGCONT);
 }
 
-// What is ignored stays so: nohup, and a shell that runs in the background, had it so.
+// An ignored signal stays ignored: nohup and background shells set this.
 void handle(int signal, const struct sigaction& action, struct sigaction& old) {
   sigaction(signal, nullptr, &old);
   if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);

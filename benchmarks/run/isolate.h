@@ -66,8 +66,8 @@ struct Returned {
   }
 };
 
-// What a child process writes to its standard output and standard error: caught, so that no
-// terminal gets it, and kept as far as it is not too much.
+// Captures the standard output and standard error of a child process, so that no terminal gets it,
+// and keeps a bounded part.
 class CapturedOutput {
  public:
   static constexpr std::size_t kMost = std::size_t{64} << 10;  // bytes kept, from the first on
@@ -113,12 +113,12 @@ class Worker {
   void ask_to_stop();
   void
   interrupt();  // tells it, waits a little, ends it: what was not done by then is `interrupted`
-  // Of a child that has ended: it came to something else after all.
+  // For a child that has ended: replaces its result.
   void dispute(Status status, const std::string& message) { conclude(status, message); }
   const Trace& trace() const { return *trace_; }
   const CapturedOutput& output() const { return output_; }
-  // What the child said that it returned, to be judged by another process, which inherits the
-  // memory where it is started after this worker was made.
+  // The point that the child returned, for verification by another process, which inherits the
+  // memory if it starts after this worker was made.
   void keep_returned(std::span<const double> theta) { returned_->keep(theta); }  // by the child
   const double* returned() const { return returned_->theta; }
   Index returned_size() const;                            // 0: nothing
@@ -140,7 +140,7 @@ class Worker {
 };
 
 // The result of work in another process, such as metadata, audits and checks that may crash: its
-// text, or the reason why there is none.
+// text, or the reason why it is missing.
 struct IsolatedText {
   std::optional<std::string> text;
   std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …

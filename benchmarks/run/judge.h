@@ -18,13 +18,13 @@
 
 namespace isoline::benchmarks {
 
-// What a run is judged by, as a trace has it.
+// The values by which a run is judged, from its trace.
 struct Judged {
   double loss = 0, x_error = 0;
   double minimum = 0, scale = 0, x_scale = 0, x_floor = 0;
 };
 
-// What it is judged by as the cell itself wrote it down.
+// The same values as the cell itself recorded them.
 Judged told_by(const Trace& trace);
 
 // The first of these numbers in which they differ by more than rounding, in words; "" where none
@@ -82,7 +82,7 @@ class Judges {
   std::list<Judge> judges_;        // most recently used first
 };
 
-// What a judge does in its own process.
+// The work of a verifier in its own process.
 
 // Messages of the socket between a run and its judge.
 struct PointToJudge {

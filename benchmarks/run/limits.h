@@ -17,7 +17,7 @@
 namespace isoline::benchmarks {
 
 // Processor time is that of the complete group, divided by the requested threads. Wall time, five
-// times that, is for those who wait. Other load on the machine affects only the second limit.
+// times that, is for the user who waits. Other load on the machine affects only the second limit.
 struct Limits {
   double startup_seconds = 30;   // of processor time, from the fork to the first oracle call
   double hard_seconds = 60;      // of processor time, from the first oracle call
@@ -28,8 +28,8 @@ struct Limits {
   static constexpr double kWallFactor = 5;
 };
 
-// Of one request: twice its soft time limit, where it has one; else what its suite says; else ten
-// times what its work takes, where that is more than the standard.
+// The limit of one request: twice its soft time limit, if it has one; else its suite's; else ten
+// times its predicted time, if that is more than the standard.
 Limits limits_of(const Request& request, const Limits& standard, double declared_seconds = 0);
 
 // The time for the nominal cost of cells, within their own limits: each unit costs a forward solve,

@@ -67,7 +67,7 @@ std::size_t held_cells(const std::filesystem::path& folder) {
   return count;
 }
 
-// What is left of a plan, looked up in the store, and looked up again where others work on it too.
+// The remaining cells of a plan, looked up in the store, and again while other runs work on it.
 
 Pending::Pending(const std::vector<Request>& requests, Store& store, const RunOptions& options,
                  Outcome& outcome)

@@ -30,7 +30,7 @@ struct RecordOutline {
 std::vector<RecordOutline> record_outlines(const std::vector<std::filesystem::path>& folders,
                                            const Listener& listener = {});
 
-// What cells took in earlier runs of any build.
+// The times of cells in earlier runs of any build.
 class EarlierTimes {
  public:
   EarlierTimes() = default;

@@ -1,4 +1,4 @@
-// What a plan would do before it does it: which cells are cached, which cannot exist and why, and
+// A preview of a plan: which cells are cached, which cannot exist and why, and
 // how long the rest may take.
 #pragma once
 

@@ -32,8 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is marked: how many files a process may lock. Linux has not looked at this limit since 2.4,
-// and every process inherits it.
+// The limit that carries the mark: the number of file locks. Linux has ignored this limit
+// since 2.4, and every process inherits it.
 constexpr auto kMarked = static_cast<__rlimit_resource>(RLIMIT_LOCKS);
 constexpr std::string_view kMarkedLine = "Max file locks";
 

@@ -56,16 +56,16 @@ class HeldSignals {
   sigset_t before_;
 };
 
-// What every isolated child does with itself, and what its end by a signal means.
+// The setup of every isolated child, and the meaning of its end by a signal.
 
-// Of the calling process, over what it has already: beyond that an allocation throws.
+// Limits the memory of this process beyond its present use: a larger allocation throws.
 void limit_memory(std::int64_t bytes);
 
 [[noreturn]] void leave();  // with its output written, and nothing else done
 
 std::string signal_name(int signal);  // "signal 11 (Segmentation fault)"
 
-// Of a child that left no answer: "it was ended by signal …", "it left …".
+// The end of a child without an answer: "signal … ended it", "it exited …".
 std::string end_of_process(int wait_status);
 
 class ProcessGroup {

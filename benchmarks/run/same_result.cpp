@@ -22,7 +22,7 @@ std::string against(const std::string& place, const Json& a, const Json& b) {
   return fmt::format("{}: {} against {}", place, shown(a), shown(b));
 }
 
-// What stands at a place of either, or that nothing does.
+// The value at a place of either record, or a note that it is missing.
 Json value_at(const Json& json, const Json::json_pointer& place) {
   return json.contains(place) ? json.at(place) : Json("nothing");
 }

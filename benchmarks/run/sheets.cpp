@@ -106,12 +106,12 @@ std::vector<Oracle> measured_ones(OracleSet offered) {
   return products;
 }
 
-// Of the processor; where another process computes, of the clock on the wall.
+// Processor time; wall time if another process computes.
 double seconds_by(bool is_elsewhere) {
   return is_elsewhere ? 1e-9 * static_cast<double>(monotonic_nanoseconds()) : processor_seconds();
 }
 
-// What one call takes: of the processor, where it is long enough to be interrupted; else by its
+// The time of one call: processor time if it is long enough to be interrupted, otherwise by its
 // time-stamp counter, which costs little beside a microsecond.
 double seconds_of(const Problem& problem, double expected, const std::function<void()>& call) {
   if (expected > kClockSeconds && !problem.is_elsewhere()) {
@@ -130,7 +130,7 @@ Real at_share(std::vector<Real>& values, Real share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-// Of one oracle: what is expected of it and of the forward solve before it, in seconds.
+// The expected times of one oracle and of the forward solve before it, in seconds.
 struct Question {
   Oracle oracle;
   double forward, expected;
@@ -382,7 +382,7 @@ void add_words_of(const Foreign& foreign, Sheet& sheet) {
   if (!foreign.note.empty()) sheet.note = foreign.note;
 }
 
-// What the registry knows of a component, without making one.
+// The registry's view of a component, without creating one.
 template <class Entry>
 Sheet described(const char* kind, const Entry& entry, const Component& component) {
   Sheet sheet{.kind = kind,

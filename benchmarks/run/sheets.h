@@ -33,7 +33,7 @@ MeasuredPrices measure_prices(const Problem& problem, const std::string& build);
 std::string prices_build(const Component& problem);
 bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& build);
 
-// What the registry knows of a component: nothing of it is made, so nothing can go wrong.
+// The registry's view of a component: nothing is created, so nothing can fail.
 Sheet described_problem(const Catalog& catalog, const Component& problem);
 Sheet described_optimizer(const Catalog& catalog, const Component& optimizer);
 

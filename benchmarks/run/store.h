@@ -31,7 +31,8 @@ class Store {
   std::optional<Record> find(const Request& request);
   static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
 
-  // What this build calls its record of the request, and whether there is one, of whatever kind.
+  // The file name of this build's record of the request, and whether a file of any kind has this
+  // name.
   static std::string name_of(const Request& request);
   bool has(const Request& request) const;
 
@@ -41,7 +42,7 @@ class Store {
   // overwritten, with a remark that names it and the reason.
   void set_aside(const std::filesystem::path& path, const std::string& reason);
 
-  // What its user should know: a sentence each.
+  // Messages for the user, one sentence each.
   void remark(std::string sentence) { remarks_.push_back(std::move(sentence)); }
   const std::vector<std::string>& remarks() const { return remarks_; }
 
@@ -65,7 +66,7 @@ class Store {
   std::vector<std::string> remarks_;
 };
 
-// What a folder holds of a request, whichever build wrote it.
+// The record of a request in a folder, of any build.
 class RecordsOfAnyBuild {
  public:
   explicit RecordsOfAnyBuild(const std::filesystem::path& folder);  // which need not be there

@@ -15,8 +15,8 @@
 
 namespace isoline::benchmarks {
 
-// What tuning sets for a pair of problem and optimizer: the method's tunable option, or that of the
-// gradient rule inside its network-optimizer, where the problem has a network to train.
+// The option that is tuned for a pair of problem and optimizer: the method's tunable option, or
+// that of the gradient rule inside its network-optimizer, if the problem has a network to train.
 struct Knob {
   std::string option;
   std::string rule;  // the name of that gradient rule; empty: the option is the method's own
@@ -26,7 +26,7 @@ struct Knob {
   optimizers::Tunable tunable;  // the tunable option of the method
 };
 
-// The tunable option of a method; nothing if there is none. `given` are the options that the pair
+// The tunable option of a method, if it has one. `given` are the options that the pair
 // has anyway.
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
                             const Component& problem, const OptionValues& given);
@@ -62,7 +62,7 @@ std::vector<Real> values_of(const Knob& knob, const GivenGrid& grid, Real unit);
 
 Real three_digits(Real value);  // enough of a rate, and they read well
 
-// What a value of a tuned option came to, and which of several is best.
+// The score of a value of a tuned option, and the choice of the best.
 
 // The median work to τ = 1e-6 of what the problem's user wants, then the median of what was left at
 // the end, the loss or the error in x; less is better.
@@ -75,8 +75,8 @@ struct TuningScore {
   }
 };
 
-// Of the runs of one value, a seed each. One that diverged or failed leaves neither number.
-// Learning problems are judged by what is left on their validation alone.
+// From the runs of one value, one per seed. A diverged or failed run gives neither number. Learning
+// problems are judged by the remainder on their validation samples only.
 TuningScore score_of(const std::vector<Record>& runs);
 
 // Which of the values is best. Ties go to the default, or to what is nearest to it on a logarithmic
