@@ -17,7 +17,7 @@
 namespace isoline::benchmarks {
 
 // Processor time is that of the complete group, divided by the requested threads. Wall time, five
-// times that, is for the user who waits. Other load on the machine affects only the second limit.
+// times that, protects waiting users. Other load on the machine affects only the second limit.
 struct Limits {
   double startup_seconds = 30;   // of processor time, from the fork to the first oracle call
   double hard_seconds = 60;      // of processor time, from the first oracle call

@@ -160,11 +160,11 @@ std::string figure_name(const ComparedFigure& each) {
     case Quantity::path:
       return "mean loss of the path";
     case Quantity::unverified:
-      return "targets that the last point misses";
+      return "targets missed by the last point";
     case Quantity::work:
       return "work to " + figure(rung(each.rung));
     case Quantity::work_to_x:
-      return "work to x within " + figure(rung(each.rung));
+      return "work to an error in x of " + figure(rung(each.rung));
   }
   return "";
 }

@@ -240,10 +240,11 @@ std::string every_cell(const Comparison& c) {
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
   std::string marks = fmt::format(
-      "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * least of "
+      "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * "
+      "least of "
       "its problem, ✗ not reached by half of the runs, n/a: not applicable",
       counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
-  if (c.is_any_timed_together) marks += ", ≈ timed beside other runs";
+  if (c.is_any_timed_together) marks += ", ≈ timed while other runs used the machine";
   return text + "\n" + wrapped(marks + ".");
 }
 

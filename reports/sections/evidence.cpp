@@ -70,10 +70,10 @@ std::string priced_unit(const Comparison& c) {
   const auto measured = static_cast<std::size_t>(std::ranges::count_if(
       c.problems, [](const ProblemAxis& problem) { return problem.prices.are_measured(); }));
   const std::size_t all = c.problems.size();
-  if (measured == all) return "equivalent forward solves at measured prices";
-  if (measured == 0) return "forward solves at declared prices (no measured ones are used)";
+  if (measured == all) return "equivalent forward solves at measured cost";
+  if (measured == 0) return "forward solves at nominal cost (no measured ones are used)";
   return fmt::format(
-      "equivalent forward solves, at declared prices on the {} of {} where none was measured or a "
+      "equivalent forward solves, at nominal cost on the {} of {} where none was measured or a "
       "call is too short to be",
       all - measured, counted_settings(c, all));
 }
@@ -85,8 +85,8 @@ std::string denominators(const Comparison& c, std::size_t shown) {
     failed += c.optimizers[s].failed;
   }
   return fmt::format(
-      "the first {} of {} ranked methods; n = {}, given to all of them; {} of {} of "
-      "their runs failed",
+      "the first {} of {} ranked methods; n = {}, common to all of them; {} of {} of their runs "
+      "failed",
       shown, c.order.methods.size(), counted_settings(c, c.order.settings.size()), failed, runs);
 }
 
@@ -156,9 +156,9 @@ Section statistics_section(const Comparison& c) {
     section.readings.push_back({"What cannot be concluded", std::move(sentence)});
   if (c.runs.empty()) return section;
   section.lead = fmt::format(
-      "Orders of methods, ranks and tests among them are by {}{}. What runs cost is in {}; the raw "
-      "counts stand under Oracle calls and Prices.",
-      counted_name(c), c.yardstick.by == Measure::work ? ", which any machine repeats" : "",
+      "Rankings and tests use {}{}. Costs are in {}; the raw counts are in Oracle calls and "
+      "Prices.",
+      counted_name(c), c.yardstick.by == Measure::work ? ", which is equal on every machine" : "",
       cost_unit(c));
   constexpr std::size_t kTables = std::size(kStatisticTables), kPlots = std::size(kStatisticPlots);
   section.tables.resize(kTables);
@@ -389,9 +389,9 @@ void name_survived_nulls(Judgement& out, Measured from) {
     from.null = null;
     return take(planted, from) && weakest_verdict(planted, from.claim) <= out.verdict;
   };
-  if (is_survived(Null::untrained)) out.survives.emplace_back("networks that were never trained");
+  if (is_survived(Null::untrained)) out.survives.emplace_back("untrained networks");
   if (has_rivals(from.claim) && is_survived(Null::twins))
-    out.survives.emplace_back("one method under all its names");
+    out.survives.emplace_back("one method under several names");
 }
 
 // The length that the claim speaks of.
@@ -422,10 +422,9 @@ void measure_in(Judgement& out, const Measured& from) {
   if (!out.why.empty()) return;
   if (from.iterations() < out.needs) {
     out.verdict = Verdict::too_short;
-    out.why =
-        fmt::format("{} of the {} iterations that it speaks of", from.iterations(), out.needs);
+    out.why = fmt::format("{} of the {} iterations that it requires", from.iterations(), out.needs);
   } else if (!is_known) {
-    out.why = "the runs have no such figure";
+    out.why = "the runs have no such value";
   } else {
     out.verdict = weakest_verdict(out, claim);
     if (is_supported(out.verdict)) name_survived_nulls(out, from);

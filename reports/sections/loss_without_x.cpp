@@ -14,7 +14,7 @@
 namespace isoline::reports {
 namespace {
 
-constexpr const char* kNeitherTold = "No result knows both the least loss and the solution.";
+constexpr const char* kNeitherTold = "No result has both the least loss and the solution.";
 
 // What the median run of a pair came to.
 struct Outcome {
@@ -106,7 +106,8 @@ std::string near_name(const Comparison& c) {
 std::string caption_of(const Comparison& c) {
   const std::string_view tau = c.yardstick.tightest().name;
   return fmt::format(
-      "Medians over seeds, where both the least loss and the solution are known. Loss: the relative loss gap is at most {}. x: the error is at most {} of the solution's norm, or the "
+      "Medians over seeds, where both the least loss and the solution are known. Loss: the "
+      "relative loss gap is at most {}. x: the error is at most {} of the solution's norm, or the "
       "floor that the data set. Near: at most {}, the square root, which is what a loss at {} "
       "leaves of x where J is well conditioned: a run whose problem wants a loss stops at its "
       "target in loss, which may be short of x, but not of that. In brackets the condition number "
