@@ -169,7 +169,7 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
   html += row("asks for", html_text(counted_oracles(c, s)));
   if (!axis.privileges.empty())
     html += row("sees", "<span class=privilege>" + list_html(axis.privileges) + "</span>");
-  html += list_row("best on", deeds.won) + list_row("does not solve", deeds.unsolved) +
+  html += list_row("wins", deeds.won) + list_row("does not solve", deeds.unsolved) +
           list_row("failed on", deeds.failed) + list_row("not applicable to", deeds.inapplicable);
   return html + "</dl>" + (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) +
          "</noscript></article>\n";

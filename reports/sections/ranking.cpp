@@ -327,7 +327,7 @@ Table ranking_table(const Comparison& c) {
           "reach it. Failed: errors, crashes, time or memory limits, on all its problems.{}",
           counted(c.order.settings.size(), common_noun(c)), common_noun(c), counted_name(c),
           counted_name(c), legend.empty() ? "" : " " + legend),
-      .columns = {"", "optimizer", "solved", "best on", "× least", "runs", "failed"},
+      .columns = {"", "optimizer", "solved", "wins", "median slowdown", "runs", "failed"},
       .align = "rlrrrrrrr",
       .names = 2};
   for (std::size_t t = kTightest; t-- > 0;)
@@ -468,7 +468,8 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
         fmt::format("With {} no interval over seeds reaches 95 %: ranges are shown instead.",
                     counted(c.seeds.size(), "seed")));
   all.push_back(
-      "These results do not extend to other kinds of problems: the problems were chosen, not sampled.");
+      "These results do not extend to other kinds of problems: the problems were chosen, not "
+      "sampled.");
   return all;
 }
 
