@@ -32,7 +32,7 @@ std::shared_ptr<const Value> shared_value(const std::string& key, const Value& v
   return kept;
 }
 
-// Of the first kept point at which a column is at most the goal.
+// The values of the first kept point at which a column is at most the goal.
 Real work_until(const Curve& curve, const std::vector<Real>& column, Real goal) {
   for (std::size_t i = 0; i < column.size(); ++i)
     if (std::isfinite(column[i]) && column[i] <= goal) return Real(curve.work[i]);

@@ -57,7 +57,7 @@ Difference difference_of(const ComparedCell& cell, const ComparedFigure& each, R
   return difference;
 }
 
-// Of each figure that both have: it, before; its values before and after.
+// For each value that both have: its name; its values before and after.
 template <class Visit>
 void visit_common_figures(const ComparedCell& a, const ComparedCell& b, Visit visit) {
   const auto place = [](const ComparedFigure& each) { return std::pair(each.quantity, each.rung); };

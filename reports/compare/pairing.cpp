@@ -1,4 +1,5 @@
-// Pairs cells by what identifies them best first, and words what they were given or built of.
+// Pairs cells by their identity, the strongest first, and describes differences of options and
+// builds.
 #include "reports/compare/pairing.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ bool names(const std::string& pattern, const Given& given) {
 
 }  // namespace
 
-// Of the wildcards of a shell only the star counts: brackets belong to specifications.
+// The star is the only wildcard: brackets belong to specifications.
 bool matches(const std::string& pattern, const std::string& text) {
   std::string escaped;
   for (const char letter : pattern) {
@@ -147,7 +148,7 @@ bool is_set_in(const std::string& spec, const std::string& option) {
          parsed.options.end();
 }
 
-// An option of no text says what one that there was not yet said.
+// An empty option equals one that did not exist yet.
 bool says_nothing(const OptionValue* option) {
   return option == nullptr || option_text(*option).empty();
 }

@@ -88,8 +88,8 @@ Points curve_of(const Run& run) {
   return points;
 }
 
-// Where targets were first met: exact where the record tells its hits, which know more than the
-// curve keeps. Of a hit the target is told, τ s: the loss was no more.
+// The first points at targets: exact if the record has hits, which are finer than the
+// curve. A hit gives the target only, τ s: the loss was at most that.
 Points targets_of(const Run& run, const Points& curve) {
   std::map<std::int64_t, Real> met;  // by evaluations
   const auto meet = [&](std::int64_t evaluations, Real loss) {
@@ -261,7 +261,7 @@ std::string head() {
   return names + ",wall_seconds,processor_seconds,loss,x_error,gradient_norm,step_norm\r\n";
 }
 
-// What all rows of a run begin with.
+// The beginning of all rows of a run.
 std::string who_of(const Record& record) {
   const Request& request = record.request;
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", field_of(request.problem.spec),

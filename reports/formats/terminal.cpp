@@ -319,7 +319,7 @@ std::string paragraph(const Table& table, std::size_t row) {
   return text;
 }
 
-// What its columns mean: of those that were shown.
+// The meaning of its columns, for those that are shown.
 std::string meanings_text(const Table& table, std::size_t shown) {
   std::string text;
   for (std::size_t i = 1; i < std::min(shown, table.meanings.size()); ++i)
@@ -353,7 +353,7 @@ std::string table_text(const Table& table) {
   return table_text(table, all);
 }
 
-// The first of its tables: of who is not ranked the sentences below tell.
+// The first of its tables; the sentences below name methods that are not ranked.
 std::string standings(const Section& section) { return "\n" + table_text(section.tables[0]); }
 
 }  // namespace

@@ -27,7 +27,7 @@ function medianInterval(ascending) {
   return [ascending[first], ascending[n - 1 - first]];
 }
 
-// Problems of one name are one: the median over those settings that both were given.
+// Problems of one name count as one: the median over the settings that both were run on.
 const pairOf = (a, b) => pairOfAll([[a, b]]);
 
 // Of several pairs the median over their settings too: of all methods in two results.

@@ -17,8 +17,8 @@ bool has_abscissa(const Evidence& evidence) {
 
 PlotSeries series_of(std::string name) { return {{}, std::move(name), {}, {}, {}, {}}; }
 
-// Of a figure that is read at one point what it should be there: of a ratio where the first of two
-// terms should be, seen from the second.
+// The expected value of a quantity that is read at one point: for a ratio, the place of the first
+// of two terms relative to the second.
 std::vector<PlotSeries> goals_of(const Evidence& evidence) {
   const bool is_ratio = evidence.kind == "ratio";
   const bool is_height = is_ratio || evidence.kind == "value" || evidence.kind == "greatest";

@@ -78,7 +78,7 @@ Real least_coordinate(const Rows& x, std::size_t row) {
   return least;
 }
 
-// Of the first step: its component along the diagonal toward the origin, √2 at most; or its angle
+// For the first step: its component along the diagonal toward the origin, at most √2; or its angle
 // with the straight way to 0, in degrees.
 Real first_step(const Rows& path, bool is_angle) {
   const std::vector<Real>& from = path.at(0);
@@ -119,8 +119,8 @@ Real slowdown(const Curve& curve, std::size_t index) {
   return last > 0 ? first / last : kNever;
 }
 
-// What was spent of that by which the place is named, when the column first was no more than a
-// bound; infinite where it was not by then.
+// The cost, in the unit of the place, when the column was first at most a bound; infinite if it
+// never was.
 Real spent_until(const Record& record, const Place& place) {
   const Curve& curve = record.curve;
   const auto& [name, bound] = bound_of(place.column);

@@ -14,7 +14,7 @@
 namespace isoline::reports {
 namespace {
 
-// What all runs of an optimizer that reached the tightest tolerance had asked by then.
+// The calls of all runs of an optimizer that reached the tightest tolerance, until then.
 struct Calls {
   std::array<Real, kOracles> counts{};
   Real work = 0, cost = 0;
@@ -64,7 +64,7 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
   return cell;
 }
 
-// What the prices that are used amount to.
+// A summary of the costs that are used.
 struct PriceSummary {
   std::vector<Real> pullbacks;
   std::size_t measured = 0, untold = 0;
@@ -246,7 +246,7 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
   return attempts;
 }
 
-// The raw counts of the run in the middle of those that got there, for who points at its cost.
+// The raw counts of the median successful run, as a tooltip of its cost.
 TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   std::vector<std::pair<Real, std::size_t>> reached;
   for (const std::size_t index : cell.runs)
@@ -263,7 +263,7 @@ TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   return shown;
 }
 
-// What restarts cost on one cell; `rescued` counts cells that only restarts solve.
+// The cost of restarts on one cell; `rescued` counts cells that only restarts solve.
 TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::size_t& rescued) {
   const Cell& cell = c.cell(p, s);
   if (!cell.is_measured()) return cell.planned == 0 ? "" : cell.runs.empty() ? "missing" : "n/a";

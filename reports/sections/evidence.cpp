@@ -109,7 +109,7 @@ void Leading::offer(Real mine, const std::string& label) {
 }
 
 std::string Leading::names() const {
-  if (count == 0) return "nobody";
+  if (count == 0) return "no method";
   return count == 1 ? name : fmt::format("{} and {} more", name, count - 1);
 }
 
@@ -125,7 +125,7 @@ std::string highest_at(const Plot& plot, Real x) {
     }
     if (y == best && y > 0) names.push_back(line.name);
   }
-  if (names.empty()) return "nobody";
+  if (names.empty()) return "no method";
   return fmt::format("{}{} ({})", names[0],
                      names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "",
                      percent(best));
@@ -182,8 +182,7 @@ namespace {
 
 constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
 
-// What is drawn of a column: itself, what it is the shape of, or nothing where it is of a whole
-// run.
+// The plotted part of a column: itself, its shape, or nothing if it belongs to a complete run.
 std::string curve_of(const std::string& column) {
   constexpr std::array<const char*, 3> kWhole = {"milliseconds", "alignment", "turn"};
   if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
@@ -382,7 +381,7 @@ void read_otherwise(Judgement& out, Measured from) {
     out.verdict = joint_verdict(out.verdict, other.verdict);
 }
 
-// What else would have come to the same verdict: then the data cannot turn it.
+// Other sources of the same verdict: then the data cannot refute the claim.
 void name_survived_nulls(Judgement& out, Measured from) {
   const auto is_survived = [&](Null null) {
     Judgement planted = out;

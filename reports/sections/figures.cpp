@@ -174,7 +174,7 @@ Figure decades_figure(const Comparison& c, std::size_t p) {
   return out;
 }
 
-// What was observed of a sample, what each method inferred, and what was to be found.
+// The observation of a sample, the inferred x of each method, and the truth.
 Figure picture_figure(const Comparison& c, std::size_t p) {
   Figure out;
   FieldFrames last;
@@ -198,7 +198,7 @@ Figure picture_figure(const Comparison& c, std::size_t p) {
   return out;
 }
 
-// Of one problem; empty where no run has what is asked for.
+// A figure of one problem; empty if no run has the requested data.
 Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
   if (panel.kind == "curve" || panel.kind == "series") return curve_figure(c, p, panel.quantity);
   if (panel.kind == "scatter") return scatter_figure(c, p);

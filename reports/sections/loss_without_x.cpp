@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kNeitherTold = "No result has both the least loss and the solution.";
 
-// What the median run of a pair came to.
+// The result of the median run of a pair.
 struct Outcome {
   bool is_loss_reached = false, is_x_found = false;
   bool is_x_near = false;     // to √τ: what a loss at τ leaves of x where J is well conditioned
@@ -47,7 +47,7 @@ std::optional<Outcome> outcome_of(const Comparison& c, std::size_t p, std::size_
                   }).median};
 }
 
-// Of all methods on a setting, or of all settings given to a method.
+// Counts over all methods on a setting, or over all settings of a method.
 struct Tally {
   std::size_t n = 0, reached = 0, found = 0, without = 0, far = 0;
 

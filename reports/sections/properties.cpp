@@ -76,7 +76,7 @@ std::string flags_cell(const AuditedOptimizer& audited) { return joined(audited.
 
 struct Property {
   const char* heading;
-  const char* meaning;  // for a reader who meets it first
+  const char* meaning;  // the explanation for a new reader
   std::string (*cell)(const AuditedOptimizer&);
 };
 
@@ -145,7 +145,7 @@ Section properties_section(const Audits& all) {
   return section;
 }
 
-// What an audit says, in one sentence a property, for a reader who meets these properties first.
+// The results of an audit, one sentence per property, for a new reader.
 
 namespace {
 

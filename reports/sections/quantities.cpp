@@ -61,7 +61,7 @@ std::vector<Real> ratios(const std::vector<Real>& m) {
   return all;
 }
 
-// Of the first, from 1; those equal to it share the places that they take.
+// The place of the first term, from 1; terms equal to it share their places.
 Real position(const std::vector<Real>& m) {
   const auto nearer = std::ranges::count_if(m, [&](Real other) { return other < m[0]; });
   const auto equal = std::ranges::count(m, m[0]) - 1;
@@ -81,7 +81,7 @@ Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
   return chosen.value_or(Chosen{0, kNever});
 }
 
-// Of seeds, of the alternative that counts: whose figure reaches the term's abscissa.
+// The seeds of the alternative that counts, whose values reach the term's abscissa.
 Real share(const Term& term, const std::vector<std::size_t>& seeds) {
   std::optional<Real> chosen;
   for (const auto& alternative : term.figures) {
@@ -145,7 +145,7 @@ std::vector<Real> values_of_seeds(const std::string& kind, const std::vector<Ter
   return values;
 }
 
-// Of Student's t with so many degrees of freedom, two-sided 95 %.
+// The quantile of Student's t with so many degrees of freedom, two-sided 95 %.
 Real student_quantile(std::size_t freedom) {
   constexpr std::array kQuantiles = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365,
                                      2.306,  2.262, 2.228, 2.201, 2.179, 2.160, 2.145,

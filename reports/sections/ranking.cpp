@@ -162,7 +162,7 @@ std::string not_run(const Comparison& c) {
   return text + ".";
 }
 
-// Of few problems no order over them is reported, but one on each.
+// With few problems no ranking over them is reported, but one on each.
 std::vector<std::string> problem_sentences(const Comparison& c) {
   constexpr std::size_t kFew = 4;
   std::vector<std::string> all;
@@ -171,7 +171,7 @@ std::vector<std::string> problem_sentences(const Comparison& c) {
   return all;
 }
 
-// Of the settings that all ranked methods were run on, those that this one was run on.
+// The settings common to all ranked methods that this one was run on.
 std::vector<std::size_t> shared_with(const Comparison& c, std::size_t optimizer) {
   std::vector<std::size_t> settings;
   for (const std::size_t p : c.order.settings)

@@ -1,5 +1,5 @@
-// The singular values of J along runs that kept them: who sees which part of the spectrum, and how
-// learning changes the conditioning.
+// The singular values of J along runs that kept them, and the change of the conditioning by
+// learning.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -54,7 +54,7 @@ Rates rates_of(const Comparison& c, std::size_t s) {
   return rates;
 }
 
-// Of a row: 1 the value of least work, 0 one that takes 64 times as much, or never gets there.
+// The score of a row: 1 the value of least work, 0 one with at least 64 times as much, or unsolved.
 std::vector<Real> scores_of(const TunedRate& rate) {
   const Real least = rate.work.empty() ? kNever : *std::ranges::min_element(rate.work);
   std::vector<Real> scores;
@@ -151,7 +151,7 @@ Plot best_of_plot(const Comparison& c, const std::vector<Rates>& all) {
   return plot;
 }
 
-// What is open about rates that were tuned.
+// Open questions about rates that were tuned.
 std::string edges_text(const std::vector<Rates>& all) {
   std::size_t rows = 0, edges = 0, never = 0;
   for (const Rates& rates : all) {
@@ -222,7 +222,8 @@ Section tuning_section(const Comparison& c) {
                  c.runs, [](const Run& run) { return !run.record->request.rates.empty(); })) {
     section.readings.push_back(
         {"",
-         "These runs used tables of rates, but the results do not contain the values that were tried."});
+         "These runs used tables of rates, but the results do not contain the values that were "
+         "tried."});
   }
   if (Table both = tuned_and_defaults_table(c); !both.rows.empty())
     section.tables.push_back(std::move(both));
