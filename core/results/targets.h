@@ -19,7 +19,7 @@
 namespace isoline::results {
 
 enum class Measure {
-  work,        // oracle calls at declared prices, in forward solves: any machine repeats it
+  work,        // oracle calls at nominal cost, in forward solves, equal on every machine
   cost,        // the same calls at the prices measured on each problem
   iterations,  // steps
   time,        // wall seconds

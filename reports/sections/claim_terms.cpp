@@ -223,8 +223,8 @@ std::string column_words(const std::string& column) {
 std::string tau_name(const Comparison& c) { return std::string(c.yardstick.tightest().name); }
 
 std::string_view counted_name(Measure by) {
-  constexpr std::array<std::string_view, kMeasures.size()> kNames = {
-      "declared work", "cost at measured prices", "iterations", "wall time"};
+  constexpr std::array<std::string_view, kMeasures.size()> kNames = {"work", "measured cost",
+                                                                     "iterations", "wall time"};
   return kNames[static_cast<std::size_t>(by)];
 }
 std::string_view counted_name(const Comparison& c) { return counted_name(c.yardstick.by); }

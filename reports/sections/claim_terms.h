@@ -52,13 +52,13 @@ std::string column_words(const std::string& column);  // "error in x"
 
 std::string tau_name(const Comparison& comparison);  // "1e-6", the headline's
 
-// "declared work", "cost at measured prices", "iterations", "wall time".
+// "work", "measured cost", "iterations", "wall time".
 std::string_view counted_name(Measure by);
 std::string_view counted_name(const Comparison& comparison);
 std::string_view unit_name(Measure by);  // "forward solves", …, "ms"
 std::string_view unit_name(const Comparison& comparison);
 
-// "declared work to 1e-6, in forward solves", "iterations to 1e-6".
+// "work to 1e-6, in forward solves", "iterations to 1e-6".
 std::string counted_to_tau(const Comparison& comparison);
 
 // An amount as tables write it, ✗ where infinite: times are given in seconds and told in ms.

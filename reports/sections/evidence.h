@@ -1,6 +1,6 @@
-// The statistics of a report as tables and plots. Orders of optimizers are by what its yardstick
-// counts: declared work, unless asked otherwise, which any machine repeats. What runs cost is then
-// in equivalent forward solves, with raw counts beside.
+// The statistics of a report as tables and plots. Rankings use the measure of the report: work, by
+// default, which is equal on every machine. Costs of runs are then in equivalent forward solves,
+// with raw counts beside.
 #pragma once
 
 #include <map>
@@ -67,8 +67,9 @@ TableCell share_cell(std::size_t part, std::size_t whole);  // "33 %"
 // measure.
 Measure cost_measure(const Comparison& comparison);
 std::string cost_unit(const Comparison& comparison);
-std::string priced_unit(const Comparison& comparison);  // "forward solves at measured prices", …
-Real in_units(Measure by, Real value);                  // as tables and axes have it: times in ms
+std::string priced_unit(
+    const Comparison& comparison);      // "equivalent forward solves at measured cost", …
+Real in_units(Measure by, Real value);  // as tables and axes have it: times in ms
 // "16 to 23 settings; 2 of 345 runs failed", of the first optimizers.
 std::string denominators(const Comparison& comparison, std::size_t shown);
 // 10^(i / 8) from 1, of times from a microsecond, to the first beyond `most`.
