@@ -1,4 +1,4 @@
-// Handles signals that end this process while it runs or checks cells.
+// Signals that ask this process to end while it runs cells, or checks their components.
 #pragma once
 
 #include <csignal>
@@ -7,10 +7,10 @@ namespace isoline::benchmarks {
 
 enum class Asked { nothing, finish, stop };
 
-// While an object lives, signals end this process in order. The first Ctrl-C finishes the running
-// cells; a second one, SIGTERM (from a scheduler, say) or a closed terminal stops them; one more
-// ends this process and all its cells at once. Ctrl-Z also stops the cells until they continue
-// together. Signals from a cell to its parent are ignored. Inside another object it does nothing.
+// While a guard exists, Ctrl-C asks to finish the running cells. A second Ctrl-C, SIGTERM (of a
+// scheduler, for example) or a closed terminal asks to stop them; one more ends this process and
+// all cells at once. Ctrl-Z stops the cells too, until all continue. Signals that a cell sends to
+// its parent are ignored. A guard within another one does nothing.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -24,6 +24,6 @@ class InterruptGuard {
   }, old_term_{}, old_hup_{}, old_stop_{};
 };
 
-Asked asked_to_end();  // so far, of the guard that lives
+Asked asked_to_end();  // what the signals since the outermost guard began ask for
 
 }  // namespace isoline::benchmarks

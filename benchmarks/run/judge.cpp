@@ -245,8 +245,8 @@ class Chamber {
   }
 
  private:
-  // After a failure, the state of an instance is unknown. It is replaced, and the new one gets one
-  // more try.
+  // An instance that failed may hold anything and is thrown away. A fresh one is asked once
+  // more.
   JudgesReply reply_to(const PointToJudge& asked) {
     const JudgesReply first = tried(asked);
     if (first.is_judged) return first;
