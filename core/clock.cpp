@@ -71,7 +71,7 @@ std::string instant_text(std::int64_t seconds) {
                      parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
 }
 
-// What is written otherwise, as a 31st of February, is no instant: it would come back as another.
+// A text in another form, or a 31st of February, is not valid: it would come back as another one.
 std::optional<std::int64_t> instant_from(const std::string& text) {
   std::tm parts{};
   const char* end = strptime(text.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);

@@ -39,7 +39,7 @@ class Stopwatch {
 // Times as records and component files contain them: whole seconds of universal time,
 // "2026-01-31T12:00:00Z".
 
-// Of seconds since 1970.
+// From seconds since 1970.
 std::string instant_text(std::int64_t seconds);
 std::optional<std::int64_t> instant_from(const std::string& text);  // none where it is no such text
 

@@ -78,7 +78,7 @@ void write_new(const fs::path& path, std::string_view text, bool is_flushed) {
   refuse(path, strerror(errno));
 }
 
-// What it is, where that is no file to read.
+// The kind of a path that is not a regular file.
 const char* oddity_of(mode_t mode) {
   if (S_ISREG(mode)) return nullptr;
   if (S_ISDIR(mode)) return "it is a folder";

@@ -34,7 +34,7 @@ void write_text(const std::filesystem::path& path, std::string_view text);
 std::filesystem::path temporary_of(const std::filesystem::path& path);
 
 // Whether a path is a regular file of such a name, left by a process of this machine that is gone.
-// What another machine writes into a shared folder is never taken for abandoned.
+// Files of another machine in a shared folder never count as abandoned.
 bool is_abandoned(const std::filesystem::path& path);
 
 // Moves what stands under a name into a folder, beside what is there already: "plan.json.2" where

@@ -100,7 +100,7 @@ void open_frames(Trace::Frames& frames, Index rows, Index columns, std::span<con
 void keep_frame(Trace::Frames& frames, std::int64_t iteration, std::span<const Real> x) {
   if (frames.rows == 0 || !fits(x)) return;
   const std::size_t place = place_for(frames, iteration);
-  // Of a process that is killed within these lines the place stays free.
+  // If a process is killed within these lines, the place stays free.
   frames.iteration[place] = kFree;
   std::atomic_signal_fence(std::memory_order_seq_cst);
   copy(x, frames.x[place]);

@@ -28,7 +28,8 @@ inline Range any() { return {}; }
 inline Range above(Real low) { return {.low = low, .low_is_open = true}; }
 inline Range at_least(Real low) { return {.low = low}; }
 inline Range between(Real low, Real high) { return {.low = low, .high = high}; }
-// Of a running mean. At 1 it would never take in a value, and its bias correction would be 0/0.
+// The decay of a running mean. At 1 it would ignore new values, and its bias correction would be
+// 0/0.
 inline Range decay() { return {.low = 0, .high = 1, .high_is_open = true}; }
 bool contains(const Range& range, Real value);
 std::string range_text(const Range& range);  // "[1, 1000]", "(0, inf)"

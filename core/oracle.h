@@ -35,7 +35,7 @@ struct OracleSizes {
   bool has_network;            // other than the identity
 };
 
-// Of a matrix of so many columns and rows, made of the cheaper product.
+// The cost of a matrix with so many columns and rows, from the cheaper product.
 inline std::int64_t matrix_price(const OracleSizes& of, std::int64_t columns, std::int64_t rows) {
   const std::int64_t by_column = columns * of.pushforward_price, by_row = rows * of.pullback_price;
   if (!of.has_pushforward) return by_row;

@@ -1,4 +1,4 @@
-// What a method may see that others do not: a fact of the run, kept in its record by name.
+// Extra information that a method may use and others do not: a fact of the run, stored by name.
 #pragma once
 
 #include <algorithm>

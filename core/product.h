@@ -37,7 +37,7 @@ void product_by_rows(Form form, Gemm<float>::In A, Gemm<float>::In B, Gemm<float
 void product_by_rows(Form form, Gemm<double>::In A, Gemm<double>::In B, Gemm<double>::Out C,
                      double keep = 0);
 
-// What a vector register holds, and n numbers rounded up to whole ones.
+// The numbers in a vector register, and n rounded up to whole registers.
 inline constexpr Index kRegisterBytes = EIGEN_MAX_STATIC_ALIGN_BYTES;
 template <class Scalar>
 Index whole_registers(Index n) {

@@ -59,7 +59,7 @@ inline std::optional<Aim> aim_of(std::string_view name) {
   return std::nullopt;
 }
 
-// What a run may spend, and the loss at which it is done.
+// The budget of a run, and the loss at which it is done.
 
 struct Budget {
   std::int64_t iterations = 1000;

@@ -1,5 +1,5 @@
-// What CPUID says: Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2A, and the
-// registers that the system keeps by XGETBV, volume 1, 13.3.
+// The features in CPUID: Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2A,
+// and the registers that the system keeps by XGETBV, volume 1, 13.3.
 #include "core/threads.h"
 
 #include <omp.h>

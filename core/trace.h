@@ -1,4 +1,4 @@
-// What a run leaves behind while it runs: plain data of fixed size, so that it can live in memory
+// The data that a run writes while it runs: plain data of fixed size, so that it can live in memory
 // shared between processes and be read after a crash. `points` and `hits` grow; what they already
 // hold never changes, but for the last point, which the returned one replaces at the same
 // iteration.
@@ -26,7 +26,7 @@ struct TracePoint {
   double x_error = 0;        // distance to the nearest solution; nan where none is known
   double gradient_norm = 0;  // ‖∂L/∂θ‖; nan where the problem has none
   double step_norm = 0;      // ‖θ − θ at the previous iteration‖
-  // Of learning problems: the means over the batches of the last 64 and 256 steps, each taken
+  // For learning problems: the means over the batches of the last 64 and 256 steps, each taken
   // before its step; nan elsewhere.
   double batch_loss[2] = {kAbsent, kAbsent}, batch_x_error[2] = {kAbsent, kAbsent};
   // Named quantities of the problem, then of the method.
@@ -61,7 +61,7 @@ struct Trace {
   double path_x[kPoints][kInputs], path_y[kPoints][kOutputs];
   int path_inputs = 0, path_outputs = 0;  // sizes of x and y in the path; 0: not kept
 
-  // What a network has learned, on some validation samples, one per column.
+  // The results of a network on some validation samples, one per column.
   struct Exhibit {
     int rows = 0, columns = 0;
     double value[kExhibit];
@@ -113,7 +113,7 @@ struct Trace {
   char claimed[kText] = "";     // what the method says of its own success, in its words
 };
 
-// What fits, cut at a character.
+// The part that fits, cut at a character.
 void set_text(char (&out)[Trace::kText], std::string_view text);
 
 // The error in a trace that another process may have overwritten; empty if the trace is valid:

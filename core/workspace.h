@@ -1,4 +1,4 @@
-// What a forward pass leaves behind for the products that follow it. Owned by the caller, so that
+// The data of a forward pass for the products that follow it. Owned by the caller, so that
 // physics and networks stay const; sized at first use, so that hot loops allocate nothing.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace isoline {
 
-// Of the choices made, in order.
+// The choices made, in order.
 class PieceDigest {
  public:
   void add(std::uint64_t choice) { state_ = (state_ ^ choice) * kPrime; }  // as FNV-1a, by words
@@ -27,7 +27,7 @@ struct Pieces {
   virtual void add_choices(PieceDigest& digest) = 0;  // of the last forward pass
 };
 
-// What a component keeps that is no array of double: it derives its own.
+// The data of a component that is not an array of double: it derives its own type.
 struct Scratch {
   virtual ~Scratch() = default;
 };

@@ -67,7 +67,7 @@ void TruncatedFourier::synthesize(Weights weights, const Spectra& S, Gemm<float>
   product(Form::AH_B, weights == Weights::none ? plain_ : weighted_, room.half, grids, 1);
 }
 
-// What the layers of a Fourier neural operator do: K and its adjoint, mode by mode.
+// The layers of a Fourier neural operator: K and its adjoint, mode by mode.
 
 namespace {
 

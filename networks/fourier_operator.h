@@ -1,7 +1,7 @@
 // The lowest modes of real square grids, many at once, by products with dense matrices:
 //   S_kq = w_k Σ x_ij e^(−2πi (ik + j f_q)/P),  k = 0 … M−1,  f_q = 0 … M−1, −M … −1
-// Of the P = 73 that a 64-cell grid is padded to, FFTW needs all modes and, 73 being prime, many
-// times the work: twelve modes by products cost less than its half spectrum alone.
+// A 64-cell grid is padded to P = 73. FFTW needs all modes and, since 73 is prime, many times the
+// work: twelve modes by products cost less than its half spectrum alone.
 #pragma once
 
 #include <vector>

@@ -44,7 +44,7 @@ class Perceptron final : public Network {
   using Array = typename Gemm<Scalar>::Array;
   using Parameters = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-  // What layer l sees and makes, (B, ·), its rows padded to whole registers as if by samples of
+  // The input and output of layer l, (B, ·), its rows padded to whole registers as if by samples of
   // zeros, which no sum over samples reads.
   struct Layer {
     Array a, z;                     // (B, w_{l−1} + 1) inputs and ones, (B, w_l)

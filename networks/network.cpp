@@ -1,4 +1,4 @@
-// What networks share: products that follow from others, and networks by name.
+// Common parts of networks: products that follow from others, and networks by name.
 #include "networks/network.h"
 
 #include <fmt/format.h>

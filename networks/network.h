@@ -30,9 +30,9 @@ struct LayerFactor {
   Matrix cotangents;   // G, (rows of W, B)
 };
 
-// What one convolution sees under a cotangent, at all places t of its grid: with ā = (a, 1) the
-// patch that the kernel multiplies, in the order of the block's rows, and g the cotangent of its
-// output there, ⟨Σ_t ā āᵀ⟩ over samples and ⟨g gᵀ⟩ over samples and places.
+// The moments of one convolution under a cotangent, at all places t of its grid: with ā = (a, 1)
+// the patch that the kernel multiplies, in the order of the block's rows, and g the cotangent of
+// its output there, ⟨Σ_t ā āᵀ⟩ over samples and ⟨g gᵀ⟩ over samples and places.
 struct LayerMoments {
   Index weight, bias;  // the blocks of layout() that hold the kernel and b
   Matrix inputs;       // (taps · channels in + 1)²

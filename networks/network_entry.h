@@ -1,4 +1,4 @@
-// What the registry knows of a network: its name, description and options, and how it is made.
+// The registry's view of a network: its name, description and options, and how to create it.
 // Without Eigen, for code that names networks and does not compute with them.
 #pragma once
 

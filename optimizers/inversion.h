@@ -96,7 +96,7 @@ std::string objection_of_inversion(const OptionValues& options, const Problem& p
 // x̃ = x − V diag(sign(g̃ᵢ) lᵢ) Vᵀ, lᵢ = |g̃ᵢ/(Sᵢ + μ)|, at most `clip` where that is not 0: Newton's
 // step on ½‖P(x) − y*‖² against the gradient, with H = V diag(S) Vᵀ and g̃ = Vᵀ∇L.
 std::unique_ptr<Inversion> inversion_by_plain_newton(Real clip, Real damping);
-// Of a Newton's step, named `what`: it is for few inputs of the physics.
+// For a Newton step, named `what`: it needs few inputs of the physics.
 std::string objection_to_newton(const Problem& problem, std::string_view what);
 
 }  // namespace isoline::optimizers

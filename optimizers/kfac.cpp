@@ -208,7 +208,7 @@ void fields(Kfac& o, auto& field) {
   field("decay", o.decay, between(0, 1), "largest share of the running means that is kept");
 }
 
-// What passes through dense layers where there are any, else sums over places.
+// The factors of dense layers if there are any, otherwise sums over places.
 OracleSet needs(const OptionValues&, const Problem& problem) {
   const bool is_dense = problem.offers().contains(Oracle::layer_factors);
   return {Oracle::forward, Oracle::pullback,

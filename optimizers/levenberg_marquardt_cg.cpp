@@ -85,7 +85,7 @@ struct LevenbergMarquardtCg {
     return is_finite(s.step);
   }
 
-  // Of the loss, which is a multiple of ½‖r‖²; of that it is, for any d,
+  // The predicted decrease of the loss, which is a multiple of ½‖r‖²; for ½‖r‖² and any d it is
   // ½ dᵀ(−g) + ½ dᵀ(−g − (JᵀJ + μ) d) + ½μ‖d‖².
   static Real predicted_decrease(const State& s) {
     const Real of_squares =

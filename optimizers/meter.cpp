@@ -93,8 +93,8 @@ void Meter::charge_forward(VectorRef theta) {
     charge(Oracle::forward);
 }
 
-// Of a direct problem, a judged point that is neither the last nor the best one that was paid for
-// costs a forward; false if the budget has none left.
+// For a direct problem, an evaluated point that is neither the last nor the best one already
+// counted costs a forward; false if the budget has none left.
 bool Meter::pay_for_judged() {
   if (problem_.is_learned() || judged_.loss == paid_loss_ || judged_.loss == best_loss_)
     return true;
@@ -350,8 +350,8 @@ Status Meter::judge(VectorRef theta) {
   return Status::running;
 }
 
-// What a run keeps of its way, off the clock: its curve, its path, its fields, the spectrum of J,
-// and samples of what was learned.
+// The data that a run keeps about its path, off the clock: its curve, its path, its fields, the
+// spectrum of J, and samples of the learned results.
 
 namespace {
 

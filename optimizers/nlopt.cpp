@@ -195,9 +195,9 @@ OptimizerEntry entry_of(const Method& m, Family family, OracleSet needs) {
       }};
 }
 
-// What minimize_lbfgs hands through NLopt. Luksan's first trial step, the whole gradient, and his
-// test ‖∇f‖ ≤ 1e-8 make sense in units of the start: f₀, and Polyak's step f₀/‖∇f₀‖ for lengths,
-// which also keeps the first step on the branch of the start.
+// The arguments of minimize_lbfgs through NLopt. Luksan's first trial step, the full gradient, and
+// his test ‖∇f‖ ≤ 1e-8 make sense in units of the start: f₀, and Polyak's step f₀/‖∇f₀‖ for
+// lengths, which also keeps the first step on the branch of the start.
 struct Minimization {
   static constexpr bool kIsWhole = false;  // part of a step
   const ValueAndGradient& f;

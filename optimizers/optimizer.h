@@ -27,7 +27,7 @@ concept GradientRule = requires(const M rule, VectorRef g, Vector& theta, typena
   { rule.update(g, theta, state) } -> std::same_as<void>;
 };
 
-// What the loop of the harness holds.
+// The state of the harness's loop.
 class Optimizer {
  public:
   virtual ~Optimizer() = default;
@@ -63,7 +63,7 @@ bool persist_state(typename M::State& state, Archive& archive) {
 OracleSet needs_of(const OptimizerEntry& entry, const OptionValues& options,
                    const Problem& problem);
 
-// What a method with these oracles sees that others do not, in words.
+// The extra information of a method with these oracles, in words.
 std::vector<std::string> privileges_of(OracleSet granted, Inverse inverse);
 
 // Why this optimizer cannot treat this problem, in words; empty if it can.

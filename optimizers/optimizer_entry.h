@@ -1,5 +1,5 @@
-// What the registry knows of an optimizer: its name, description, needs and options, and how it is
-// made. Without Eigen, for code that names optimizers and does not run them.
+// The registry's view of an optimizer: its name, description, needs and options, and how to create
+// it. Without Eigen, for code that names optimizers and does not run them.
 #pragma once
 
 #include <array>
@@ -111,7 +111,7 @@ struct OptimizerEntry {
 };
 
 void register_optimizers(OptimizerRegistry& registry);  // generated: one call a file
-// What a shared library brings (core/foreign/isoline.h), as an entry.
+// A component of a shared library (core/foreign/isoline.h), as an entry.
 void add_plugin_method(OptimizerRegistry& registry, const PluginComponent& component);
 
 }  // namespace isoline::optimizers

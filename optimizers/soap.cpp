@@ -99,8 +99,8 @@ struct Soap {
       product(Form::AH_B, sheet.turned, sheet.turned, sheet.right.mean, beta2);
   }
 
-  // Of eigenvalues up to 1e-6 of the largest, whose eigenvectors are rounded by 1e-10 and more, the
-  // eigenvectors of diag(1, 2, …) within the space that those of all others leave.
+  // For eigenvalues up to 1e-6 of the largest, whose eigenvectors are rounded by 1e-10 and more:
+  // the eigenvectors of diag(1, 2, …) within the space that those of all others leave.
   static bool renew(Side& side, State& s) {
     constexpr Real kRounded = 1e-6;
     if (!side.is_used) return true;

@@ -13,7 +13,7 @@
 
 namespace isoline::optimizers {
 
-// What a filter is relative to.
+// The reference of a filter.
 struct Spectrum {
   Real largest = 0;      // σ₁
   Real mean_square = 0;  // the mean diagonal of K = JJᵀ, which is ‖J‖²/(m·B)

@@ -88,8 +88,8 @@ std::string objection_to(Way way, const Problem& problem) {
 
 namespace {
 
-// Of the cut-off: σ that can't be kept, however they are rounded. They are left out of S where what
-// is of second order in ε σ₁²/σ², which turns them into those kept, is nothing.
+// For the cut-off: σ that cannot be kept, however they are rounded. S omits them if the
+// second-order term in ε σ₁²/σ², which couples them to those kept, vanishes.
 constexpr Real kFarBelow = 0.01, kLeastCutoff = 3e-6;
 
 }  // namespace
@@ -290,7 +290,7 @@ void SpectralStep::form_gram(bool is_layered, bool is_wide, Linearization& at, c
     right_.noalias() = at.jacobian().transpose() * w;
 }
 
-// Of eigenvalues σ², by f(σ)/σ.
+// From eigenvalues σ², by f(σ)/σ.
 bool SpectralStep::solve_filtered(const SpectralFilter& filter, bool is_wide, Real length) {
   if (!symmetric_eigen(gram_, eigen_)) return false;
   const Index r = eigen_.lambda.size();

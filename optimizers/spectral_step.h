@@ -27,17 +27,17 @@ enum class Way {
 };
 Way way_named(std::string_view name);  // "auto", and each as it is called here
 
-// What was done, in words: "the thin SVD of J".
+// The factorization used, in words: "the thin SVD of J".
 std::string_view way_text(Way way);
 
-// Of `automatic`. A Gram matrix squares the condition number: it is used where the estimated
-// relative error of the step is at most 2e-9 by it, and the least σ that matters 1e-5 of the
-// largest, or 1e-7 where it is split in two; and is not tried where the cut-off is too near its
-// rounding for that to be seen.
+// The choice of `automatic`. A Gram matrix squares the condition number. It is used if the
+// estimated relative error of the step is at most 2e-9, and if the smallest σ that matters is at
+// least 1e-5 of the largest (1e-7 if split in two). It is not tried if the cut-off is so near its
+// rounding that this could not be detected.
 inline constexpr Real kMostErrorByGram = 2e-9, kLeastShareByGram = 1e-5, kLeastShareBySplit = 1e-7;
 inline constexpr Real kLeastCutoffByGram = 1e-7;
 
-// Of `automatic`: whether no spectrum would let a Gram matrix be used.
+// For `automatic`: whether every spectrum excludes a Gram matrix.
 bool never_by_gram(const SpectralFilter& filter);
 // Whether one number is enough of a spectrum: Tikhonov's filter with μ in units of the mean.
 bool is_tikhonov(const SpectralFilter& filter);

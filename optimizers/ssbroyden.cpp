@@ -150,7 +150,7 @@ struct SelfScaledBroyden {
     return Status::running;
   }
 
-  // Of length 1 at first; along the gradient, which has no other unit, of a step of length 1.
+  // Has length 1 at first; along the gradient, which has no other unit, of a step of length 1.
   void search(Meter& f, const Vector& theta, State& s, Real slope,
               WolfeSearch::Trial& found) const {
     const auto evaluate = [&](Real length) -> WolfeSearch::Trial {

@@ -1,4 +1,4 @@
-// What every problem must satisfy, measured.
+// Measures the required properties of every problem.
 #include "problems/conformance.h"
 
 #include <algorithm>
@@ -193,8 +193,8 @@ class Examination {
         "rounding, amplified by the condition of P⁻¹");
   }
 
-  // What is promised of a damped inverse: nothing where there is nothing to do, never a step away
-  // from y*, and P undone where the data carry evidence, as they do of an input that P has smoothed
+  // The properties of a damped inverse: no step if y* is reached, never a step away from y*, and an
+  // inversion of P where the data carry evidence, as they do for an input that P has smoothed
   // before.
   void damped_inverse() {
     if (problem_.inverse_kind() != Inverse::damped) return;

@@ -1,4 +1,4 @@
-// What every problem must satisfy, measured: its products against each other and against
+// Measures the required properties of every problem: its products against each other and against
 // differences, its inverse against its forward, its declared solution against its loss.
 #pragma once
 

@@ -31,9 +31,9 @@ class DensePhysics : public Physics {
   Index inputs_, outputs_;
 };
 
-// What the problems of Moré, Garbow and Hillstrom (1981) share: y* = 0, P(x) = f(x) as they define
-// it, L = ½ Σ fᵢ², so half the figures that are published for Σ fᵢ². They are posed as
-// minimization: what their user wants is a small loss, which is an entry's standard aim.
+// Common parts of the problems of Moré, Garbow and Hillstrom (1981): y* = 0, P(x) = f(x) as in the
+// paper, L = ½ Σ fᵢ², half of the published Σ fᵢ². They are minimization problems: the success
+// criterion is a small loss, the default of an entry.
 // `minimizers` (k, count), one a column; the first counts as the truth.
 ProblemParts classical(std::unique_ptr<Physics> f, const Vector& start, const Draw& draw,
                        Real minimum, const Matrix& minimizers);

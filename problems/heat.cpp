@@ -108,8 +108,8 @@ class Heat final : public SelfAdjointPhysics {
   Matrix gain_;                    // e^(−ℓ) over the factor of a round trip, (N/2 + 1, N)
 };
 
-// Of σ, the authors' for repeated use: as d vanishes, so would σ, and rounding errors would pass
-// for evidence. A network's d does not vanish, and they train without it.
+// The floor of σ, from the authors, for repeated use: σ vanishes with d, and rounding errors would
+// then pass for evidence. A network's d does not vanish, and they train without it.
 constexpr Real kNoiseFloor = 1e-8;
 
 Real Heat::cut_off(VectorRef truth, VectorRef target, VectorRef start, VectorOut x) const {

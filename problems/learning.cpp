@@ -87,7 +87,7 @@ Noise noise_of(const Matrix& gradients) {
   return {deviation / mean, 1 - (sum.squaredNorm() - n) / (n * (n - 1))};
 }
 
-// What the noise is taken from, sized once.
+// The inputs of the noise, allocated once.
 struct Parts {
   Point at;
   Matrix g, U;                // (m, B), (k, B)

@@ -1,4 +1,4 @@
-// What learning problems trace besides their curves: quantities of θ on the samples that judge.
+// Additional series of learning problems: quantities of θ on the validation samples.
 // They are taken at kept iterations, off the clock, and no method sees them.
 #pragma once
 

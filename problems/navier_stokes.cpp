@@ -105,7 +105,7 @@ class Generator {
   FlowRun run_;
 };
 
-// What all instances have in common.
+// The common parts of all instances.
 ProblemParts flow_parts(const Options& o) {
   const auto measure = std::make_shared<FlowDistance>(o.flow(Arrangement::staggered), o.truth());
   ProblemParts parts{

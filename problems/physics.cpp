@@ -1,4 +1,4 @@
-// What a physics offers unless it says otherwise.
+// The defaults of a physics.
 #include "problems/physics.h"
 
 namespace isoline::problems {

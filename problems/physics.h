@@ -84,7 +84,7 @@ enum class Inverse {
   approximate,  // found from P itself, within an error: reversed steps, a few steps of a search
 };
 
-// What a physics has of products with J, and what each costs in forwards.
+// The products with J that a physics offers, and their costs in forwards.
 struct Products {
   bool has_pushforward = true, has_pullback = true;
   Index pushforward_price = 1, pullback_price = 1;

@@ -18,7 +18,7 @@ constexpr std::uint64_t kMostSize = std::uint64_t{1} << 27;  // a vector of 1 Gi
 
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
 
-// What a function wrote, or not a number where it said that it has no answer.
+// The output of a function, or NaN if it reported that it has no answer.
 void judge(int told, BatchOut out) {
   if (told != 0) out.setConstant(kNan);
 }

@@ -43,7 +43,8 @@ Real Problem::x_error(BatchRef x, const Batch& batch) const {
 Real Problem::loss_scale(const Batch& batch) const {
   constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
   if (parts_.scale) return *parts_.scale;
-  // What is best known of a learning problem is no residual of its data, and moves when renewed.
+  // The best known loss of a learning problem is not a residual of its data, and changes when
+  // renewed.
   const Real least = is_learned() ? 0 : parts_.minimum.value_or(0);
   const bool has_signal = !batch.target.isZero(0);
   if (has_signal) {

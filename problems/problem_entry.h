@@ -57,7 +57,7 @@ struct ProblemEntry {
 using ProblemRegistry = Registry<ProblemEntry>;
 
 void register_problems(ProblemRegistry& registry);  // generated: one call a file
-// What a shared library brings (core/foreign/isoline.h), as an entry.
+// A component of a shared library (core/foreign/isoline.h), as an entry.
 void add_plugin_physics(ProblemRegistry& registry, const PluginComponent& component);
 
 }  // namespace isoline::problems

@@ -36,7 +36,7 @@ class WavePacket final : public DensePhysics {
  public:
   WavePacket() : DensePhysics(4, kTimes) {}
 
-  // What all formulas hold at one time.
+  // The common factors of all formulas at one time.
   struct Moment {
     Real a, tau, w, omega, E, C, S;  // E the envelope, C and S the cosine and the sine
     Moment(VectorRef x, Index i)

@@ -11,7 +11,7 @@ void write_report(const Document& document, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
   share(std::size(kFormats), [&](std::size_t i) {
     const std::string file = kFormats[i].file, text = kFormats[i].text(document);
-    // What terminals and editors show; a page shows no control characters, and has scripts.
+    // Formats for terminals and editors; a page shows no control characters, and has scripts.
     write_text(out / file, file.ends_with(".html") ? text : printable(text));
   });
 }

@@ -248,8 +248,8 @@ void audit_direct(const Subject& subject, AuditedOptimizer& audited) {
   count_oracles(subject, bent_problem(), audited);
 }
 
-// What makes sense where θ is the weights of a network: x is no unknown that could change units,
-// and no θ is the only solution.
+// The measurements that make sense if θ is the weights of a network: no unknown x could change
+// units, and no θ is the only solution.
 void audit_teacher(const Subject& subject, AuditedOptimizer& audited) {
   audited.network = kTaughtNetwork;
   audited.scalings[static_cast<std::size_t>(Scaled::loss)] = scaling_law(subject, taught_loss);

@@ -1,4 +1,4 @@
-// What several verbs print on the terminal: progress, the outcome of runs, the report of a study.
+// Output common to several verbs: progress, the outcome of runs, the report of a study.
 #pragma once
 
 #include <filesystem>

@@ -21,8 +21,8 @@ namespace isoline::benchmarks {
 
 struct Catalog;
 
-// What the verbs share: the catalog, made when first needed, with what the libraries of --plugin
-// bring, and the command that records name.
+// The state that verbs share: the catalog, made when first needed, with what the libraries of
+// --plugin bring, and the command that records name.
 class Session {
  public:
   Session(std::string command, std::function<Catalog()> make);

@@ -191,7 +191,7 @@ class Merge {
     }
   }
 
-  // What each folder may have once; a damaged file is named.
+  // Files that each folder may have once; a damaged file is named.
   template <class Value, class Read>
   std::vector<Value> read_all(const char* name, Read read) {
     std::vector<Value> all;

@@ -17,13 +17,13 @@ using Json = nlohmann::json;
 // 2)", and changes nothing.
 std::string unite_records(Json& record, const Json& other);
 
-// What is wrong where the cell of a record is not the digest of its request; else empty.
+// The error if the cell of a record is not the digest of its request; otherwise empty.
 std::string cell_violation(const Json& record);
 
-// What is wrong with the file of fields beside a record that names one; else empty.
+// The error in the file of fields that a record names; otherwise empty.
 std::string fields_violation(const Json& record, const std::filesystem::path& file);
 
-// What a record is known by, and where it stands.
+// The identity of a record, and its place.
 struct RecordIdentity {
   std::string file, cell, build;
 };

@@ -1,4 +1,4 @@
-// What counting and tracing add to an evaluation of a tiny problem.
+// The overhead of counting and tracing in an evaluation of a tiny problem.
 #include "benchmarks/micro/pairs.h"
 
 namespace isoline::benchmarks::micro {

@@ -16,7 +16,7 @@
 
 namespace isoline::benchmarks::micro {
 
-// What one call takes.
+// The cost of one call.
 struct Cost {
   double seconds = 0;
 };
@@ -34,7 +34,7 @@ struct Pair {
   std::function<Cost()> ours, bare;
 };
 
-// What is promised; 0 where nothing is.
+// The promised ratio; 0 without a promise.
 struct Goal {
   double ratio = 0, extra_ns = 0;
 };

@@ -49,7 +49,7 @@ Component complete(const Entry& entry, const OptionValues& given) {
   return component;
 }
 
-// Of a method and what steps inside it.
+// The sources of a method and of the method inside it.
 std::string digest_of(const Catalog& catalog, const OptimizerEntry& entry,
                       const OptionValues& options, bool is_learning) {
   std::string all = source_digest(entry.file);

@@ -1,4 +1,4 @@
-// What a benchmark can be made of: the registries of problems and optimizers, and the files of the
+// The parts of a benchmark: the registries of problems and optimizers, and the files of the
 // tree that are built into the program. Without Eigen: a file that makes a problem or runs an
 // optimizer includes problems/problem.h or optimizers/optimizer.h besides.
 #pragma once

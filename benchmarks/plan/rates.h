@@ -53,7 +53,7 @@ class BestLosses {
 
   std::optional<Real> find(const Component& problem, std::uint64_t seed) const;
 
-  // Of a problem at all seeds, as text: what a digest of the problem is also of. Empty: none.
+  // The row of a problem at all seeds, as text, which digests of the problem include. Empty: none.
   std::string losses_text(const Component& problem) const;
 
   // The lesser of what is known and the best loss that the record has seen; whether that changed.

@@ -208,7 +208,7 @@ std::vector<Request> expand(const Catalog& catalog, const Suite& suite, const Ra
 using optimizers::Family;
 namespace {
 
-// What a step costs, which decides the grids that a method can be given.
+// The cost class of a step, which decides the grids that a method can run on.
 std::string_view cost_class(const OptimizerEntry& entry) {
   if (entry.family == Family::nlopt_derivative_free) return "derivative-free";
   constexpr Index kUnlimited = std::numeric_limits<Index>::max();

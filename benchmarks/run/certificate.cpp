@@ -55,14 +55,14 @@ namespace {
 
 constexpr double kCertificateSeconds = 120;
 
-// Empty where every law holds.
+// Empty if every property holds.
 std::string broken_law_of(const Catalog& catalog, const Request& request) {
   const Problem problem = make_problem(catalog, request.problem, request.seed);
   RandomStream stream(request.seed, request.problem.name, "check");
   for (const Finding& finding : examine(problem, stream))
     if (!finding.holds())
-      return fmt::format("'{}' is broken: {:.2e}, and at most {:.1e} holds ({})", finding.property,
-                         finding.figure, finding.limit, finding.reason);
+      return fmt::format("'{}' is violated: {:.2e}, at most {:.1e} is allowed ({})",
+                         finding.property, finding.figure, finding.limit, finding.reason);
   return "";
 }
 
@@ -82,9 +82,9 @@ void require_certified(const Catalog& catalog, const std::vector<Request>& reque
         isolated_text([&] { return broken_law_of(catalog, *request); }, kCertificateSeconds,
                       Limits{}.memory_bytes, [&] { progress.show(); });
     if (asked_to_end() != Asked::nothing) return;
-    const std::string reason = broken.value_or("it cannot be examined: " + failure);
+    const std::string reason = broken.value_or("it cannot be checked: " + failure);
     require(reason.empty(), [&] {
-      return fmt::format("{} is not certified, and not run: {}; `isoline check` lists all laws",
+      return fmt::format("{} fails its checks and does not run: {}; `isoline check` lists all",
                          request->problem.spec, reason);
     });
     progress.finished({});

@@ -14,14 +14,14 @@ namespace isoline::benchmarks {
 // process of its own: what crashes there is left to its cells to report.
 void require_sound(const Catalog& catalog, const std::vector<Request>& requests);
 
-// What another program computes is certified before it is run, as the tests certify the problems of
+// Checks an external component before it runs, as the tests check the problems of
 // this tree: its products by Taylor's slopes, the adjoint identity and its Jacobian, its inverse by
-// the way back, and that the same call gives the same bits.
+// the round trip, and that the same call gives the same bits.
 
-// UsageError with the first law that a problem of these requests breaks, and the measured figure;
-// or with the reason where one cannot be examined, since it fails or never answers. Only what the
-// store has no record of is looked at, each problem at the first of its seeds, in a process of its
-// own.
+// UsageError with the first violated property of a problem of these requests, and the measured
+// value, or with the reason if a problem cannot be checked, since it fails or does not answer.
+// Checks only problems without records in the store, each at the first of its seeds, in its own
+// process.
 void require_certified(const Catalog& catalog, const std::vector<Request>& requests,
                        const Store& store, Progress::Style style = Progress::Style::silent);
 

@@ -56,8 +56,8 @@ void Checkpoint::read(std::string bytes, Optimizer& method, Meter& meter, Vector
   Archive archive(std::move(bytes));
   method.start(meter, theta);
   archive(theta);
-  require(theta.size() == meter.unknowns(), "it holds another number of unknowns");
-  require(method.persist(archive), "the method keeps no state");
+  require(theta.size() == meter.unknowns(), "it has another number of unknowns");
+  require(method.persist(archive), "the method stores no state");
   meter.persist(archive);
   require(archive.bytes_left() == 0, "it holds more than the state of this run");
 }

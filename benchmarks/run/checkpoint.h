@@ -19,15 +19,15 @@ struct DamagedCheckpoint : std::runtime_error {
 class Checkpoint {
  public:
   Checkpoint() = default;  // keeps nothing
-  // `identity` says whose state it is: a file of another cell or build is left alone.
+  // `identity` names the owner of the state: a file of another cell or build is not touched.
   Checkpoint(std::filesystem::path path, std::string identity, double every_seconds);
 
-  // Brings back method, meter and θ where there is something to go on with. The method is started.
-  // A file that says it is that, and is not, is set aside: DamagedCheckpoint, and what was given
-  // holds parts of it. The next call finds nothing.
+  // Restores method, meter and θ if there is a state. The method is started. A file that claims to
+  // be such a state and is invalid is moved away: DamagedCheckpoint; the arguments are then partly
+  // overwritten. The next call finds nothing.
   bool restore(Optimizer& method, Meter& meter, Vector& theta);
-  // Writes the state if the last time is long enough ago, or if the process was asked to stop: then
-  // true. Where the disk refuses, the run goes on without.
+  // Writes the state if the last time is long enough ago, or if the process is to stop: then
+  // returns true. If the disk refuses, the run continues without.
   bool save_if_due(Optimizer& method, Meter& meter, Vector& theta);
 
  private:

@@ -55,12 +55,12 @@ void run(const Catalog& catalog, const Request& request, Trace& trace, Checkpoin
   if (returned) *returned = theta;
 }
 
-// Of other sizes the harness would read what is not there.
+// With other sizes the harness would read beyond the array.
 void require_size(const Vector& theta, const Meter& meter) {
   if (theta.size() == meter.unknowns()) return;
-  throw std::runtime_error(
-      fmt::format("the method changed the number of unknowns from {} to {}, which is no step",
-                  meter.unknowns(), theta.size()));
+  throw std::runtime_error(fmt::format(
+      "the method changed the number of unknowns from {} to {}, which a step must not do",
+      meter.unknowns(), theta.size()));
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoi
       if (judged != Status::running) verdict = judged;
       if (verdict == Status::running && checkpoint.save_if_due(method, meter, theta)) return theta;
     }
-  } catch (const BudgetSpent&) {  // in the midst of a step
+  } catch (const BudgetSpent&) {  // during a step
     theta = before;
     verdict = Status::budget;
   }
@@ -100,7 +100,7 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
       run(catalog, request, trace, checkpoint, returned, perturbation);
     }
     if (trace.status == Status::running)
-      conclude(trace, Status::interrupted, "it was asked to stop, and kept its state");
+      conclude(trace, Status::interrupted, "it was stopped, and saved its state");
   } catch (const NotApplicable& reason) {
     conclude(trace, Status::inapplicable, reason.what());
   } catch (const std::bad_alloc&) {
@@ -110,7 +110,7 @@ void execute(const Catalog& catalog, const Request& request, Trace& trace, Check
   } catch (const std::exception& error) {
     conclude(trace, Status::failed, error.what());
   } catch (...) {
-    conclude(trace, Status::failed, "threw something that is no std::exception");
+    conclude(trace, Status::failed, "threw an object that is not a std::exception");
   }
 }
 

@@ -16,14 +16,14 @@ Vector perturbed_start(Vector start, const Request& request, int number);
 
 // One run, in this process: the loop that every method runs in.
 
-// Starts, steps and judges the method until it is done, or asked to stop; the meter writes the
+// Starts, steps and evaluates the method until it is done or to be stopped; the meter writes the
 // trace. Returns the last θ.
 Vector drive(Optimizer& method, Meter& meter, Vector theta, Checkpoint& checkpoint);
 
-// Makes the components of the request and drives them. The verdict is in the trace, whatever
-// happens: an exception ends as `failed`, `memory` or `inapplicable`, and a run that was asked to
-// stop as `interrupted`. `returned` gets the last θ. A perturbation other than 0 moves the start in
-// the last bit (runner.h).
+// Creates the components of the request and drives them. The status is in the trace in all cases:
+// an exception ends as `failed`, `memory` or `inapplicable`, and a stopped run as `interrupted`.
+// `returned` gets the last θ. A perturbation other than 0 moves the start in the last bit
+// (runner.h).
 void execute(const Catalog& catalog, const Request& request, Trace& trace,
              Checkpoint checkpoint = {}, Vector* returned = nullptr, int perturbation = 0);
 

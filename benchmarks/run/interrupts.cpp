@@ -1,4 +1,4 @@
-// What a handler calls is safe there: a flag, a table of numbers and plain calls of the system.
+// Handlers call only safe functions: a flag, a table of numbers and plain system calls.
 #include "benchmarks/run/interrupts.h"
 
 #include <unistd.h>
@@ -15,7 +15,8 @@ volatile std::sig_atomic_t heard = 0;
 bool is_guarded = false;
 
 void hear(int signal, siginfo_t* sent, void*) {
-  if (sent->si_code <= 0 && is_of_a_group(sent->si_pid)) return;  // by a process, and one of ours
+  if (sent->si_code <= 0 && is_of_a_group(sent->si_pid))
+    return;  // from a process of one of our groups
   if (heard == kStop) {
     signal_all_groups(SIGKILL);
     _exit(kInterrupted);
@@ -29,7 +30,7 @@ void stop_with_cells(int) {
   signal_all_groups(SIGCONT);
 }
 
-// What is ignored stays so: nohup, and a shell that runs in the background, had it so.
+// An ignored signal stays ignored: nohup and background shells set this.
 void handle(int signal, const struct sigaction& action, struct sigaction& old) {
   sigaction(signal, nullptr, &old);
   if (old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);

@@ -63,8 +63,8 @@ void SharedMemory::keep_only(std::initializer_list<const SharedMemory*> kept) {
 namespace {
 
 constexpr std::size_t kTail = 200;  // bytes of the end that are remembered
-constexpr int kWidePipe = 1 << 20;  // bytes: who writes much is not held up at each look
-constexpr int kMostReads = 64;      // at one look: who never stops writing ends no look
+constexpr int kWidePipe = 1 << 20;  // bytes: a cell that writes much does not wait for every read
+constexpr int kMostReads = 64;  // per read, so that a cell that writes forever does not block us
 
 void close_one(int& descriptor) {
   if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
@@ -209,7 +209,7 @@ void Worker::do_in_child(const std::function<void(Trace&)>& work, int threads) {
   } catch (const std::exception& error) {
     conclude(Status::failed, error.what());
   } catch (...) {
-    conclude(Status::failed, "something that is no std::exception");
+    conclude(Status::failed, "an object that is not a std::exception");
   }
   trace_->is_finished = true;
   leave();
@@ -264,7 +264,7 @@ void Worker::finish(const ProcessGroup::End& end) {
   trace_->peak_memory_bytes = end.peak_memory_bytes;
   if (breach_) return conclude(breach_->status, breach_->message);
   if (!defect.empty())
-    return conclude(Status::crashed, "it wrote over the trace of its run: " + defect);
+    return conclude(Status::crashed, "it overwrote the trace of its run: " + defect);
   if (asked_to_stop_ > 0) {
     if (!has_verdict(*trace_)) conclude(Status::interrupted, "the run was interrupted");
     return;
@@ -278,9 +278,8 @@ void Worker::finish(const ProcessGroup::End& end) {
 void Worker::judge_end(int wait_status) {
   const int signal = WIFSIGNALED(wait_status) ? WTERMSIG(wait_status) : 0;
   if (is_from_outside(signal))
-    return conclude(
-        Status::interrupted,
-        fmt::format("killed by {}, which this program did not send", signal_name(signal)));
+    return conclude(Status::interrupted,
+                    fmt::format("killed by {}, sent by another program", signal_name(signal)));
   if (signal != 0 || !trace_->is_finished) conclude(Status::crashed, end_of_process(wait_status));
 }
 
@@ -315,7 +314,7 @@ IsolatedText isolated_text(const std::function<std::string()>& work, double seco
   while (!worker.poll()) {
     if (asked_to_end() != Asked::nothing) {
       worker.interrupt();
-      return {{}, "this program was asked to end"};
+      return {{}, "this program was stopped"};
     }
     if (waiting) waiting();
     pollfd ending{worker.descriptor(), POLLIN, 0};
@@ -328,9 +327,9 @@ IsolatedText isolated_text(const std::function<std::string()>& work, double seco
       return {{}, fmt::format("it threw: {}", valid_utf8(trace.message))};
     case Status::timeout:
       return {{},
-              worker.was_idle() ? fmt::format("it took more than {} s in which it did nothing",
-                                              std::min(seconds, kIdleSeconds))
-                                : fmt::format("it took more than {} s", seconds)};
+              worker.was_idle()
+                  ? fmt::format("it was idle for more than {} s", std::min(seconds, kIdleSeconds))
+                  : fmt::format("it took more than {} s", seconds)};
     case Status::memory:
       return {{}, "it ran out of memory"};
     default: {

@@ -52,11 +52,11 @@ class Shared {
   T* object_;
 };
 
-// The θ that a cell returns, in memory shared with whoever judges it.
+// The θ that a cell returns, in memory shared with its verifier.
 struct Returned {
   static constexpr std::int64_t kMost = std::int64_t{1} << 23;
 
-  std::atomic<std::int64_t> size{0};  // 0: nothing was returned, or more than there is room for
+  std::atomic<std::int64_t> size{0};  // 0: nothing was returned, or more than fits
   double theta[kMost];                // (n)
 
   void keep(std::span<const double> value) {
@@ -66,8 +66,8 @@ struct Returned {
   }
 };
 
-// What a child process writes to its standard output and standard error: caught, so that no
-// terminal gets it, and kept as far as it is not too much.
+// Captures the standard output and standard error of a child process, so that no terminal gets it,
+// and keeps a bounded part.
 class CapturedOutput {
  public:
   static constexpr std::size_t kMost = std::size_t{64} << 10;  // bytes kept, from the first on
@@ -109,15 +109,16 @@ class Worker {
   bool was_idle() const { return breach_ && breach_->is_idleness; }  // and was ended for it
   // Ends the child where it is over a limit, collects it where it has ended. True once it has.
   bool poll();
-  // Asks the child to keep its state and end. So that many may be asked before one is waited for.
+  // Tells the child to save its state and end. Several children can be told before the first wait.
   void ask_to_stop();
-  void interrupt();  // asks, waits a little, ends it: what was not done by then is `interrupted`
-  // Of a child that has ended: it came to something else after all.
+  void
+  interrupt();  // tells it, waits a little, ends it: what was not done by then is `interrupted`
+  // For a child that has ended: replaces its result.
   void dispute(Status status, const std::string& message) { conclude(status, message); }
   const Trace& trace() const { return *trace_; }
   const CapturedOutput& output() const { return output_; }
-  // What the child said that it returned, to be judged by another process, which inherits the
-  // memory where it is started after this worker was made.
+  // The point that the child returned, for verification by another process, which inherits the
+  // memory if it starts after this worker was made.
   void keep_returned(std::span<const double> theta) { returned_->keep(theta); }  // by the child
   const double* returned() const { return returned_->theta; }
   Index returned_size() const;                            // 0: nothing
@@ -138,16 +139,16 @@ class Worker {
   std::int64_t asked_to_stop_ = 0;            // monotonic nanoseconds; 0: it was not
 };
 
-// What work in a process of its own came to, as of sheets, audits and checks of what may crash: its
-// text, or why there is none.
+// The result of work in another process, such as metadata, audits and checks that may crash: its
+// text, or the reason why it is missing.
 struct IsolatedText {
   std::optional<std::string> text;
   std::string failure;  // "it threw: …", "it was ended by signal 11 (Segmentation fault)", …
 };
 
-// Ended after so many seconds of processor time, or five times as many in all; or where it and all
-// that it started do nothing for as long, or for a minute where that is less. `waiting` is called
-// fifty times a second. Where this process is asked to end (interrupts.h), it ends too.
+// Ends it after this many seconds of processor time, or five times as many of wall time, or if it
+// and all that it started are idle for as long, at most a minute. Calls `waiting` fifty times a
+// second. Ends it, too, when this process is to end (interrupts.h).
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
                            std::int64_t memory_bytes = Limits{}.memory_bytes,
                            const std::function<void()>& waiting = {});

@@ -1,4 +1,4 @@
-// Judges: what is asked of them goes by a socket, the points themselves lie in shared memory.
+// Verifiers: requests go over a socket, the points themselves are in shared memory.
 #include "benchmarks/run/judge.h"
 
 #include <fcntl.h>
@@ -25,8 +25,8 @@
 namespace isoline::benchmarks {
 namespace {
 
-// As near as two evaluations of one point by one build can be told to be; `size` is what numbers of
-// this kind are measured against.
+// The tolerance for two evaluations of one point by one build, relative to `size`, the scale of
+// such values.
 bool agree(double a, double b, double size) {
   constexpr double kRelative = 1e-9, kOfSize = 1e-12;
   if (!std::isfinite(a) || !std::isfinite(b)) return std::isfinite(a) == std::isfinite(b);
@@ -53,8 +53,9 @@ std::string contradiction(const Judged& told, const Judged& judged) {
                  {"the floor of the error in x", told.x_floor, judged.x_floor, judged.x_scale}};
   for (const auto& one : numbers)
     if (!agree(one.told, one.judged, one.size))
-      return fmt::format("{} is {:.6g} on a fresh problem, and was {:.6g} in its own process",
-                         one.name, one.judged, one.told);
+      return fmt::format(
+          "{} is {:.6g} on a new instance of the problem, but was {:.6g} in the cell", one.name,
+          one.judged, one.told);
   return "";
 }
 
@@ -62,7 +63,7 @@ Judges::~Judges() {
   for (Judge& judge : judges_) end(judge);
 }
 
-// To make the problem anew takes what its startup may.
+// Creating the problem again may take its startup time.
 void Judges::ask(std::size_t slot, const Request& request, const Limits& limits) {
   Question question{slot, &request, limits};
   question.limits.hard_seconds = std::max(limits.hard_seconds, limits.startup_seconds);
@@ -81,7 +82,7 @@ Judges::Judge& Judges::judge_of(const Component& problem) {
     return *known;
   }
   if (judges_.size() > workers_.size() && judges_.back().open.empty()) {
-    end(judges_.back());  // the one that was not asked for longest
+    end(judges_.back());  // the one used longest ago
     judges_.pop_back();
   }
   judges_.emplace_front(problem.spec);
@@ -97,7 +98,8 @@ Judges::Judge& Judges::judge_of(const Component& problem) {
 void Judges::start(Judge& judge, const Component& problem) {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
-    throw std::runtime_error(fmt::format("no socket to a judge: {}", std::strerror(errno)));
+    throw std::runtime_error(
+        fmt::format("cannot create a socket for verification: {}", std::strerror(errno)));
   judge.socket = ends[0];
   try {
     judge.group.start([&] {
@@ -133,8 +135,8 @@ int Judges::end(Judge& judge) {
   return ended.wait_status;
 }
 
-// All that it was asked goes to a new judge; but a point that two have died of, or that was over
-// its limits, is answered so.
+// All its open requests go to a new verifier. A point that ended two verifiers, or that exceeded
+// the limits, gets this as its answer.
 void Judges::lose(Judge& judge, const std::string& reason, std::vector<Verdict>& verdicts) {
   const int status = end(judge);
   std::deque<Question> open;
@@ -205,7 +207,7 @@ void Judges::add_to(std::vector<pollfd>& waiting) const {
 
 namespace {
 
-// One instance of a problem, made afresh, and the meter that measures on it as on any run.
+// A new instance of a problem, and the meter that measures it as in a run.
 struct Instance {
   explicit Instance(Problem made) : problem(std::move(made)), meter(problem, {}, {}, trace) {
     meter.leave_gradients_out();
@@ -213,8 +215,7 @@ struct Instance {
   }
   Judged judged(VectorRef theta) {
     require(theta.size() == problem.unknowns(), [&] {
-      return fmt::format("it returned {} numbers, and the problem has {}", theta.size(),
-                         problem.unknowns());
+      return fmt::format("it returned {} numbers instead of {}", theta.size(), problem.unknowns());
     });
     meter.finish(theta, Status::budget);
     return told_by(trace);
@@ -225,7 +226,7 @@ struct Instance {
   Meter meter;
 };
 
-// The work of a judge, in its own process, until nobody asks any more.
+// The work of a verifier, in its own process, until the socket closes.
 class Chamber {
  public:
   Chamber(const Catalog& catalog, const Component& problem, const std::vector<Worker>& workers)
@@ -270,7 +271,7 @@ class Chamber {
     } catch (const std::exception& error) {
       set_text(reply.failure, error.what());
     } catch (...) {
-      set_text(reply.failure, "it threw something that is no std::exception");
+      set_text(reply.failure, "it threw an object that is not a std::exception");
     }
     return reply;
   }

@@ -1,5 +1,5 @@
-// Returned points judged where no cell has had its hands: by a process a problem, which makes the
-// problem afresh, judges one point after another, and is replaced when it dies of one.
+// Verification of returned points outside their cells: one process per problem creates the problem
+// again, evaluates one point after the other, and is replaced if a point ends it.
 #pragma once
 
 #include <poll.h>
@@ -18,13 +18,13 @@
 
 namespace isoline::benchmarks {
 
-// What a run is judged by, as a trace has it.
+// The values by which a run is judged, from its trace.
 struct Judged {
   double loss = 0, x_error = 0;
   double minimum = 0, scale = 0, x_scale = 0, x_floor = 0;
 };
 
-// What it is judged by as the cell itself wrote it down.
+// The same values as the cell itself recorded them.
 Judged told_by(const Trace& trace);
 
 // The first of these numbers in which they differ by more than rounding, in words; "" where none
@@ -34,14 +34,14 @@ std::string contradiction(const Judged& told, const Judged& judged);
 struct Verdict {
   std::size_t slot;
   std::optional<Judged> judged;
-  std::string failure;  // why there is none: "it was ended by signal 11 (Segmentation fault)"
-  bool is_interrupted = false;  // somebody killed the judge, or none could be started: once more
+  std::string failure;          // the reason: "signal 11 (Segmentation fault) ended it"
+  bool is_interrupted = false;  // the verifier was killed, or could not be started: try again
 };
 
 class Judges {
  public:
-  // `workers` are those whose returned points are to be judged; they are made before the first
-  // judge is started, which sees their shared memory.
+  // `workers` own the returned points; they are created before the first verifier, which sees their
+  // shared memory.
   Judges(const Catalog& catalog, const std::vector<Worker>& workers)
       : catalog_(catalog), workers_(workers) {}
   ~Judges();
@@ -79,10 +79,10 @@ class Judges {
   const Catalog& catalog_;
   const std::vector<Worker>& workers_;
   std::vector<Verdict> unjudged_;  // those that no judge could be started for
-  std::list<Judge> judges_;        // the last asked first
+  std::list<Judge> judges_;        // most recently used first
 };
 
-// What a judge does in its own process.
+// The work of a verifier in its own process.
 
 // Messages of the socket between a run and its judge.
 struct PointToJudge {
@@ -98,8 +98,8 @@ struct JudgesReply {
   char failure[Trace::kText];
 };
 
-// Answers what comes by the socket, about points that the workers returned, until nobody asks any
-// more. Never returns.
+// Answers requests from the socket about points that the workers returned, until it closes. Never
+// returns.
 [[noreturn]] void judge_points(const Catalog& catalog, const Component& problem,
                                const std::vector<Worker>& workers, int socket);
 

@@ -26,7 +26,8 @@ LimitWatch::Breach timeout(std::string message) { return {Status::timeout, std::
 }  // namespace
 
 Limits limits_of(const Request& request, const Limits& standard, double declared_seconds) {
-  constexpr double kForeignStartup = 600;  // its door waits for that, and gives it up before
+  constexpr double kForeignStartup =
+      600;  // the process adapter waits this long, and gives up first
   Limits limits = standard;
   if (request.problem.foreign || request.optimizer.foreign)
     limits.startup_seconds = std::max(limits.startup_seconds, kForeignStartup);
@@ -94,7 +95,7 @@ std::optional<LimitWatch::Breach> LimitWatch::check_time(bool has_asked_oracle, 
     begun_ = now;
   }
   const double most = has_begun_ ? limits_.hard_seconds : limits_.startup_seconds;
-  const char* const until = has_begun_ ? "" : ", and no oracle call";
+  const char* const until = has_begun_ ? "" : " without an oracle call";
   if (now.processor - begun_.processor > most)
     return timeout(fmt::format("killed after {} s of processor time{}; a longer --time allows more",
                                most, until));

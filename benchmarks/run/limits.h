@@ -16,9 +16,8 @@
 
 namespace isoline::benchmarks {
 
-// Processor time is that of the whole group, divided by the threads asked for; wall time, five
-// times that, is for those who wait. What a machine spends on others counts for neither limit but
-// the second.
+// Processor time is that of the complete group, divided by the requested threads. Wall time, five
+// times that, protects waiting users. Other load on the machine affects only the second limit.
 struct Limits {
   double startup_seconds = 30;   // of processor time, from the fork to the first oracle call
   double hard_seconds = 60;      // of processor time, from the first oracle call
@@ -29,13 +28,13 @@ struct Limits {
   static constexpr double kWallFactor = 5;
 };
 
-// Of one request: twice its soft time limit, where it has one; else what its suite says; else ten
-// times what its work takes, where that is more than the standard.
+// The limit of one request: twice its soft time limit, if it has one; else its suite's; else ten
+// times its predicted time, if that is more than the standard.
 Limits limits_of(const Request& request, const Limits& standard, double declared_seconds = 0);
 
-// What the declared work of cells takes, within their own time: every unit of it costs a forward
-// solve, as the sheets of a result folder measured it, and a factorizing step about n³ besides. 0
-// where a sheet measured none. Each sheet is read once.
+// The time for the nominal cost of cells, within their own limits: each unit costs a forward solve,
+// as measured in the metadata of a result folder, and a factorizing step about n³ in addition. 0 if
+// nothing was measured. Each file is read once.
 class DeclaredTimes {
  public:
   DeclaredTimes(const Catalog& catalog, std::filesystem::path folder)
@@ -49,8 +48,8 @@ class DeclaredTimes {
   std::map<std::string, Sheet> sheets_;  // by the problem's spec
 };
 
-// What a child process has used up, held against its limits. Time in which nobody looked, because
-// this process was itself stopped, does not count.
+// The use of a child process, compared with its limits. Time during which this process was stopped
+// does not count.
 class LimitWatch {
  public:
   struct Breach {
@@ -79,7 +78,7 @@ class LimitWatch {
   Limits limits_;
   int threads_ = 1;
   std::int64_t last_nanoseconds_ = 0;
-  double awake_ = 0;        // seconds in which somebody looked
+  double awake_ = 0;        // seconds during which this process ran
   bool has_begun_ = false;  // with its first oracle call
   Mark begun_, active_;     // at the first oracle call; when it last did something
 };

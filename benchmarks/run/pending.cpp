@@ -21,7 +21,7 @@ bool lock(int descriptor, short kind, const std::string& cell) {
   struct flock one {};
   one.l_type = kind;
   one.l_whence = SEEK_SET;
-  one.l_start = static_cast<off_t>(fnv1a(cell) >> 2);  // not negative, with room for the length
+  one.l_start = static_cast<off_t>(fnv1a(cell) >> 2);  // not negative, with space for the length
   one.l_len = 1;
   while (fcntl(descriptor, F_SETLK, &one) != 0) {
     if (errno == EACCES || errno == EAGAIN) return false;
@@ -39,7 +39,7 @@ std::size_t locks_between(int descriptor, off_t begin, off_t end) {
   one.l_start = begin;
   one.l_len = end - begin;
   if (fcntl(descriptor, F_GETLK, &one) != 0 || one.l_type == F_UNLCK) return 0;
-  if (one.l_start < begin || one.l_start >= end) return 0;  // no lock of ours
+  if (one.l_start < begin || one.l_start >= end) return 0;  // not one of our locks
   return 1 + locks_between(descriptor, begin, one.l_start) +
          locks_between(descriptor, one.l_start + 1, end);
 }
@@ -67,7 +67,7 @@ std::size_t held_cells(const std::filesystem::path& folder) {
   return count;
 }
 
-// What is left of a plan, looked up in the store, and looked up again where others work on it too.
+// The remaining cells of a plan, looked up in the store, and again while other runs work on it.
 
 Pending::Pending(const std::vector<Request>& requests, Store& store, const RunOptions& options,
                  Outcome& outcome)

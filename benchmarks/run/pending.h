@@ -12,10 +12,10 @@
 
 namespace isoline::benchmarks {
 
-// Locks on one file of the folder, a byte a cell. The system takes them back the moment that their
-// process ends, however it ends, so that none is ever left behind; and no process started by it
-// shares them. Where a file system knows no locks each run does all cells: work is then done twice,
-// and nothing is lost. One object a folder and process: closing the file drops all of its locks.
+// Locks on one file of the folder, one byte per cell. The system releases them when their process
+// ends, in whatever way; processes started by it do not share them. On a file system without locks
+// each run does all cells: some work is done twice, and nothing is lost. One object per folder and
+// process: closing the file drops all of its locks.
 class Holds {
  public:
   explicit Holds(const std::filesystem::path& folder);
@@ -30,8 +30,8 @@ class Holds {
   int descriptor_;
 };
 
-// How many cells of a result folder runs of other processes are doing just now, as far as its file
-// system tells; 0 where there is nothing to look at.
+// How many cells of a result folder runs in other processes hold at the moment, according to the
+// file system; 0 if the folder has none.
 std::size_t held_cells(const std::filesystem::path& folder);
 
 // The runs of a plan that are still wanted, each given to one run of the folder alone.
@@ -59,7 +59,7 @@ class Pending {
   const RunOptions& options_;
   Outcome& outcome_;
   Holds holds_;
-  std::deque<const Request*> queue_;  // a cell that is to be timed anew stands in it as often
+  std::deque<const Request*> queue_;  // a cell that needs several timings is queued as often
   std::int64_t look_again_ = 0;       // monotonic nanoseconds
 };
 

@@ -1,4 +1,4 @@
-// Records looked at through a view: nothing but the asked values is made of them.
+// Reads records through a view, which extracts the requested values only.
 #include "benchmarks/run/prediction.h"
 
 #include <fmt/format.h>

@@ -13,8 +13,8 @@
 
 namespace isoline::benchmarks {
 
-// What is asked of records by the hundred thousand before any is read whole: which cell, how it
-// ended, what it took.
+// The few values that are read from records by the hundred thousand: the cell, its status, and its
+// times.
 struct RecordOutline {
   std::string cell;
   std::string problem, optimizer;  // specs
@@ -30,7 +30,7 @@ struct RecordOutline {
 std::vector<RecordOutline> record_outlines(const std::vector<std::filesystem::path>& folders,
                                            const Listener& listener = {});
 
-// What cells took in earlier runs of any build.
+// The times of cells in earlier runs of any build.
 class EarlierTimes {
  public:
   EarlierTimes() = default;

@@ -1,4 +1,4 @@
-// What a plan would do: looked up in the store, and probed.
+// A preview of a plan: looked up in the store, and probed.
 #include "benchmarks/run/preview.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kProbeSeconds = 30;
 
-// Why an optimizer cannot be run on a problem, by its spec; empty: it can.
+// The reason why an optimizer cannot run on a problem, by its spec; empty if it can.
 using Reasons = std::map<std::string, std::string>;
 
 // The requests of one problem's setting, one for each optimizer's.
@@ -57,7 +57,7 @@ Reasons probe(const Catalog& catalog, const Setting& setting) {
   return reasons;
 }
 
-// Of the first settings, as many as there is time for, made in one process.
+// Probes the first settings, as many as time permits, in one process.
 std::vector<Reasons> probes_together(const Catalog& catalog, const std::vector<Setting>& settings) {
   const auto probe_some = [&] {
     constexpr std::size_t kAtLeast = 100;
@@ -90,7 +90,7 @@ std::vector<Reasons> probes_apart(const Catalog& catalog, const std::vector<Sett
   return probes;
 }
 
-// What the problems say of themselves, by spec: those that were probed, and by name for the others.
+// The descriptions of the problems, by spec if they were probed, and otherwise by name.
 class Probes {
  public:
   Probes(const Catalog& catalog, const std::vector<Request>& requests) {
@@ -137,7 +137,7 @@ class Kept {
   RecordsOfAnyBuild earlier_;
 };
 
-// Of each request, whether one of the folders has it.
+// For each request, whether one of the folders has it.
 std::vector<char> cached_in(const std::vector<std::filesystem::path>& folders,
                             const std::vector<Request>& requests, const PreviewOptions& options) {
   std::vector<char> is_cached(requests.size());

@@ -1,4 +1,4 @@
-// What a plan would do before it does it: which cells are cached, which cannot exist and why, and
+// A preview of a plan: which cells are cached, which cannot exist and why, and
 // how long the rest may take.
 #pragma once
 
@@ -32,8 +32,8 @@ struct PreviewCounts {
   std::size_t cells = 0, cached = 0, inapplicable = 0, missing = 0;
 
   void add(const PreviewedCell& cell);
-  // Of those that are missing, one at a time: those that no earlier run tells of count as the mean
-  // of the others. None where no earlier run tells of any.
+  // For the missing cells, one at a time; cells without a prediction count as the mean of the
+  // others. Nothing if no earlier run predicts any.
   std::optional<double> seconds() const;
 
  private:

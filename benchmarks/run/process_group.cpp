@@ -32,8 +32,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is marked: how many files a process may lock. Linux has not looked at this limit since 2.4,
-// and every process inherits it.
+// The limit that carries the mark: the number of file locks. Linux has ignored this limit
+// since 2.4, and every process inherits it.
 constexpr auto kMarked = static_cast<__rlimit_resource>(RLIMIT_LOCKS);
 constexpr std::string_view kMarkedLine = "Max file locks";
 
@@ -138,7 +138,8 @@ std::vector<pid_t> children_of(pid_t process) {
 std::vector<pid_t> processes_of_this_namespace() {
   const auto namespace_of = [](const std::string& process) {
     std::error_code error;
-    return fs::read_symlink("/proc/" + process + "/ns/pid", error);  // empty where it is not told
+    return fs::read_symlink("/proc/" + process + "/ns/pid",
+                            error);  // empty if the system does not report it
   };
   const fs::path own = namespace_of("self");
   std::vector<pid_t> all = all_processes();
@@ -184,9 +185,9 @@ std::string signal_name(int signal) {
 }
 
 std::string end_of_process(int wait_status) {
-  if (WIFSIGNALED(wait_status)) return "it was ended by " + signal_name(WTERMSIG(wait_status));
+  if (WIFSIGNALED(wait_status)) return signal_name(WTERMSIG(wait_status)) + " ended it";
   const int code = WEXITSTATUS(wait_status);
-  return code == 0 ? "it left without an answer" : fmt::format("it left with exit code {}", code);
+  return code == 0 ? "it exited without an answer" : fmt::format("it exited with code {}", code);
 }
 
 // Groups of processes by fork, a process group, a pidfd and inherited marks.
@@ -208,7 +209,7 @@ std::size_t free_slot() {
   return static_cast<std::size_t>(free - leaders.begin());
 }
 
-// A mark: that it is one of ours, who gave it, and a number that no other group of his has.
+// A mark: a flag, the process that set it, and a number that none of its other groups has.
 constexpr std::uint64_t kOurs = 0x1501;
 constexpr int kProcessBits = 22, kCountBits = 24;  // the kernel's most, and enough
 
@@ -218,7 +219,7 @@ std::uint64_t new_mark() {
   return (kOurs << kProcessBits | static_cast<std::uint64_t>(getpid())) << kCountBits | number;
 }
 
-// Who gave it; 0 where it is none of ours.
+// The process that set it; 0 if it is not one of our marks.
 pid_t giver_of(std::uint64_t mark) {
   const std::uint64_t head = mark >> kCountBits;
   const std::uint64_t process = head % (std::uint64_t{1} << kProcessBits);
@@ -283,8 +284,8 @@ void ProcessGroup::start(const std::function<void()>& work) {
   descriptor_ = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
 }
 
-// Descendants whose parents have ended became children of this process. Those that have ended too
-// are reaped at once.
+// Descendants of ended parents are now children of this process. Those that have ended are reaped
+// at once.
 std::vector<pid_t> ProcessGroup::strays() {
   std::vector<pid_t> children = children_of(getpid());
   std::erase_if(children, [&](pid_t child) {
@@ -343,7 +344,7 @@ std::optional<ProcessGroup::End> ProcessGroup::collect() {
   siginfo_t ended{};
   const int waited = waitid(P_PID, static_cast<id_t>(leader_), &ended, WEXITED | WNOHANG | WNOWAIT);
   if (waited == 0 && ended.si_pid == 0) return std::nullopt;
-  ::kill(-leader_, SIGKILL);  // until the child is reaped, its number is nobody else's
+  ::kill(-leader_, SIGKILL);  // until the child is reaped, no other process can get its number
   End end;
   rusage used{};
   wait4(leader_, &end.wait_status, 0, &used);
@@ -360,8 +361,8 @@ void ProcessGroup::leave_table() {
   leader_ = 0;
 }
 
-// Round by round: the children of one that has ended come up in the next, until one finds nobody. A
-// process that the kernel cannot end, as one that waits for a dead network disk, is left to it
+// In rounds: the children of an ended process appear in the next round, until a round finds none. A
+// process that the kernel cannot end, such as one that waits for a dead network disk, is left alone
 // after a while.
 void ProcessGroup::reap_strays() {
   constexpr std::int64_t kMostNanoseconds = 5'000'000'000;

@@ -1,9 +1,9 @@
-// A child process and all that descends from it, as one: started, measured, asked to end, killed
-// and reaped together. What descends cannot get away by a session of its own or by outliving its
+// A child process and all its descendants, as one group: started, measured, stopped, killed and
+// reaped together. Descendants cannot escape by a session of their own or by outliving their
 // parent: this process is a subreaper, and every descendant carries the mark of its group.
 //
-// What has its user's rights can still end this process by SIGKILL; docs/running-a-matrix.md says
-// what holds and what does not.
+// A process with the rights of the user can still end this process by SIGKILL;
+// docs/running-a-matrix.md states the limits.
 #pragma once
 
 #include <sys/types.h>
@@ -26,14 +26,14 @@ struct ProcessFigures {
 };
 std::optional<ProcessFigures> figures_of(pid_t process);  // nothing where it is gone
 
-// Its resident memory, of what it shares with others its share alone: 0 where that is not told.
+// Its resident memory, with its share of shared pages; 0 if the system does not report it.
 std::int64_t proportional_bytes(pid_t process);
 
 std::vector<pid_t> children_of(pid_t process);  // of all its threads, those that ended included
 std::vector<pid_t> processes_of_this_namespace();
 
-// A mark that a process gives itself and all that descends from it inherit, whatever session or
-// group they move to and whatever program they become; 0 where there is none.
+// A mark that a process sets and all its descendants inherit, in every session, group and program;
+// 0 if there is no mark.
 void mark_this_process(std::uint64_t mark);
 std::uint64_t mark_of(pid_t process);
 
@@ -56,16 +56,16 @@ class HeldSignals {
   sigset_t before_;
 };
 
-// What every isolated child does with itself, and what its end by a signal means.
+// The setup of every isolated child, and the meaning of its end by a signal.
 
-// Of the calling process, over what it has already: beyond that an allocation throws.
+// Limits the memory of this process beyond its present use: a larger allocation throws.
 void limit_memory(std::int64_t bytes);
 
 [[noreturn]] void leave();  // with its output written, and nothing else done
 
 std::string signal_name(int signal);  // "signal 11 (Segmentation fault)"
 
-// Of a child that left no answer: "it was ended by signal …", "it left …".
+// The end of a child without an answer: "signal … ended it", "it exited …".
 std::string end_of_process(int wait_status);
 
 class ProcessGroup {
@@ -114,12 +114,12 @@ class ProcessGroup {
   std::int64_t peak_bytes_ = 0;
 };
 
-// Processes of cells whose program was itself killed by SIGKILL, and could end nothing.
+// Processes of cells whose program was killed by SIGKILL, and so could not end them.
 void end_what_killed_runs_left();
 
 // To every group of this process; for handlers of signals.
 void signal_all_groups(int signal) noexcept;
-// Whether a process belongs to the process group of one of ours; for handlers of signals.
+// Whether a process belongs to one of our process groups; for signal handlers.
 bool is_of_a_group(pid_t process) noexcept;
 
 }  // namespace isoline::benchmarks

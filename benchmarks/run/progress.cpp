@@ -52,7 +52,7 @@ std::size_t terminal_width() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
-// The one control sequence that is ours.
+// The only control sequence that we emit.
 void clear_line() { std::fputs("\r\x1b[K", stderr); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a person sees of long work: one live line on a terminal, a plain line every ten seconds in a
+// The progress of long work: one live line on a terminal, a plain line every ten seconds in a
 // pipe.
 #pragma once
 
@@ -8,9 +8,8 @@
 
 namespace isoline::benchmarks {
 
-// Cells are weighed by what they are predicted to take, so that cheap ones promise nothing for dear
-// ones, and the weight of all others is the mean of these. What those that have ended took corrects
-// the predictions of the rest.
+// Cells are weighed by their predicted times; cells without a prediction get the mean. Finished
+// cells correct the predictions of the rest.
 class TimeLeft {
  public:
   void expect(std::optional<double> predicted_seconds) { expected_.add(predicted_seconds); }
@@ -40,7 +39,7 @@ class Progress {
   ~Progress();
 
   void started(const std::string& name) { current_ = name; }
-  // Of each that is to come, how long it may take; without it all count alike.
+  // The predicted time of each remaining item; without it all count equally.
   void expect(std::optional<double> predicted_seconds) { time_left_.expect(predicted_seconds); }
   void finished(std::optional<double> predicted_seconds);
   void reached(std::int64_t done) { done_ = done; }

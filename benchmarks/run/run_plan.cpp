@@ -21,7 +21,7 @@ namespace {
 
 using RowsByPair = std::map<std::pair<std::string, std::string>, Json>;
 
-// What an earlier plan has left; a damaged file is set aside, and written anew.
+// The cells of an earlier plan; a damaged file is moved away, and written again.
 RowsByPair stored_rows(const std::filesystem::path& file, Store& store) {
   RowsByPair rows;
   if (!is_there(file)) return rows;

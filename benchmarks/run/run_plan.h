@@ -19,10 +19,10 @@ void write_used_rates(const Rates& rates, const std::vector<Request>& requests, 
 
 // A plan from its first file to its last record: what `run`, `claims` and `tune` have in common.
 
-// UsageError, and nothing written, where a component of the plan cannot be made. Else the plan is
-// stored in the folder before anything runs, so that a part never passes for the whole; then the
-// rates that it uses and the sheets of its components; then its cells are run. The plan is stored
-// again where records have vanished by then: the folder may have been emptied.
+// UsageError, and nothing written, if a component of the plan cannot be created. Otherwise stores
+// the plan before anything runs, so that a part never passes for the complete plan; then the rates
+// that it uses and the component metadata; then runs the cells. Stores the plan again if records
+// have disappeared meanwhile: the folder may have been emptied.
 Outcome run_plan(const Catalog& catalog, const std::string& name,
                  const std::vector<Request>& requests, const std::filesystem::path& folder,
                  const RunOptions& options, const Rates& rates = {});

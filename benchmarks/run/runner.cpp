@@ -187,7 +187,7 @@ class Runner {
     Worker& worker = workers_[verdict.slot];
     if (!verdict.judged)
       return worker.dispute(verdict.is_interrupted ? Status::interrupted : Status::failed,
-                            "its point could not be judged: " + verdict.failure);
+                            "its point could not be verified: " + verdict.failure);
     const std::string found = contradiction(told_by(worker.trace()), *verdict.judged);
     if (!found.empty()) worker.dispute(Status::failed, found);
   }
@@ -279,7 +279,7 @@ void run_in_process(const Catalog& catalog, const std::vector<Request>& requests
   }
 }
 
-// Requests made anew.
+// Requests restored from records.
 
 Request request_again(const Catalog& catalog, const Record& record, double hard_seconds) {
   Request request = record.request;
@@ -292,11 +292,11 @@ Request request_again(const Catalog& catalog, const Record& record, double hard_
   return named(std::move(request));
 }
 
-// Asks again for what records asked for, and runs it hidden from everybody else.
+// Runs the requests of records again, in a hidden folder.
 
 namespace {
 
-// What the record asked for, as this program asks for it.
+// The request of a record, in the options of this program.
 Request same_request(const Catalog& catalog, const Record& record) {
   constexpr double kLongest = 600;  // seconds: the record has ended without a clock before
   const Request request = request_again(catalog, record, kLongest);

@@ -28,12 +28,12 @@ struct Outcome {
   std::map<Status, std::int64_t> statuses;  // of all planned cells that have a record
   std::vector<std::string> failures;        // "problem × optimizer, seed 0: crashed: …"
   std::optional<Crash> crash;               // the first of them
-  std::vector<std::string> conflicts;       // cells whose repetition gave another result
-  std::vector<std::string> remarks;         // damaged files, sheets that could not be made
-  std::vector<std::string> missing;         // cells that were done and whose record is gone
+  std::vector<std::string> conflicts;       // cells whose repetition has another result
+  std::vector<std::string> remarks;         // damaged files, missing metadata
+  std::vector<std::string> missing;  // cells that were done and whose records have disappeared
   std::int64_t reused_from_other_builds = 0;
-  std::int64_t interrupted = 0;  // cells that somebody killed: the same run runs them again
-  bool is_interrupted = false;   // asked to end
+  std::int64_t interrupted = 0;  // cells that were killed from outside: the same run repeats them
+  bool is_interrupted = false;   // stopped by the user
   double seconds = 0;            // that the run took
 
   void count(const Record& record);
@@ -56,10 +56,10 @@ struct RunOptions {
   Progress::Style progress = Progress::Style::silent;
   bool keeps_output = false;   // of cells, in their records
   bool keeps_fields = false;   // of every seed; else those of seed 0
-  bool keeps_spectra = false;  // a record without them is made anew
+  bool keeps_spectra = false;  // a record without them is computed again
   std::string command;         // for the record
 
-  // Whether a record that is there, if one is, stands in nobody's way.
+  // Whether an existing record, if any, prevents nothing.
   bool redoes(const std::optional<Record>& done) const {
     return force || (done && (retry.contains(done->status) || lacks_spectrum(*done)));
   }
@@ -78,22 +78,22 @@ Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, St
 
 int one_a_core();  // how many cells at a time a machine is meant for
 
-// Cells run in this very process, one after another, for a debugger: nothing stands between a
-// mistake and whoever looks for it.
+// Runs cells in this process, one after another, for a debugger: nothing separates a mistake from
+// its observer.
 
-// Each is told when it has ended. No isolation, no limit but the soft budgets, no judge, no record:
-// a crash ends this process, and leaves a core file where the shell allows one.
+// Calls back after each cell. No isolation, no limits but the soft budgets, no verification, no
+// record: a crash ends this process, and leaves a core file if the shell allows it.
 void run_in_process(const Catalog& catalog, const std::vector<Request>& requests,
                     const std::function<void(const Request&, const Trace&)>& ended);
 
-// Recorded runs repeated from starts that differ in the last bit: what moves then hangs on
+// Recorded runs repeated from starts that differ in the last bit: values that then move depend on
 // rounding, and so on the processor and the libraries, not on the method.
 
-// What the record asked for, of the components that this program has: UsageError where it has them
-// no more, or they have other options. Its cell is the one that this program asks for.
+// The request of the record for the components of this program; UsageError if it no longer has
+// them, or if they have other options. The cell is that of this program.
 Request request_again(const Catalog& catalog, const Record& record, double hard_seconds);
 
-// Recorded runs repeated from starts that differ in the last bit: what moves then hangs on
+// Recorded runs repeated from starts that differ in the last bit: values that then move depend on
 // rounding, and so on the processor and the libraries, not on the method.
 
 // The records of perturbation `number`, run in a folder that is gone afterwards. Left out are cells

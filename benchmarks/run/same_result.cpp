@@ -22,7 +22,7 @@ std::string against(const std::string& place, const Json& a, const Json& b) {
   return fmt::format("{}: {} against {}", place, shown(a), shown(b));
 }
 
-// What stands at a place of either, or that nothing does.
+// The value at a place of either record, or a note that it is missing.
 Json value_at(const Json& json, const Json::json_pointer& place) {
   return json.contains(place) ? json.at(place) : Json("nothing");
 }
@@ -67,7 +67,7 @@ std::size_t common_points(const Curve& a, const Curve& b) {
   return static_cast<std::size_t>(std::min(before(a), before(b)));
 }
 
-// Of the spectra that both keep, at an iteration where both have theirs; then of the fields.
+// For spectra, at an iteration where both records have one; then for fields.
 std::string difference_in_what_is_kept(const Record& a, const Record& b) {
   if (a.spectrum && b.spectrum)
     for (std::size_t i = 0; i < a.spectrum->iterations.size(); ++i) {

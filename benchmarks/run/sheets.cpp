@@ -1,8 +1,8 @@
-// Makes sheets, and measures the prices in them: a forward solve at a fresh point and one call of
-// the oracle after it, each timed by itself, over and over; a round is many such pairs on work
-// space of its own. Its price is the ratio of the two medians, so that neither a drift of the
-// machine nor what others take of it counts, and nothing is subtracted. The call includes all that
-// it has to prepare at a fresh point.
+// Writes component metadata, and measures the costs in them. One measurement is a forward solve at
+// a new point and one call of the oracle after it, timed separately; a round is many such pairs on
+// its own work space. The cost is the ratio of the two medians, so that neither a drift of the
+// machine nor other load matters, and nothing is subtracted. The call includes everything that it
+// has to prepare at a new point.
 #include "benchmarks/run/sheets.h"
 
 #include <fmt/format.h>
@@ -42,7 +42,7 @@ constexpr std::size_t kMostPairs = 1000, kMostRounds = 31, kFewRounds = 3;
 constexpr Real kWidest = 4;  // a range over this factor, or down to nothing, says too little
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
 
-// Room for what goes into the oracles of a problem and comes out of them.
+// Buffers for the inputs and outputs of a problem's oracles.
 struct Room {
   explicit Room(const Problem& problem)
       : w(Matrix::Ones(problem.outputs(), problem.samples())),
@@ -106,12 +106,12 @@ std::vector<Oracle> measured_ones(OracleSet offered) {
   return products;
 }
 
-// Of the processor; where another process computes, of the clock on the wall.
+// Processor time; wall time if another process computes.
 double seconds_by(bool is_elsewhere) {
   return is_elsewhere ? 1e-9 * static_cast<double>(monotonic_nanoseconds()) : processor_seconds();
 }
 
-// What one call takes: of the processor, where it is long enough to be interrupted; else by its
+// The time of one call: processor time if it is long enough to be interrupted, otherwise by its
 // time-stamp counter, which costs little beside a microsecond.
 double seconds_of(const Problem& problem, double expected, const std::function<void()>& call) {
   if (expected > kClockSeconds && !problem.is_elsewhere()) {
@@ -130,7 +130,7 @@ Real at_share(std::vector<Real>& values, Real share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-// Of one oracle: what is expected of it and of the forward solve before it, in seconds.
+// The expected times of one oracle and of the forward solve before it, in seconds.
 struct Question {
   Oracle oracle;
   double forward, expected;
@@ -255,13 +255,13 @@ bool are_ours(const std::optional<MeasuredPrices>& prices, const std::string& bu
   return prices && prices->build == build && prices->processor == this_build()->processor;
 }
 
-// Sheets of problems and optimizers, landscapes included.
+// Metadata of problems and optimizers, including plotted landscapes.
 
 using optimizers::privileges_of;
 namespace {
 
 constexpr Index kGrid = 81;                       // points a side of a landscape
-constexpr Index kSmall = 16;                      // largest target and truth that a sheet shows
+constexpr Index kSmall = 16;                      // largest target and truth in a file of metadata
 constexpr Index kMostEntries = Index{256} * 256;  // of a Jacobian that is factorized: 20 ms
 constexpr const char* kInverseNames[] = {"none", "exact", "damped", "estimate", "approximate"};
 
@@ -287,7 +287,7 @@ bool has_small_jacobian(const Problem& problem) {
          problem.offers().contains(Oracle::jacobian);
 }
 
-// σ_max / σ_min of J there; nothing where it is no number.
+// σ_max / σ_min of J there; nothing if it is not a number.
 std::optional<Real> condition_at(const Problem& problem, VectorRef theta) {
   Point at;
   Matrix J;
@@ -346,7 +346,7 @@ void draw_landscapes(const Problem& problem, Sheet& sheet) {
   sheet.landscape_y = in_y;
 }
 
-// y = x with an inverse of any kind: what a method asks of it shows what it would see.
+// y = x with an inverse of every kind: the calls of a method show its extra information.
 class Witness final : public problems::Physics {
  public:
   explicit Witness(Inverse kind) : kind_(kind) {}
@@ -375,14 +375,14 @@ std::vector<std::string> possible_privileges(const OptimizerEntry& entry,
   return all;
 }
 
-// What another program says of itself in the place of what the registry says of its door.
+// Replaces the adapter's description by the external program's own.
 void add_words_of(const Foreign& foreign, Sheet& sheet) {
   if (!foreign.label.empty()) sheet.title = foreign.label + ", by another program";
   if (!foreign.source.empty()) sheet.source = foreign.source;
   if (!foreign.note.empty()) sheet.note = foreign.note;
 }
 
-// What the registry knows of a component, without making one.
+// The registry's view of a component, without creating one.
 template <class Entry>
 Sheet described(const char* kind, const Entry& entry, const Component& component) {
   Sheet sheet{.kind = kind,
@@ -443,14 +443,14 @@ Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
   return sheet;
 }
 
-// Makes the sheets of a plan, each in a process of its own, and measures the prices of its
-// problems.
+// Writes the metadata of a plan's components, each in its own process, and measures the costs of
+// its problems.
 
 namespace {
 
 constexpr double kSheetSeconds = 30;
 
-// Makes sheets, each in a process of its own: what goes wrong there costs that sheet its figures.
+// Creates metadata, each in its own process: a failure costs the measured values of one file.
 class SheetWriter {
  public:
   SheetWriter(const Catalog& catalog, Store& store, Progress::Style style)
@@ -478,12 +478,12 @@ class SheetWriter {
     const IsolatedText made = isolated([&] { return file_text(make()); });
     std::string reason = made.failure;
     if (made.text) try {
-        sheet = sheet_from_text(*made.text, "what it wrote");
+        sheet = sheet_from_text(*made.text, "its output");
         return true;
       } catch (const std::exception& error) {
         reason = error.what();
       }
-    store_.remark(fmt::format("the sheet of {} tells no more than the registry does: {}",
+    store_.remark(fmt::format("the metadata of {} contain only what the registry knows: {}",
                               sheet.spec, reason));
     return false;
   }
@@ -492,7 +492,7 @@ class SheetWriter {
     try {
       store_.write(sheet);
     } catch (const std::exception& error) {
-      store_.remark(fmt::format("the sheet of {} is missing: {}", sheet.spec, error.what()));
+      store_.remark(fmt::format("the metadata of {} are missing: {}", sheet.spec, error.what()));
     }
   }
 
@@ -506,9 +506,9 @@ class SheetWriter {
     }
   }
 
-  // Those that the folder has already, where this build measured them on this processor: a run that
-  // goes on does not change the report of what is done. The problem is made again: what goes wrong
-  // in measuring does not cost the sheet.
+  // Costs that this build has already measured on this processor: a continued run does not change
+  // the report of finished cells. The problem is created again, and a failure of the measurement
+  // does not cost the metadata.
   std::optional<MeasuredPrices> prices_of(const Component& component, const std::string& file) {
     const std::string build = prices_build(component);
     auto stored = stored_prices(store_.folder() / "components" / file);

@@ -69,7 +69,7 @@ void Store::make_folders() const {
   }
 }
 
-// Only what our own writing leaves behind, where it writes: everything else is somebody's.
+// Removes only what our own writing leaves behind; all other files belong to someone.
 void Store::sweep() const {
   for (const char* part : {"", "runs", "components", "checkpoints"})
     for (const std::string& name : names_in(folder_ / part))
@@ -100,7 +100,7 @@ void Store::clear_way(const fs::path& path) {
     case fs::file_type::symlink:
       return;  // writing replaces it
     default:
-      set_aside(path, "it is no file");
+      set_aside(path, "it is not a file");
   }
 }
 
@@ -112,7 +112,7 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
       plan = plan_from_text(read_text(path), path.string());
     } catch (const std::exception& error) {
       plan = {};
-      set_aside(path, fmt::format("{} (of the cells that earlier runs planned only those with a "
+      set_aside(path, fmt::format("{} (of the cells planned by earlier runs, only those with a "
                                   "record are known)",
                                   error.what()));
     }
@@ -126,12 +126,12 @@ void Store::plan(const std::string& suite, const std::vector<PlannedCell>& cells
 
 namespace {
 
-// Nothing where there is none; throws where what stands there is not the record of the request.
+// Nothing if the file does not exist; throws if it is not the record of the request.
 std::optional<Record> stored_record(const fs::path& path, const Request& request) {
   if (!is_there(path)) return std::nullopt;
   Record record = read_record(path);
   require(record.cell == request.cell,
-          [&] { return "it holds the record of another cell, " + record.cell; });
+          [&] { return "it is the record of another cell, " + record.cell; });
   if (record.status == Status::interrupted) return std::nullopt;
   return record;
 }

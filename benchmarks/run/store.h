@@ -26,22 +26,23 @@ class Store {
   // aside.
   void plan(const std::string& suite, const std::vector<PlannedCell>& cells);
 
-  // The record of this request by this build, unless there is none, or it is damaged or
-  // interrupted. A damaged one is set aside; `find_in`, which only looks, leaves it where it is.
+  // The record of this request by this build, unless it is missing, damaged or interrupted. A
+  // damaged one is moved away; `find_in`, which only reads, leaves it in place.
   std::optional<Record> find(const Request& request);
   static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
 
-  // What this build calls its record of the request, and whether there is one, of whatever kind.
+  // The file name of this build's record of the request, and whether a file of any kind has this
+  // name.
   static std::string name_of(const Request& request);
   bool has(const Request& request) const;
 
-  // Creates the folder and its rooms where they are missing; UsageError where they cannot be.
+  // Creates the folder and its subfolders if they are missing; UsageError if that fails.
   void make_folders() const;
   // Moves a file that cannot be read as what it should be into `damaged/`, where nothing is ever
   // overwritten, with a remark that names it and the reason.
   void set_aside(const std::filesystem::path& path, const std::string& reason);
 
-  // What its user should know: a sentence each.
+  // Messages for the user, one sentence each.
   void remark(std::string sentence) { remarks_.push_back(std::move(sentence)); }
   const std::vector<std::string>& remarks() const { return remarks_; }
 
@@ -55,7 +56,7 @@ class Store {
 
  private:
   void write_files(const Record& record);
-  // Makes the folders anew where they are removed while the run goes on.
+  // Creates the folders again if they are removed during the run.
   void try_to_write(const std::function<void()>& write);
   void sweep() const;  // removes what killed runs of this machine left half-written
   void clear_way(
@@ -65,7 +66,7 @@ class Store {
   std::vector<std::string> remarks_;
 };
 
-// What a folder holds of a request, whichever build wrote it.
+// The record of a request in a folder, of any build.
 class RecordsOfAnyBuild {
  public:
   explicit RecordsOfAnyBuild(const std::filesystem::path& folder);  // which need not be there

@@ -23,7 +23,7 @@ std::vector<std::string> lines_of(const char* text) {
   return lines;
 }
 
-// What only learning problems and problems with series trace.
+// The parts of a trace that only learning problems and problems with series have.
 void add_training_columns(const Trace& trace, Curve& curve) {
   const auto column = [&](auto&& value) {
     std::vector<Real> values;
@@ -186,7 +186,7 @@ std::optional<bool> is_found(const Trace& trace, Real tau) {
          is_at_most(trace.last.x_error, x_goal(tau, trace.x_scale, trace.x_floor));
 }
 
-// What the run is judged by, and how it fared.
+// The criterion of the run, and its result.
 void add_verdicts(const Trace& trace, Record& record) {
   const auto known = [](Real value) {
     return std::isnan(value) ? std::nullopt : std::optional(value);

@@ -72,26 +72,26 @@ std::string_view bytes_of(const Vector& vector) {
           sizeof(Real) * static_cast<std::size_t>(vector.size())};
 }
 
-// How many numbers the header says there are, which must be how many there are: what it says alone
-// makes no room for them.
+// The number in the header must equal the number of values: memory is never allocated by the header
+// alone.
 void require_count(const Json& header, const char* name, std::size_t there) {
   const auto said = header.at(name).get<std::uint64_t>();
   require(said == there, [&] {
-    return fmt::format("its \"{}\" says {} numbers and it holds {}", name, count_text(said),
+    return fmt::format("its \"{}\" is {}, but it has {} numbers", name, count_text(said),
                        count_text(there));
   });
 }
 
 Vector taken(Json& json, const char* list) {
   require(json.contains(list), [&] { return fmt::format("it has no \"{}\"", list); });
-  require(json[list].is_array(), [&] { return fmt::format("its \"{}\" is no list", list); });
+  require(json[list].is_array(), [&] { return fmt::format("its \"{}\" is not a list", list); });
   const std::vector<Real> values = reals_of(json[list]);
   json.erase(list);
   return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
 }
 
 TrainedNetwork from_json(Json json) {
-  require(json.is_object(), "it is no JSON object");
+  require(json.is_object(), "it is not a JSON object");
   const Vector theta = taken(json, "theta"), statistics = taken(json, "mean_statistics");
   TrainedNetwork network = from_header(json);
   require_count(json, "parameters", static_cast<std::size_t>(theta.size()));
@@ -116,8 +116,9 @@ TrainedNetwork from_raw(const Json& header, std::string_view numbers) {
   const auto said = header.at("parameters").get<std::uint64_t>();
   const std::size_t there = numbers.size() / sizeof(Real);
   require(numbers.size() % sizeof(Real) == 0 && said <= there, [&] {
-    return fmt::format("it is cut short: {} bytes of numbers follow its header, which says {} of 8",
-                       numbers.size(), count_text(said));
+    return fmt::format(
+        "it is truncated: {} bytes follow its header, which declares {} numbers of 8",
+        numbers.size(), count_text(said));
   });
   require_count(header, "statistics", there - said);
   network.theta.resize(static_cast<Index>(said));
@@ -145,11 +146,11 @@ void turn_grids(Matrix& samples, Index N) {
 
 Matrix samples_of(const NumberArray& input, Index inputs, const std::string& origin) {
   require(!input.shape.empty() && input.shape[0] > 0,
-          [&] { return origin + ": it holds no samples"; });
+          [&] { return origin + ": it has no samples"; });
   const Index each =
       std::accumulate(input.shape.begin() + 1, input.shape.end(), Index{1}, std::multiplies<>());
   require(each == inputs, [&] {
-    return fmt::format("{}: its shape is ({}), {} numbers a sample, and the network takes {}",
+    return fmt::format("{}: its shape is ({}), {} numbers per sample, but the network takes {}",
                        origin, fmt::join(input.shape, ", "), each, inputs);
   });
   return Eigen::Map<const Matrix>(input.values.data(), inputs, input.shape[0]);
@@ -184,14 +185,14 @@ TrainedNetwork read_network(const std::filesystem::path& path) {
   try {
     return network_from_text(read_text(path));
   } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{} is no trained network: {}", path.string(), error.what()));
+    throw UsageError(fmt::format("{} is not a trained network: {}", path.string(), error.what()));
   }
 }
 
 void require_fitting(const TrainedNetwork& network, const Problem& problem) {
   const auto require_size = [](const char* what, Index held, Index wanted) {
     require(held == wanted, [&] {
-      return fmt::format("it holds {} {} and its network has {}", held, what, wanted);
+      return fmt::format("it has {} {}, but its network has {}", held, what, wanted);
     });
   };
   require_size("parameters", network.theta.size(), problem.unknowns());

@@ -21,7 +21,7 @@ struct TrainedNetwork {
 // As JSON where the name ends in .json, else the same with its numbers as raw bytes behind it.
 // Whole or not at all.
 void write_network(const TrainedNetwork& network, const std::filesystem::path& path);
-TrainedNetwork read_network(const std::filesystem::path& path);  // UsageError where it is none
+TrainedNetwork read_network(const std::filesystem::path& path);  // UsageError if it is not valid
 TrainedNetwork network_from_text(const std::string& text);       // what such a file holds
 
 // The samples that pass through a network, averaged: what `statistics` holds.

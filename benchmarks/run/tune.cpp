@@ -1,4 +1,4 @@
-// Grids of tuning: which option of a method, around which value, in which unit.
+// Grids of tuning: the option of a method, the values and their unit.
 #include "benchmarks/run/tune.h"
 
 #include <fmt/format.h>
@@ -50,7 +50,7 @@ Knob knob_inside(const Catalog& catalog, const OptimizerEntry& outer, const Comp
   const std::string rule = !is_automatic ? inner.name : problem.is_learned ? "adam" : "gd";
   const OptimizerEntry& entry = catalog.optimizers.at(rule);
   const OptionField* field = field_of(entry, "rate");
-  require(field != nullptr, [&] { return fmt::format("{} has no rate to be tuned", rule); });
+  require(field != nullptr, [&] { return fmt::format("{} has no rate to tune", rule); });
   Knob knob = knob_of_field(entry, *field);
   knob.rule = rule;
   const OptionValues options = options_of(inner);
@@ -195,7 +195,7 @@ Real median(std::vector<Real> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Until x was found, as the kept iterations tell, or the loss was reached; infinite: never.
+// Until solved in x at stored iterations, or in loss; infinite if neither.
 Real work_of(const Record& run) {
   const std::size_t target = rung_of(kTolerance);
   if (run.aim == Aim::loss) {
@@ -281,7 +281,8 @@ struct Candidate {
     return all;
   }
   std::size_t best() const { return best_value(values(), scores(), knob.standard); }
-  // The best stands at an edge, and better than its neighbour: a tie asks for nothing beyond.
+  // The best value is at an edge, and better than its neighbour; after a tie, no further value is
+  // tried.
   bool is_at_edge() const {
     const std::size_t i = best(), last = trials.size() - 1;
     if (last == 0 || (i > 0 && i < last)) return false;

@@ -15,19 +15,19 @@
 
 namespace isoline::benchmarks {
 
-// What tuning sets for a pair of problem and optimizer: the method's tunable option, or that of the
-// gradient rule inside its network-optimizer, where the problem has a network to train.
+// The option that is tuned for a pair of problem and optimizer: the method's tunable option, or
+// that of the gradient rule inside its network-optimizer, if the problem has a network to train.
 struct Knob {
   std::string option;
   std::string rule;  // the name of that gradient rule; empty: the option is the method's own
   Real standard = 1;
   Range range;
   bool is_whole = false;
-  optimizers::Tunable tunable;  // of whose option it is
+  optimizers::Tunable tunable;  // the tunable option of the method
 };
 
-// The knob of a method; nothing where there is nothing to tune. `given` are the options that the
-// pair has anyway.
+// The tunable option of a method, if it has one. `given` are the options that the pair
+// has anyway.
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
                             const Component& problem, const OptionValues& given);
 // The same for an option that is named; UsageError where the method has no such number.
@@ -62,7 +62,7 @@ std::vector<Real> values_of(const Knob& knob, const GivenGrid& grid, Real unit);
 
 Real three_digits(Real value);  // enough of a rate, and they read well
 
-// What a value of a tuned option came to, and which of several is best.
+// The score of a value of a tuned option, and the choice of the best.
 
 // The median work to τ = 1e-6 of what the problem's user wants, then the median of what was left at
 // the end, the loss or the error in x; less is better.
@@ -75,8 +75,8 @@ struct TuningScore {
   }
 };
 
-// Of the runs of one value, a seed each. One that diverged or failed leaves neither number.
-// Learning problems are judged by what is left on their validation alone.
+// From the runs of one value, one per seed. A diverged or failed run gives neither number. Learning
+// problems are judged by the remainder on their validation samples only.
 TuningScore score_of(const std::vector<Record>& runs);
 
 // Which of the values is best. Ties go to the default, or to what is nearest to it on a logarithmic
@@ -119,15 +119,15 @@ struct TunedOption {
 
 struct TuningResult {
   std::shared_ptr<const Json> rows;  // of a table isoline.rates/1
-  std::vector<TunedOption> tuned;    // the same, one a row
+  std::vector<TunedOption> tuned;    // the same, one per row
   std::size_t inapplicable = 0;      // pairs without a row
   Outcome outcome;                   // runs and seconds are those of all rounds
 };
 
-// A row tells the values, their scores, the expected least loss (or error in x) of the best of b of
-// them drawn at random, for b = 1 to all, whether the best still stands at an edge, and the budget
-// of work where it is not that of the first pair. Pairs that are inapplicable have none; where
-// every value failed the one nearest to the default stays.
+// A row has the values, their scores, the expected least loss (or error in x) of the best of b
+// randomly sampled ones, for b = 1 to all, whether the best is at an edge, and the budget of work
+// if it differs from that of the first pair. Inapplicable pairs have none; if every value failed,
+// the one nearest to the default is used.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options);
 

@@ -58,7 +58,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What is known of a planned cell.
+// The known facts about a planned cell.
 struct Known {
   double weight = 1;  // predicted seconds; 1 each where nothing was predicted
   std::optional<RecordOutline> latest;
@@ -76,7 +76,7 @@ void add_planned(const fs::path& folder, Cells& cells) {
   }
 }
 
-// What is predicted of each cell, those of which nothing is counted as the mean of the others.
+// The prediction for each cell; cells without one count as the mean of the others.
 struct Predicted {
   bool is_there = false, tells_times = false;
 };

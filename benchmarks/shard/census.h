@@ -31,8 +31,8 @@ struct Census {
   std::optional<double> remaining_seconds;  // until the end, at the pace of the last hour
 };
 
-// Of the result folder, and of the shards below it. `now` in seconds since 1970. UsageError where
-// there is neither.
+// For the result folder and the shards below it. `now` in seconds since 1970. UsageError if both
+// are missing.
 Census census_of(const std::filesystem::path& whole, std::int64_t now,
                  const Listener& listener = {});
 

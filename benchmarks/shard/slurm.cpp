@@ -61,7 +61,7 @@ std::string merge_script(const Submission& given) {
          fmt::format("{} report {}\n", program, merged);
 }
 
-// What both jobs have, and what the wrapped script writes to.
+// The common parts of both jobs, and the output of the wrapped script.
 std::vector<std::string> shared_words(const Submission& given, const std::string& name) {
   std::vector<std::string> words = {
       "--job-name=isoline-" + given.name, "--requeue", "--open-mode=append",

@@ -13,7 +13,7 @@
 
 namespace isoline::benchmarks {
 
-// What the cells of a plan were predicted to take, written once, before any of its shards runs.
+// The predicted times of a plan's cells, written once, before any of its shards runs.
 // Every task of a run in shards divides the plan by this file alone.
 inline constexpr const char* kPredictedSchema = "isoline.predicted/1";
 
@@ -59,7 +59,7 @@ std::string of_this_process(const char* variable);
 // UsageError, with the text, if both are missing.
 Shard shard_of(const std::string& asked, const Environment& environment = of_this_process);
 
-// Of each cell its shard, from 0. The heaviest first, each to the shard that has least (Graham,
+// The shard of each cell, from 0. The heaviest first, each to the shard that has least (Graham,
 // SIAM J. Appl. Math. 17, 1969: the longest processing time first, at most 4/3 of the optimum);
 // equal ones in the order of their digests. It depends on nothing else, so that every task finds
 // the same split.

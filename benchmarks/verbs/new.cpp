@@ -14,7 +14,7 @@
 
 namespace isoline::benchmarks {
 
-// Of clients/start/ and core/foreign/.
+// The files of clients/start/ and core/foreign/.
 std::string_view embedded_start_problem_cpp();
 std::string_view embedded_start_optimizer_cpp();
 std::string_view embedded_start_problem_c();
@@ -56,7 +56,7 @@ Spelling spelling_of(const std::string& name) {
   return all;
 }
 
-// What the files of clients/start/ call their component.
+// The name of the component in the files of clients/start/.
 Spelling spelling_in_start(const std::string& kind) { return spelling_of("my-" + kind); }
 
 void put(std::string& text, const std::string& before, const std::string& after) {

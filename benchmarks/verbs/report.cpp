@@ -60,7 +60,7 @@ void open_page(const fs::path& page) {
         fmt::format("--open needs xdg-open, which is not installed; open {} yourself\n", path));
 }
 
-// What it writes: "index.html, report.csv, …"
+// The files that it writes: "index.html, report.csv, …"
 std::string format_names() {
   std::vector<std::string> names;
   for (const reports::Format& format : reports::kFormats) names.emplace_back(format.file);

@@ -169,7 +169,7 @@ void warn_of_build() {
       "the preset `portable` runs on all of them\n");
 }
 
-// What would stand after `isoline run`, read as it reads it.
+// Parses the words after `--` as `isoline run` would.
 RunArguments run_arguments(const std::vector<std::string>& words, Session& session) {
   RunArguments run;
   Verb verb{.name = "run"};

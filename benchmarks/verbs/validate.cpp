@@ -137,7 +137,7 @@ std::vector<std::string> files_under(const std::vector<std::string>& paths, Wron
   return files;
 }
 
-// What SHA256SUMS of a result folder, as `sha256sum` writes it, lists and the folder lacks, and the
+// The files that SHA256SUMS of a result folder lists and the folder lacks, and the
 // reverse for what reports read. `sha256sum -c` checks the digests and cannot find additional
 // files.
 void compare_with_manifest(const fs::path& folder, Wrong& wrong) {

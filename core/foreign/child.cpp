@@ -69,7 +69,7 @@ Texts environment_of(std::vector<std::pair<std::string, std::string>> own) {
   return all;
 }
 
-// What happens between fork and exec may call nothing that takes a lock.
+// Between fork and exec, no function that takes a lock may be called.
 struct Launch {
   char** words;
   char** environment;

@@ -46,7 +46,7 @@ class ChildProgram {
   // "it left with exit code 1", or that it still runs; where it is ending, that is waited for.
   std::string end_in_words();
   bool was_killed() const { return end_ && !end_->is_exit && is_from_outside(end_->number); }
-  // What it printed last, some lines of it, as valid UTF-8; empty where it said nothing.
+  // The last lines of its output, as valid UTF-8; empty if it printed nothing.
   std::string last_words() const;
 
  private:

@@ -1,4 +1,4 @@
-// What another program's part in a build is known by.
+// The identity of an external program within a build.
 #include "core/foreign/foreign.h"
 
 #include <array>

@@ -21,11 +21,11 @@ struct Foreign {
   bool operator==(const Foreign&) const = default;
 };
 
-// Of the contents of those words that name regular files, in order: of "python3 mine.py" mine.py.
-// What such a file reads or imports itself is not followed. UsageError where one cannot be read.
+// A digest of the contents of those words that name regular files: of "python3 mine.py", mine.py.
+// Files that such a file reads or imports are not included. UsageError if one cannot be read.
 std::string digest_of_files(std::span<const std::string> words);
 
-// Of all that may change what it computes: a part of `build`.
+// A digest of everything that may change the result: a part of `build`.
 std::string digest_of(const Foreign& foreign);
 
 // Where what outsiders use from their own language lies beside this program.

@@ -192,8 +192,8 @@ bool is_within(const std::vector<Real>& x, const ProblemHandshake& problem) {
          std::ranges::equal(x, problem.upper, std::less_equal());
 }
 
-// What it answers to our greeting. How it broke off is the caller's to know, as a wrong argument
-// is.
+// The answer to our greeting. The caller handles a broken connection, as it handles a wrong
+// argument.
 std::string answer_to(Line& line, const Json& greeting, double seconds) {
   try {
     line.send_text(Verb::hello, 0, json_text(greeting));

@@ -1,4 +1,4 @@
-// What process[…] is given, be it a problem or an optimizer.
+// The options of process[…], for a problem or an optimizer.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ void fields(ProcessOptions& o, auto& field) {
   field("startup", o.startup, above(0), "seconds until it must introduce itself");
 }
 
-// What programs said of themselves: each is started once for it, and not again while its command
-// and its files stay as they are.
+// The descriptions that programs have sent. Each program is started once for this, and again only
+// if its command or its files change.
 
 // How the process adapter starts a command: with the path of our clients.
 ChildProgram::Start door_to(const std::string& command);
@@ -59,7 +59,7 @@ class Introductions {
 
 // The description that another program sends before any computation, as JSON, validated.
 
-// What every program says: of Foreign its label, interpreter, packages, note and source.
+// Common to all programs: of Foreign, its label, interpreter, packages, note and source.
 struct ProblemHandshake {
   Foreign foreign;
   std::int64_t inputs = 0, outputs = 0;  // k, m

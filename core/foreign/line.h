@@ -48,7 +48,7 @@ enum class Verb : std::uint32_t {
   claim = 34,               // text: what it says of its own success -> nothing
 };
 
-// Of an answer. A question has 0, or a point's number.
+// The status of an answer. A request has 0, or the number of a point.
 enum class Answer : std::uint32_t {
   done = 0,
   failed = 1,  // the payload is why, as text

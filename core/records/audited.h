@@ -1,4 +1,4 @@
-// What an audit of properties measured of each optimizer, and its file: OUT/audit.json, schema
+// The measured properties of each optimizer, and their file: OUT/audit.json, schema
 // isoline.audit/1.
 #pragma once
 

@@ -18,7 +18,7 @@ using Works = std::vector<std::int64_t>;
 
 // Sums and products in another order; a target is compared with the same formula that set it.
 constexpr Real kRounding = 1e-12;
-// Of a loss that single precision computed below its declared minimum, as a share of its scale.
+// For a loss below its declared minimum by single precision, as a share of its scale.
 constexpr Real kBelowMinimum = 1e-6;
 
 bool are_same(Real a, Real b) { return a == b || (std::isnan(a) && std::isnan(b)); }

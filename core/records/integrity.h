@@ -1,5 +1,5 @@
-// Whether a record agrees with itself: its success criterion, and the figures that follow from other
-// figures of the same record. A change by hand, or a fault of the program, breaks them.
+// Whether a record agrees with itself: its success criterion, and the figures that follow from
+// other figures of the same record. A change by hand, or a fault of the program, breaks them.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace isoline {
 
-// What decides whether a run succeeded, and what its work is counted in.
+// The criterion by which a run succeeded, and the costs in which its work is counted.
 struct Criterion {
   std::optional<Real> minimum, scale, x_scale;  // f_L, s and ‖x*‖, where they are known
   Real x_floor = 0;

@@ -51,7 +51,8 @@ class JsonPlace {
 // the hundred thousand. With json_view.cpp the only adapter to simdjson. A value that is missing or
 // of another type is a UsageError.
 
-// What a view's get_to() reads. A name of its own: within the class its members are not known yet.
+// Types that a view's get_to() reads. A separate name: within the class its members are not known
+// yet.
 template <class Value, class View>
 concept ReadBy = requires(const View& view, Value& out) {
   view.get_to(out);

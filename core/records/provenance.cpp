@@ -1,4 +1,4 @@
-// What answered: version, commit, compiler, processor, libraries.
+// The origin of a result: version, commit, compiler, processor, libraries.
 #include "core/records/provenance.h"
 
 #include <fmt/format.h>

@@ -59,11 +59,11 @@ Provenance provenance_from(const JsonView& json);
 
 std::string version();  // "0.1.0"
 
-// Of this very program, read once.
+// The provenance of this program, read once.
 const std::shared_ptr<const Build>& this_build();
 
-// Of a program built elsewhere, before it reads its build: its own tree's commit is the record's,
-// and Isoline's stands beside it.
+// For a program built elsewhere, before it reads its build: records name the commit of its own
+// tree, and Isoline's beside it.
 void set_program_tree(std::string commit, bool is_dirty);
 
 // Digest of the platform: compiler, flags, instruction set, kernels, caches, and the libraries that

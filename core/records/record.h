@@ -33,7 +33,7 @@ struct Curve {
   std::map<std::string, std::vector<std::int64_t>>
       counts;  // by oracle; without oracles that were not called
   std::vector<Real> wall_seconds, processor_seconds, loss, x_error, gradient_norm, step_norm;
-  // Of learning problems, by window: the means over the training batches of the last steps.
+  // For learning problems, by window: the means over the training batches of the last steps.
   std::map<std::int64_t, std::vector<Real>> batch_loss, batch_x_error;
 };
 
@@ -91,7 +91,7 @@ struct Record {
   bool is_best_known = false;   // f_L is the best loss known, which a run may better
   std::optional<Real> scale;    // s = min(f₀ − f_L, the problem's scale)
   std::map<std::string, std::optional<bool>> verified;  // by τ: f − f_L ≤ τ s at the returned point
-  // Of errors in x, where a solution is known: ‖x*‖, and what its data cannot better.
+  // The scales of errors in x, if a solution is known: ‖x*‖, and the floor that the data impose.
   std::optional<Real> x_scale;
   Real x_floor = 0;
   std::map<std::string, std::optional<bool>> found;  // by τ: error in x ≤ max(τ‖x*‖, 1.1 x_floor)

@@ -33,7 +33,7 @@ bool holds_beyond(const Json& value) {
   return is_beyond(value);
 }
 
-// What is beyond is given as the largest that it reads.
+// Larger numbers are replaced by the largest that it reads.
 void bring_within(Json& value) {
   if (value.is_structured())
     for (Json& each : value) bring_within(each);

@@ -16,7 +16,7 @@ class Schema {
   explicit Schema(const Json& schema);
   ~Schema();
 
-  // What is wrong with the document, one sentence each, its place first; empty if it conforms.
+  // The errors in the document, one sentence each, beginning with the place; empty if it conforms.
   std::vector<std::string> violations(const Json& document) const;
 
  private:

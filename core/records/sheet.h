@@ -28,7 +28,7 @@ struct Landscape {
   std::string spacing = "logarithm";
 };
 
-// What one call of an oracle takes, in forward solves: the first at a fresh point.
+// The cost of one oracle call, in forward solves: the first at a new point.
 struct MeasuredPrice {
   std::string oracle;
   std::int64_t declared = 0;
@@ -61,8 +61,8 @@ struct Sheet {
   std::string inverse;                  // of a problem: none, exact, damped, estimate, approximate
   Index unknowns = 0, residuals = 0;    // of a problem
   std::optional<Aim> aim;               // of a problem: the success criterion
-  // Of a direct problem, where J (residuals, unknowns) is small: σ_max / σ_min of J at the standard
-  // start and, where it is known, at the solution; infinite where J lacks rank.
+  // For a direct problem with a small J (residuals, unknowns): σ_max / σ_min of J at the standard
+  // start and, if known, at the solution; infinite if J is rank-deficient.
   std::optional<Real> start_condition, condition;
   std::optional<Landscape> landscape_x, landscape_y;  // of a problem with two unknowns, two outputs
   std::vector<Real> target;                           // y*, where small

@@ -86,8 +86,8 @@ struct Flips {
 
   Real size(std::size_t s, std::size_t t) const { return (total[t] - total[s]) * scale[s][t]; }
 
-  // use(sums under a flip) for each flip, the first of which is none. A flip of all signs leaves
-  // every |u| alone: the last family's keeps its sign where flips are enumerated.
+  // use(sums under a flip) for each flip; the first flip is the identity. A flip of all signs
+  // leaves every |u| unchanged: the last family keeps its sign where flips are enumerated.
   template <class Use>
   std::size_t each(const Use& use) const {
     const std::size_t families = sums.size();
@@ -153,8 +153,8 @@ Leaving leaving_order(const Flips& flips) {
 
 // --- the bootstrap
 
-// What a run of each method came to, of one setting, drawn anew: instances, and within each as many
-// of its starts. What no drawn run has is the median of all runs.
+// The results of each method on one setting, resampled: instances, and within each as many of its
+// starts. An empty resample gets the median of all runs.
 std::vector<std::optional<Real>> drawn_costs(const std::vector<std::optional<Real>>& costs,
                                              const std::vector<Repetition>& repetitions,
                                              Draws& random) {

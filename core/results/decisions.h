@@ -27,7 +27,7 @@ inline constexpr Real kProfileEnd = 64;  // the factor up to which a profile's a
 inline constexpr Real kSignificant = 0.05;
 inline constexpr std::size_t kExactFlips = 20;  // families; of more, kDrawnFlips fixed flips
 
-// What all methods came to on one setting from one instance and start.
+// The results of all methods on one setting from one instance and start.
 struct Repetition {
   std::size_t instance = 0, start = 0;
   std::vector<std::optional<Real>> costs;  // [method]; nothing where no such run exists
@@ -60,7 +60,7 @@ struct WorkRatio {
 WorkRatio work_ratio(const Costs& costs, const std::vector<std::string>& families, std::size_t a,
                      std::size_t b);
 
-// What the flips say of methods whose scores sum to sums[family][method].
+// The result of the flips for methods whose scores sum to sums[family][method].
 struct FlipLevels {
   std::vector<std::vector<Real>> pairs;  // [method][method] p of the pair alone, two-sided
   std::vector<Real> leaves;  // [method] the level at which it leaves the confidence set of the best
@@ -102,7 +102,7 @@ struct Place {
   WorkRatio ratio;           // its work over that of the first
 };
 
-// A choice that could have been made otherwise, and who is first then.
+// An alternative choice, and the leader under it.
 struct Choice {
   Varied varied = Varied::profile_end;
   std::string value;

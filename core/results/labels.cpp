@@ -21,7 +21,7 @@ struct Label {
   std::string rest;
 };
 
-// What is no spec, as of records that someone else wrote, has no options to leave out.
+// A text that is not a spec, from imported records, has no options to omit.
 Label label_of(const std::string& text) {
   const std::size_t close = text.rfind(']');
   const std::size_t end = close == std::string::npos ? text.find(',') : close + 1;
@@ -171,7 +171,7 @@ void OptimizerLabels::find_both_ways(const Study& study) {
     if (plain.contains(pair) && !swept.contains(pair.second)) both_ways_.insert(pair.second);
 }
 
-// Of runs that happened: an inapplicable pair has seen nothing, and says nothing of a method.
+// From completed runs: an inapplicable pair used nothing and shows nothing about a method.
 void OptimizerLabels::find_meanings(const Study& study) {
   std::map<std::string, std::map<std::string, std::set<std::string>>> seen;  // label, problem
   for (const Record& record : study.runs) {

@@ -11,25 +11,25 @@
 
 namespace isoline::results {
 
-// Of long labels the options alone that tell them from others of their method: those that all of
-// the method share are left out, in "sip[inverse=newton,network-optimizer=adam[rate=1e-3]]" beside
-// "sip[inverse=analytic,network-optimizer=adam[rate=1e-3]]" the network's optimizer. No two become
-// the same.
+// Long labels keep only the options that distinguish them within their method. Options with equal
+// values in all are omitted: in "sip[inverse=newton,network-optimizer=adam[rate=1e-3]]" beside
+// "sip[inverse=analytic,network-optimizer=adam[rate=1e-3]]", the network's optimizer. No two labels
+// become equal.
 std::vector<std::string> brief_labels(const std::vector<std::string>& labels);
 
-// Names of optimizers. A file of rates gives one method other options on every problem; the method
-// then keeps one row under its name, unless some problem has two of that name. A method with tuned
-// rates stands beside itself, as "adam, tuned". A method that sees what others do not on some
-// problems and no more than they on others is two: "sip, given P⁻¹" and "sip".
-// What another program runs goes by the name that it gives itself, unless that is another's.
-// Where a study holds a method at its defaults and at the rates of tables, it is "gd" and "gd,
-// tuned"; on a problem where both are the same, its one run stands in both rows.
+// Names of optimizers. A file of rates gives one method different options on each problem. The
+// method then keeps one row under its name, unless some problem has two runs of that name. A method
+// with tuned rates gets a row of its own, "adam, tuned". A method with extra information on some
+// problems only becomes two: "sip, given P⁻¹" and "sip". An external program has the name that it
+// gives itself, unless another method has this name. If a study contains a method with its defaults
+// and with rates of tables, they are "gd" and "gd, tuned"; if both are equal on a problem, its
+// single run is in both rows.
 class OptimizerLabels {
  public:
   explicit OptimizerLabels(const Study& study);
   std::vector<std::string> of(const std::string& problem, const std::string& spec) const;
   const std::string& method(const std::string& spec) const { return names_.at(spec); }
-  // Of all meanings.
+  // For all meanings.
   std::vector<std::string> wholes(const std::string& problem, const std::string& spec) const;
   std::string meaning(const std::string& problem, const std::string& whole) const;
   bool has_meanings(const std::string& whole) const { return meanings_.contains(whole); }

@@ -113,7 +113,7 @@ Costs decision_costs(const Comparison& c, Measure by, std::size_t tolerance, boo
   return costs;
 }
 
-// What each seed came to: an instance and a start of its own.
+// The result of each seed: an instance and a start of its own.
 std::vector<Repetition> repetitions_of(const Comparison& c, std::size_t problem,
                                        const std::vector<std::optional<Real>>& costs) {
   std::map<std::uint64_t, Repetition> seeds;
@@ -131,7 +131,7 @@ std::vector<Repetition> repetitions_of(const Comparison& c, std::size_t problem,
   return all;
 }
 
-// Of a study with more runs than these, families alone are resampled.
+// In a study with more runs than this, only families are resampled.
 constexpr std::size_t kMostResampled = 20'000;
 
 std::optional<Decision> decision_of(const Comparison& c, bool is_open) {
@@ -268,7 +268,7 @@ std::vector<Ranked> standings_to(const Comparison& c, Measure by, std::size_t ta
 
 namespace {
 
-// What a run was allowed to spend: its budget of work, or what all its iterations would have taken.
+// The work that a run was allowed: its budget of work, or the work of all its iterations.
 Real allowed_work(const Run& run) {
   const Budget& budget = run.record->request.budget;
   const Summary& summary = run.record->summary;

@@ -1,4 +1,4 @@
-// Which methods are compared on which settings, in which order they rank, and who leads.
+// The settings on which methods are compared, their ranking, and the leader.
 #pragma once
 
 #include <array>
@@ -40,8 +40,8 @@ struct Comparison : Table {
 
 Comparison compare_optimizers(const Study& study, const Yardstick& yardstick = {});
 
-// Whether a problem counts for an order: a tolerance of the loss says little of a network, so what
-// is learned is told apart, by its error in x, unless a study holds nothing else.
+// Whether a problem counts for the ranking. A tolerance of the loss means little for a network, so
+// learned problems are reported separately, by the error in x, unless a study has no others.
 bool is_ordered(const Comparison& comparison, std::size_t problem);
 bool is_all_learned(const Comparison& comparison);
 
@@ -80,11 +80,11 @@ struct EqualWork {
   Real work = 0;  // declared: the least that any method was allowed
   std::vector<std::optional<AtEqualWork>> methods;  // by optimizer; none where nothing ran
 
-  // Who measured something, least error in x first.
+  // The methods with a measured error, least error in x first.
   std::vector<std::size_t> nearest_first() const;
 };
-// Of each run the last kept point that had spent no more. A run that ended sooner keeps its last
-// point, one that diverged its last finite one; a run that went wrong is infinite.
+// For each run, the last kept point within this work. A run that ended sooner has its last point, a
+// diverged one its last finite point; for a failed run it is infinite.
 EqualWork equal_work(const Comparison& comparison, std::size_t problem);
 
 // The optimizers that ran on a problem, best first: by what the yardstick counts, from the tightest

@@ -34,7 +34,8 @@ Real median_of(std::vector<Real> values);
 // of it says nothing about it, while one it failed on, or to which it does not apply, does.
 struct ProfileLine {
   std::vector<Real> ratios;  // r_{p,s} of the problems solved, ascending
-  std::size_t problems = 0;  // n_p: all that were asked of this solver, also those nobody solves
+  std::size_t problems =
+      0;  // n_p: all problems of this solver, including those that no solver solves
 };
 struct Profile {
   std::vector<ProfileLine> solvers;
@@ -54,7 +55,7 @@ std::vector<std::optional<Real>> cost_ratios(const std::vector<std::optional<Rea
 // A ratio's part in the area of a profile: 1 at the least cost, 0 from `most` times it on.
 Real score_of(Real ratio, Real most);
 
-// What tuning buys: the best of b values drawn from those that were tried.
+// The gain of tuning: the best of b values sampled from those that were tried.
 
 // The expected greatest of b of these values, b = 1 … n, drawn without replacement: each subset of
 // b is as likely as any other. E = Σ_i v_(i) [C(i, b) − C(i − 1, b)] / C(n, b), v ascending.
@@ -62,7 +63,7 @@ std::vector<Real> expected_best(std::vector<Real> values);
 
 // Statistics of runs to a target: expected running time, simulated restarts, areas, digits.
 
-// What one run spent: up to the target if it got there, else all it had.
+// The cost of one run: up to the target if it was reached, otherwise all of it.
 struct Attempt {
   Real cost = 0;
   bool is_success = false;
@@ -75,7 +76,7 @@ Real expected_running_time(const std::vector<Attempt>& attempts);
 // their costs summed. Ascending; all infinite without a success.
 std::vector<Real> simulated_restarts(const std::vector<Attempt>& attempts, const std::string& key);
 
-// The bootstrap of reports: what a statistic comes to when its data are drawn anew. Efron (1979).
+// The bootstrap of reports: the distribution of a statistic over resampled data. Efron (1979).
 
 inline constexpr std::size_t kDraws = 1000;
 

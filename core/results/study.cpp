@@ -77,7 +77,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The record, or why it is none.
+// The record, or the reason why it is invalid.
 std::string read_into(Record& record, const std::string& file) {
   try {
     record = read_record(file);
@@ -202,7 +202,7 @@ bool is_newer(const RunMark& a, const RunMark& b) {
          std::pair(b.started, record_file_name(b.cell, b.build));
 }
 
-// What no clock decides is the same in all records of one build.
+// Everything that no clock decides is equal in all records of one build.
 bool should_agree(const RunMark& a, const RunMark& b) {
   return a.build == b.build && !a.is_nondeterministic && !b.is_nondeterministic;
 }

@@ -1,4 +1,4 @@
-// What a report reads: the plan, the records and the sheets of one or several result folders.
+// The input of a report: the plan, the records and the component metadata of result folders.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct TunedRate {
   std::string file;                // the table of rates that it stands in
   std::string paper;               // that published it; empty where a grid was tried
   std::string option;              // that was chosen: "rate"
-  // Of a grid: its values, and the work of each to the tolerance it was judged by, the median over
-  // the tuning seeds; infinite where it never got there.
+  // For a grid: its values, and the work of each to its tolerance, the median over the tuning
+  // seeds; infinite if it was not reached.
   std::vector<Real> values, work;
   bool is_at_edge = false;  // the best value is the first or the last
 
@@ -36,7 +36,7 @@ struct TunedRate {
 std::vector<TunedRate> read_rates(const std::string& folder);
 std::vector<TunedRate> rates_from_text(const std::string& text, const std::string& origin);
 
-// What a report reads: the plan, the records and the sheets of one or several result folders.
+// The input of a report: the plan, the records and the component metadata of result folders.
 
 // A file that is no record, sheet or plan. It is listed, so that nothing vanishes in silence.
 struct Unreadable {
@@ -64,9 +64,9 @@ struct Study {
 // told of the records.
 Study read_study(const std::vector<std::string>& folders, const Listener& listener = {});
 
-// Of all records of a cell the newest counts, whichever build wrote it.
+// Among all records of a cell the newest counts, independent of its build.
 
-// What decides between records of a cell, and what orders those of several.
+// The criterion between records of a cell, and the order of several.
 struct RunMark {
   std::string cell, build, started, problem, optimizer;  // its digests; when; its specs
   std::uint64_t seed = 0;
@@ -90,7 +90,7 @@ bool are_at_odds(const Record& a, const Record& b);
 
 // The files of result folders, by name: as text, for each path that knows its parts is a kilobyte.
 
-// What stands in a folder under the name of JSON, whatever it is; where that cannot be told, why.
+// The JSON files of a folder, of any kind; if the folder cannot be listed, the reason.
 std::vector<std::string> json_files(const std::filesystem::path& folder,
                                     std::vector<Unreadable>& unreadable);
 

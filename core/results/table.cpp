@@ -97,9 +97,8 @@ void count_runs(Table& table) {
   table.seeds.assign(seeds.begin(), seeds.end());
 }
 
-// Those of a problem that were asked of more than half of the methods that were asked it: whoever
-// lacks one of them is not measured by the rest. Where no plan tells what was asked, half are
-// enough.
+// The settings of a problem that more than half of its methods were run on: a method that lacks one
+// of them is not compared on the rest. Without a plan, half are enough.
 std::set<std::uint64_t> usual_seeds(const std::vector<std::set<std::uint64_t>>& asked,
                                     bool has_plan) {
   std::map<std::uint64_t, std::size_t> counts;

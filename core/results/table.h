@@ -17,7 +17,7 @@
 
 namespace isoline::results {
 
-// What a reader must know before comparing a method or a run with others.
+// Facts that a reader must know before comparing a method or a run with others.
 struct Marks {
   bool has_extra_information = false;  // †: it sees what others do not
   bool is_foreign = false;             // ‡: another program computes it
@@ -47,7 +47,7 @@ struct Run {
   Real goal(Real tau) const { return minimum + tau * scale; }  // the loss that is reached at τ
 };
 
-// What is left of the loss at each kept point, (f − f_L) / s; infinite where s has no size.
+// The remaining loss at each kept point, (f − f_L) / s; infinite if s is not a valid scale.
 std::vector<Real> losses_left(const Run& run);
 
 struct ProblemAxis {
@@ -98,7 +98,7 @@ struct OptimizerAxis {
   const Standing& tightest() const { return standings[kTightest]; }
   Marks marks() const { return {!privileges.empty(), is_foreign, is_imported}; }
   std::string family() const { return sheet == nullptr ? "" : sheet->family; }
-  // What its step is by its mathematics, whoever wrote it; "other" where its sheet is older.
+  // The kind of its step by its mathematics; "other" if its metadata are older.
   std::string mathematics() const {
     return sheet == nullptr || sheet->mathematics.empty() ? "other" : sheet->mathematics;
   }

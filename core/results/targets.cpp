@@ -151,7 +151,7 @@ OracleCounts counts_at(const Record& record, Real work) {
 
 BestKnown::BestKnown(const Study& study) {
   for (const Record& record : study.runs) {
-    if (record.imported) continue;  // what others say of theirs moves nobody's targets
+    if (record.imported) continue;  // imported values change no other run's targets
     const auto key = std::pair(record.request.problem.spec, record.request.seed);
     Real& least = least_.emplace(key, kNever).first->second;
     const Real best = record.summary.best_loss;

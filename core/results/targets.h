@@ -1,5 +1,4 @@
-// What a run took until it met each of 51 targets: by four measures, for a small loss or for the x
-// that was sought.
+// The effort of a run until it met each of 51 targets: by four measures, in loss or in x.
 #pragma once
 
 #include <array>
@@ -20,7 +19,7 @@
 namespace isoline::results {
 
 enum class Measure {
-  work,        // oracle calls at declared prices, in forward solves: any machine repeats it
+  work,        // oracle calls at nominal cost, in forward solves, equal on every machine
   cost,        // the same calls at the prices measured on each problem
   iterations,  // steps
   time,        // wall seconds
@@ -33,7 +32,7 @@ inline std::string_view name_of(Measure measure) {
   return kMeasureNames[static_cast<std::size_t>(measure)];
 }
 std::optional<Measure> measure_of(std::string_view name);
-// What costs are compared in: below one of it they count as one. A time is in microseconds.
+// The unit of costs: costs below one unit count as one. A time is in microseconds.
 inline Real least_unit(Measure measure) { return measure == Measure::time ? 1e-6 : 1; }
 
 // τ of a success: f ≤ f_L + τ s, or an error in x of τ times the solution's norm. Always a rung of
@@ -60,8 +59,8 @@ struct Yardstick {
 // The usual one with another tolerance for its headline, and two looser ones below it.
 Yardstick yardstick_at(Measure by, Real tau);
 
-// What runs cost in equivalent forward solves: their raw counts at the measured prices of their
-// problem. Where nothing was measured, or too short a call to be told, at the declared ones.
+// The cost of runs in equivalent forward solves: their raw counts at the measured costs of their
+// problem, or at the nominal costs if nothing was measured or a call was too short.
 
 // A shorter call takes mostly what a call takes, whatever is called: its price is not its own.
 inline constexpr Real kShortestCall = 1e-6;  // seconds
@@ -72,7 +71,7 @@ class Prices {
   Prices() = default;
   explicit Prices(const Sheet* sheet);  // of this very problem; may be null
 
-  bool are_measured() const { return !measured_.empty(); }  // any that is told
+  bool are_measured() const { return !measured_.empty(); }  // at least one is known
   bool is_measured(std::string_view oracle) const { return measured_.contains(oracle); }
 
   Real cost(const Record& record) const;  // of all that the run asked
@@ -110,7 +109,7 @@ class BestKnown {
   Minima least_;
 };
 
-// What a run had taken when it first met a target.
+// The counts of a run when it first met a target.
 struct Reached {
   Real work = 0, cost = 0, seconds = 0;
   std::int32_t iteration = 0;

@@ -56,7 +56,7 @@ Real two_sided(const std::vector<Real>& chance, std::size_t sum) {
   return std::min(1.0, 2 * std::min(below, above));
 }
 
-// Of a sum with this mean and variance, in the unit of doubled ranks: continuity is one unit, ½·2.
+// For a sum with this mean and variance, in the unit of doubled ranks: continuity is one unit, ½·2.
 Real two_sided_normal(Real sum, Real mean, Real variance) {
   if (variance <= 0) return 1;
   const Real z = std::max(0.0, std::abs(sum - mean) - 1) / std::sqrt(variance);
@@ -233,8 +233,8 @@ Real orders_of(std::vector<Real> ranks) {
   return orders;
 }
 
-// Of all orders of the blocks from `block` on, how many reach `far`. The first block keeps its own:
-// to permute all blocks alike changes nothing.
+// Counts the orders of the blocks from `block` on that reach `far`. The first block keeps its own:
+// permuting all blocks in the same way changes nothing.
 Real orders_reaching(std::vector<std::vector<Real>>& ranks, std::size_t block, Real far) {
   if (block == ranks.size()) return squares_of_sums(ranks) >= far ? 1 : 0;
   Real count = 0;

@@ -16,7 +16,7 @@ std::vector<Real> mid_ranks(const std::vector<Real>& values);
 // exact up to kExact values in all, by the normal approximation with continuity and ties beyond.
 Real mann_whitney_p(const std::vector<Real>& a, const std::vector<Real>& b);
 
-// What b takes as a multiple of what a takes: the median of all b_j / a_i, in logarithms, and the
+// The ratio of b to a: the median of all b_j / a_i, in logarithms, and the
 // interval that inverts the test of Mann and Whitney. Hodges, Lehmann (1963). Values above 0.
 struct RatioEstimate {
   Real ratio = 1, low = 0, high = kNever;  // 0 and infinite: too few values for an interval

@@ -99,7 +99,8 @@ void scatter(const UnitPass& pass, Index task, ThreadState& thread) {
   }
 }
 
-// What each convolution of a U-net sees along one pullback, summed where its numbers are in cache:
+// The moments of each convolution of a U-net along one pullback, summed while its numbers are in
+// cache:
 //   Ω = ⟨Σ_t ā āᵀ⟩ over samples,  Γ = ⟨g gᵀ⟩ over samples and places t,
 // ā = (a, 1) the patch around t, halo included, and g the cotangent of the convolution's output.
 // Sums over a task are in single precision, those over tasks in double, in order.
@@ -295,7 +296,7 @@ void add_kernel_parts(const UnitPass& pass, Index parts, VectorOut out) {
     const Index position = is_first ? at : at_transposed;  // see UnitCalls::gradient
     out[weight] = state.kernel_sum[position / kChannels][position % kChannels];
   });
-  // What a bias adds, the batch norm takes away.
+  // The batch norm removes the effect of a bias.
   out.segment(pass.plan.biases(pass.unit), pass.plan.filters).setZero();
 }
 

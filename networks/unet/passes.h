@@ -32,7 +32,7 @@ void unet_layer_moments(const UnetPlan& plan, UnetState& state, BatchRef u,
 // Mean and variance of each unit's channels; the mean is that of z with its bias.
 Vector unet_statistics(const UnetPlan& plan, UnetState& state, VectorRef theta);
 
-// What a pass over one unit knows.
+// The data of a pass over one unit.
 struct UnitPass {
   const UnetPlan& plan;
   UnetState& state;

@@ -17,7 +17,7 @@ using Lane = float __attribute__((vector_size(4 * kChannels)));
 using Wide = double __attribute__((vector_size(8 * kChannels)));  // long sums of lanes
 using Mask = int __attribute__((vector_size(4 * kChannels)));
 
-// What arrays of pixels are made of, for its alignment.
+// The element type of arrays of pixels, for its alignment.
 struct alignas(4 * kChannels) Pixel {
   float channel[kChannels];
 };
@@ -98,8 +98,9 @@ void store(const Place& place, Index pixel, const T& x) {
   if constexpr (kIsDual<T>) lane(place.tangent, pixel) = x.tangent;
 }
 
-// What a U-net does on one N×N grid of pixels besides convolving: halos, pooling, upsampling, and
-// their transposes. A grid is [column][row], and lies within a halo of one where `halo` says so.
+// The operations of a U-net on one N×N grid of pixels besides convolution: halos, pooling,
+// upsampling, and their transposes. A grid is [column][row], and lies within a halo of one where
+// `halo` says so.
 
 struct Grid {
   Index N, halo = 0;
@@ -227,7 +228,7 @@ void downsample(const Place& fine, const Place& coarse, Index N) {
     }
 }
 
-// What a U-net consists of: its units in order, and where each finds its parameters in θ.
+// The structure of a U-net: its units in order, and the places of their parameters in θ.
 
 struct UnetOptions {
   Index levels = 4, filters = 16;
@@ -294,7 +295,7 @@ struct UnetPlan {
   }
 
  private:
-  // Of a weight in the layout of core/convolution.h, by blocks of `width` channels in.
+  // The place of a weight in the layout of core/convolution.h, by blocks of `width` channels in.
   static Index position(Index out, Index in, Index tap, Index all_in, Index width) {
     const Index block = out / kChannels * (all_in / width) + in / width;
     return ((block * 9 + tap) * width + in % width) * kChannels + out % kChannels;

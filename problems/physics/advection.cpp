@@ -149,7 +149,7 @@ void Advection::pullback(VectorRef q, VectorRef u, VectorOut of_q, VectorOut of_
   margin_.unpad(into_q, of_q);
 }
 
-// Of q' as a function of q, s and p + d.
+// The derivative of q' as a function of q, s and p + d.
 void Advection::pull_correction(VectorRef u, Vector& into_q, Vector& into_s, VectorOut of_dx,
                                 VectorOut of_dy) {
   const Places back(back_), ahead(ahead_);
@@ -180,7 +180,7 @@ void Advection::pull_correction(VectorRef u, Vector& into_q, Vector& into_s, Vec
   });
 }
 
-// Of s as a function of q and p − d.
+// The derivative of s as a function of q and p − d.
 void Advection::pull_interpolation(const Vector& into_s, VectorOut of_dx, VectorOut of_dy) {
   const Places back(back_);
   const Index stride = stride_;

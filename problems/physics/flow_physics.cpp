@@ -132,7 +132,7 @@ void Amplitudes::cotangent(BatchRef y, BatchRef target, BatchOut g) const {
   g /= static_cast<Real>(y.cols() * N_);
 }
 
-// Of |d̂| the second derivative is what is left of a change across the phase, over |d̂|.
+// The second derivative of |d̂| is the part of a change across the phase, over |d̂|.
 void Amplitudes::curvature(BatchRef y, BatchRef target, BatchRef dy, BatchOut dg) const {
   for (Index b = 0; b < y.cols(); ++b) {
     transform(y.col(b), target.col(b));

@@ -24,8 +24,8 @@ FlowSample draw_flow(Index N, Real time, RandomStream& stream);
 
 // ω ẑ × r e^(−r²/800) around the middle, added to a velocity at the centres.
 void add_vortex(Index N, Real strength, VectorOut velocity);
-// Of a velocity at the centres, as the scripts have it: mean (rₓ v_y − r_y vₓ) / 120.5, of a vortex
-// of strength 1 on 64×64 cells 1.0002.
+// The strength of a velocity at the centres, as in the scripts: mean (rₓ v_y − r_y vₓ) / 120.5; for
+// a vortex of strength 1 on 64×64 cells, 1.0002.
 Real vortex_strength(Index N, VectorRef velocity);
 
 // Σ m p / Σ m over the cells at p, without regard to periods, as published. Not finite where Σ m
@@ -63,7 +63,7 @@ class Amplitudes final : public Loss {
 // uses; y (N², B) the marker after the last step under the weights of flow_inverses.h. Samples are
 // shared among the threads; each is computed by one, so that their number changes no bit.
 
-// What one thread computes with.
+// The work space of one thread.
 struct FlowWorker {
   FlowWorker(const FlowOptions& options, Index steps, Track track);
 

@@ -5,7 +5,7 @@
 
 namespace isoline::problems {
 
-// What is loose may lie anywhere in an array of double.
+// An unaligned vector may lie anywhere in an array of double.
 using Four = double __attribute__((vector_size(32)));
 using Pair = double __attribute__((vector_size(16)));
 using LooseFour = double __attribute__((vector_size(32), aligned(8), may_alias));
@@ -107,7 +107,7 @@ inline Nodes<Four> nodes_at(const Real* q, const int* way, Index stride) {
   add_pairs((1 - a) * upper, a * upper, way, pairs + 2 * stride);
 }
 
-// Of each of the four, by Eigen's own instruction where there is one.
+// Applies to each of the four, by Eigen's own instruction if there is one.
 template <class Function>
 inline Four of_each(const Four& x, const Function& function) {
   const Eigen::Map<const Eigen::Array4d> each(reinterpret_cast<const Real*>(&x));

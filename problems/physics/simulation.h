@@ -7,7 +7,7 @@
 
 namespace isoline::problems {
 
-// What a run leaves behind for its derivatives, sized by the first.
+// The states of a run that its derivatives need, allocated by the first run.
 struct FlowRun {
   Matrix states;     // (3N², steps + 1) u, v, m
   Matrix projected;  // (2N², steps)

@@ -214,7 +214,7 @@ std::vector<ComparedCell> baseline_from_json(const Json& json) {
     for (const Json& cell : json.at("cells")) cells.push_back(cell_from_json(cell, json));
     return cells;
   } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("no {}: {}", kBaselineSchema, error.what()));
+    throw UsageError(fmt::format("not a valid {}: {}", kBaselineSchema, error.what()));
   }
 }
 

@@ -1,4 +1,4 @@
-// What a gate remembers of results: a line a cell, small enough to stand in a repository.
+// The reference of a gate: one line per cell, small enough to be kept in a repository.
 #pragma once
 
 #include <string>
@@ -16,6 +16,6 @@ inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
 // perturbation: how far they moved is kept.
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed = {});
 
-std::vector<ComparedCell> baseline_from_json(const Json& json);  // UsageError where it is none
+std::vector<ComparedCell> baseline_from_json(const Json& json);  // UsageError if it is not valid
 
 }  // namespace isoline::reports

@@ -32,7 +32,7 @@ std::shared_ptr<const Value> shared_value(const std::string& key, const Value& v
   return kept;
 }
 
-// Of the first kept point at which a column is at most the goal.
+// The values of the first kept point at which a column is at most the goal.
 Real work_until(const Curve& curve, const std::vector<Real>& column, Real goal) {
   for (std::size_t i = 0; i < column.size(); ++i)
     if (std::isfinite(column[i]) && column[i] <= goal) return Real(curve.work[i]);
@@ -160,11 +160,11 @@ std::string figure_name(const ComparedFigure& each) {
     case Quantity::path:
       return "mean loss of the path";
     case Quantity::unverified:
-      return "targets that the last point misses";
+      return "targets missed by the last point";
     case Quantity::work:
       return "work to " + figure(rung(each.rung));
     case Quantity::work_to_x:
-      return "work to x within " + figure(rung(each.rung));
+      return "work to an error in x of " + figure(rung(each.rung));
   }
   return "";
 }

@@ -37,14 +37,14 @@ struct ComparedFigure {
 };
 std::string figure_name(const ComparedFigure& figure);  // "work to 1e-3"
 
-// What runs did that started one unit in the last place away.
+// The results of runs that started one unit in the last place away.
 struct Perturbed {
   Real moved = 0;                // the least tolerance within which all agree with the given start
   std::vector<Status> statuses;  // how each ended
   std::array<std::size_t, kTolerances.size()> reached{};  // of them, how many reached each target
 };
 
-// A problem or an optimizer as a run was given it; what is not known is empty.
+// A problem or an optimizer as in a run's request; unknown parts are empty.
 struct Given {
   std::string name;
   std::string asked;                                 // as typed: defaults and rates unfilled
@@ -77,11 +77,11 @@ struct ComparedCell {
 
 int badness_of(Status status);                 // the greater the worse
 bool is_lost(const ComparedCell& cell);        // it went wrong, or does not apply
-Status status_named(const std::string& name);  // UsageError where there is none
+Status status_named(const std::string& name);  // UsageError if it is unknown
 std::string title_of(const ComparedCell& cell);
 std::shared_ptr<const OptionValues> shared_options(const OptionValues& options);
 std::shared_ptr<const BuildParts> shared_parts(const BuildParts& parts);
-// What a run took to one of the targets, in the sense of an aim; infinite where it missed it.
+// The cost of a run until one of the targets, by a success criterion; infinite if it missed it.
 Real work_to(const ComparedCell& cell, Aim aim, std::size_t rung);
 
 std::vector<ComparedCell> compared_cells(const Study& study);
@@ -93,7 +93,7 @@ struct FolderCells {
   std::size_t unreadable = 0, superseded = 0;
 };
 
-FolderCells read_cells(const std::string& folder,  // UsageError where there is none
+FolderCells read_cells(const std::string& folder,  // UsageError if it does not exist
                        const Listener& listener = {});
 
 }  // namespace isoline::reports

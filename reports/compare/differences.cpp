@@ -57,7 +57,7 @@ Difference difference_of(const ComparedCell& cell, const ComparedFigure& each, R
   return difference;
 }
 
-// Of each figure that both have: it, before; its values before and after.
+// For each value that both have: its name; its values before and after.
 template <class Visit>
 void visit_common_figures(const ComparedCell& a, const ComparedCell& b, Visit visit) {
   const auto place = [](const ComparedFigure& each) { return std::pair(each.quantity, each.rung); };
@@ -130,11 +130,12 @@ std::string criterion_change_text(const ComparedCell& before, const ComparedCell
   add("scale", a.scale, b.scale, 0);
   add("norm of x*", a.x_scale, b.x_scale, 0);
   add("floor of the error in x", a.x_floor, b.x_floor, x_scale);
-  if (a.aim != b.aim) changes.push_back(fmt::format("aim {} → {}", name_of(a.aim), name_of(b.aim)));
+  if (a.aim != b.aim)
+    changes.push_back(fmt::format("success criterion {} → {}", name_of(a.aim), name_of(b.aim)));
   for (std::size_t kind = 0; kind < kOracles; ++kind)
     if (a.prices[kind] != b.prices[kind])
-      changes.push_back(
-          fmt::format("price of {} {} → {}", kOracleNames[kind], a.prices[kind], b.prices[kind]));
+      changes.push_back(fmt::format("nominal cost of {} {} → {}", kOracleNames[kind],
+                                    a.prices[kind], b.prices[kind]));
   return joined(changes);
 }
 
@@ -165,7 +166,7 @@ std::vector<Difference> figure_differences(const ComparedCell& a, const Compared
   std::vector<Difference> out = differences_of_kind(a, b);
   for (auto& [kind, kept] : largest) {
     auto& [difference, more] = kept;
-    if (more > 0) difference.note = fmt::format("and {} more of its kind", more);
+    if (more > 0) difference.note = fmt::format("and {} more like it", more);
     out.push_back(std::move(difference));
   }
   return out;
@@ -232,7 +233,7 @@ std::vector<Difference> coarse_differences(const ComparedCell& a, const Compared
     all.push_back(now[t] ? difference_in(a, Change::better, what, "missed", "reached")
                          : difference_in(a, Change::worse, what, "reached", "missed"));
   }
-  for (Difference& one : all) one.note = "chaotic: judged by status and coarse targets";
+  for (Difference& one : all) one.note = "chaotic: compared by status and coarse targets";
   return all;
 }
 

@@ -28,11 +28,11 @@ Difference status_difference(const ComparedCell& before, const ComparedCell& aft
 // the other is not, or where their status differs.
 Real movement(const ComparedCell& before, const ComparedCell& after);
 
-// The largest difference of each quantity and direction, what NEW lacks of what BASE has, and the
-// extra information that one of them was given. Without a tolerance figures agree if they
-// are the same number; with one if they differ by no more than rounding, 1e-16 of the problem's
-// scale, and that share of the first, or of 1e-6 of the scale where that is more: what is smaller
-// solves the problem to the strictest target of the tables.
+// The largest difference of each quantity and direction, the parts of BASE that NEW lacks, and
+// extra information that only one of them has. Without a tolerance, values agree if they are the
+// same number; with one if they differ by no more than rounding, 1e-16 of the problem's scale, and
+// that share of the first, or of 1e-6 of the scale where that is more: what is smaller solves the
+// problem to the strictest target of the tables.
 std::vector<Difference> figure_differences(const ComparedCell& before, const ComparedCell& after,
                                            const std::optional<Real>& tolerance);
 
@@ -44,7 +44,7 @@ std::string criterion_change_text(const ComparedCell& before, const ComparedCell
 // Results that hang on the last bit of their start: rounding, and so another processor or library,
 // moves them as it likes. What of them can still be judged is how they end and what they reach.
 
-// What the runs from perturbed starts did, against one from the given start.
+// The results of the runs from perturbed starts, compared with one from the given start.
 Perturbed perturbed_of(const ComparedCell& unperturbed, const std::vector<ComparedCell>& perturbed);
 
 // Its figures moved by more than a tenth of the tolerance when the start was perturbed. Without a

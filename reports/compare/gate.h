@@ -1,4 +1,4 @@
-// What changed from one set of results to another: the gate of continuous integration.
+// Differences between two sets of results: the gate of continuous integration.
 //
 //   cells        the two sides in one form: cells of a result folder or of a baseline
 //   pairing      which cell of NEW answers which of BASE, and what was asked or built otherwise
@@ -39,8 +39,8 @@ struct ReasonedCell {
   std::string title, reason;
 };
 
-// The cells that differ for one reason: what they were given, or the parts of the build that
-// computed them; of those that cannot be compared why not. Cells count, not figures.
+// The cells that differ for one reason: their options, or the parts of the build that
+// computed them; for those that cannot be compared, the reason. Cells count, not values.
 struct CauseGroup {
   std::string cause = {};
   std::set<std::string> cells = {}, problems = {}, optimizers = {};
@@ -61,8 +61,8 @@ struct GateResult {
   std::size_t chaotic = 0;                    // of them, judged by status and coarse targets
   std::vector<std::string> builds, settings;  // what differs before any figure does, in words
   std::vector<Difference> differences;        // worst first
-  // Of them and of what cannot be compared: those with something worse first, then those that
-  // cannot be compared, then by their cells.
+  // Groups of differences and of cells that cannot be compared: groups with a regression first,
+  // then those cannot be compared, then by their cells.
   std::vector<CauseGroup> causes;
   std::vector<TimeVerdict> times;                    // worst first
   std::vector<std::string> only_before, only_after;  // titles; the allowed ones are not among them

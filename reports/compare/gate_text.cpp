@@ -47,7 +47,7 @@ std::string few_names(const std::set<std::string>& names, const char* noun) {
   return joined({names.begin(), names.end()});
 }
 
-// "3 worse, 2 better"; what there is none of is left out.
+// "3 worse, 2 better"; zero counts are omitted.
 std::string counts_text(std::initializer_list<std::pair<std::size_t, std::string>> counts) {
   std::vector<std::string> words;
   for (const auto& [number, word] : counts)
@@ -235,7 +235,7 @@ std::string gate_terminal(const GateResult& result, bool lists_all) {
          terminal_section(section, lists_all ? kAllRows : kFewRows);
 }
 
-// Of each table as many rows as a reader reads.
+// The rows of each table that a reader reads.
 std::string gate_markdown(const GateResult& result) {
   constexpr std::size_t kMostRows = 40;
   Section section = gate_section(result, false);

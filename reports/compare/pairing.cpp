@@ -1,4 +1,5 @@
-// Pairs cells by what identifies them best first, and words what they were given or built of.
+// Pairs cells by their identity, the strongest first, and describes differences of options and
+// builds.
 #include "reports/compare/pairing.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ bool names(const std::string& pattern, const Given& given) {
 
 }  // namespace
 
-// Of the wildcards of a shell only the star counts: brackets belong to specifications.
+// The star is the only wildcard: brackets belong to specifications.
 bool matches(const std::string& pattern, const std::string& text) {
   std::string escaped;
   for (const char letter : pattern) {
@@ -41,16 +42,16 @@ AllowedList allowed_from_json(const Json& json) {
     AllowedList list;
     for (const Json& cells : json.at("cells")) {
       require(cells.contains("problem") || cells.contains("optimizer"),
-              "an entry of the allowed cells names neither a problem nor an optimizer");
+              "an entry of the allowed cells must name a problem or an optimizer");
       list.push_back({.problem = cells.value("problem", std::string("*")),
                       .optimizer = cells.value("optimizer", std::string("*")),
                       .reason = cells.at("reason").get<std::string>(),
                       .is_of_criterion = cells.value("allows", std::string()) == "criterion"});
-      require(!list.back().reason.empty(), "an entry of the allowed cells gives no reason");
+      require(!list.back().reason.empty(), "an entry of the allowed cells must give a reason");
     }
     return list;
   } catch (const Json::exception& error) {
-    throw UsageError(fmt::format("no {}: {}", kAllowedSchema, error.what()));
+    throw UsageError(fmt::format("not a valid {}: {}", kAllowedSchema, error.what()));
   }
 }
 
@@ -147,7 +148,7 @@ bool is_set_in(const std::string& spec, const std::string& option) {
          parsed.options.end();
 }
 
-// An option of no text says what one that there was not yet said.
+// An empty option equals one that did not exist yet.
 bool says_nothing(const OptionValue* option) {
   return option == nullptr || option_text(*option).empty();
 }
@@ -157,7 +158,8 @@ std::string option_change_text(const Given& a, const Given& b, const std::string
   const OptionValue* const old = a.options->find(option);
   const OptionValue* const now = b.options->find(option);
   if (old == nullptr) return fmt::format("new option {} {}", option, short_text(*now));
-  if (now == nullptr) return fmt::format("option {} is gone, it was {}", option, short_text(*old));
+  if (now == nullptr)
+    return fmt::format("option {} was removed; it was {}", option, short_text(*old));
   const bool is_tabled = is_set_in(a.spec, option) && is_set_in(b.spec, option);
   return fmt::format("{} {} {} → {}", is_tabled ? "tabled" : "default of", option, short_text(*old),
                      short_text(*now));

@@ -46,8 +46,8 @@ Pairs paired(const std::vector<ComparedCell>& before, const std::vector<Compared
 // "iterations 20 → 30": what differs between the terms of two cells.
 std::string change_of_terms(const ComparedCell& before, const ComparedCell& after);
 
-// What differs between paired cells before any figure does. Of options "adam: default of epsilon
-// 1e-8 → 0.01"; of the build "another harness".
+// Differences between paired cells before any value differs. For options "adam: default of epsilon
+// 1e-8 → 0.01"; for the build "another harness".
 std::set<std::string> changed_options(const ComparedCell& before, const ComparedCell& after);
 std::vector<std::string> changed_parts(const ComparedCell& before, const ComparedCell& after);
 

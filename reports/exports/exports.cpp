@@ -88,8 +88,8 @@ Points curve_of(const Run& run) {
   return points;
 }
 
-// Where targets were first met: exact where the record tells its hits, which know more than the
-// curve keeps. Of a hit the target is told, τ s: the loss was no more.
+// The first points at targets: exact if the record has hits, which are finer than the
+// curve. A hit gives the target only, τ s: the loss was at most that.
 Points targets_of(const Run& run, const Points& curve) {
   std::map<std::int64_t, Real> met;  // by evaluations
   const auto meet = [&](std::int64_t evaluations, Real loss) {
@@ -110,7 +110,8 @@ Points targets_of(const Run& run, const Points& curve) {
 
 std::string block_of(const Points& points, Real minimum) {
   std::string text = fmt::format(
-      "% function evaluation | noise-free fitness - Fopt ({:.16e}) | best noise-free fitness - Fopt | "
+      "% function evaluation | noise-free fitness - Fopt ({:.16e}) | best noise-free fitness - "
+      "Fopt | "
       "measured fitness | best measured fitness\n",
       minimum);
   for (const Point& point : points)
@@ -168,7 +169,8 @@ class Writer {
     const std::string table = fmt::format("data_{0}/isoline_{0}_DIM{1}", function, dimension());
     std::string index = fmt::format(
         "funcId = {}, DIM = {}, Precision = 1.000e-08, algId = '{}'\n"
-        "% {}; evaluations are forward solves, counted from the start's; instances are seeds + 1\n"
+        "% {}; evaluations are forward solves, and the start is the first; instances are seeds + "
+        "1\n"
         "{}.dat",
         problem_ + 1, dimension(), quoted_name(c_.optimizers[optimizer_].label),
         c_.problems[problem_].spec, table);
@@ -184,9 +186,9 @@ class Writer {
   void add(const Run& run, CocoExport& out) {
     const Points curve = curve_of(run);
     if (curve.empty()) {
-      out.left_out.push_back(fmt::format(
-          "{} × {}, seed {}: it has no finite loss over f_L", c_.problems[problem_].spec,
-          c_.optimizers[optimizer_].label, run.record->request.seed));
+      out.left_out.push_back(
+          fmt::format("{} × {}, seed {}: no finite loss above f_L", c_.problems[problem_].spec,
+                      c_.optimizers[optimizer_].label, run.record->request.seed));
       return;
     }
     const Points targets = targets_of(run, curve);
@@ -214,7 +216,7 @@ CocoExport coco_export(const Comparison& c) {
     const Index unknowns = problem.sheet == nullptr ? 0 : problem.sheet->unknowns;
     if (unknowns <= 0 || problem.sheet->spec != problem.spec) {
       out.left_out.push_back(
-          fmt::format("{}: no sheet tells how many unknowns it has", problem.spec));
+          fmt::format("{}: no file of metadata gives its number of unknowns", problem.spec));
       continue;
     }
     const bool has_comma = problem.spec.find(',') != std::string::npos;
@@ -259,7 +261,7 @@ std::string head() {
   return names + ",wall_seconds,processor_seconds,loss,x_error,gradient_norm,step_norm\r\n";
 }
 
-// What all rows of a run begin with.
+// The beginning of all rows of a run.
 std::string who_of(const Record& record) {
   const Request& request = record.request;
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", field_of(request.problem.spec),

@@ -81,7 +81,7 @@ CsvColumns columns_of_runs(const Yardstick& yardstick) {
   return columns;
 }
 
-// Of a planned cell that has not run: all figures are empty.
+// A planned cell that has not run: all values are empty.
 std::string planned_text(const PlannedCell& cell, const std::string& column) {
   if (column == "problem") return csv_field(cell.problem);
   if (column == "optimizer") return csv_field(cell.optimizer);

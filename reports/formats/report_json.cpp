@@ -1,5 +1,5 @@
 // All aggregates as JSON, schema isoline.report/1. `figures` are the same for the same build, so
-// that two reports can be compared; times are not, nor costs, which are at measured prices.
+// that two reports can be compared; times are not, nor measured costs.
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -240,10 +240,11 @@ std::string every_cell(const Comparison& c) {
       if (c.cell(p, s).planned > 0 && !c.cell(p, s).is_measured()) text += line_of(c, p, s, width);
   }
   std::string marks = fmt::format(
-      "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * least of "
+      "Median {} in {} to each tolerance; runs: those that reach {}; ms to {}; final loss. {} * "
+      "least of "
       "its problem, ✗ not reached by half of the runs, n/a: not applicable",
       counted_name(c), unit_name(c), tau_name(c), tau_name(c), success_text(c));
-  if (c.is_any_timed_together) marks += ", ≈ timed beside other runs";
+  if (c.is_any_timed_together) marks += ", ≈ timed while other runs used the machine";
   return text + "\n" + wrapped(marks + ".");
 }
 
@@ -318,7 +319,7 @@ std::string paragraph(const Table& table, std::size_t row) {
   return text;
 }
 
-// What its columns mean: of those that were shown.
+// The meaning of its columns, for those that are shown.
 std::string meanings_text(const Table& table, std::size_t shown) {
   std::string text;
   for (std::size_t i = 1; i < std::min(shown, table.meanings.size()); ++i)
@@ -352,7 +353,7 @@ std::string table_text(const Table& table) {
   return table_text(table, all);
 }
 
-// The first of its tables: of who is not ranked the sentences below tell.
+// The first of its tables; the sentences below name methods that are not ranked.
 std::string standings(const Section& section) { return "\n" + table_text(section.tables[0]); }
 
 }  // namespace

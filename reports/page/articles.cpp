@@ -126,12 +126,12 @@ std::string place_text(const Comparison& c, std::size_t s) {
     const Real theirs = c.optimizers[other].tightest().score;
     return theirs > score && !are_tied(theirs, score);
   });
-  return fmt::format("{} of {} on the {} that all ranked methods were given",
+  return fmt::format("{} of {} on the {} common to all ranked methods",
                      ordinal(1 + static_cast<std::size_t>(before)), c.order.methods.size(),
                      counted(c.order.settings.size(), common_noun(c)));
 }
 
-// What its figures amount to.
+// A summary of its values.
 std::string reading(const Comparison& c, std::size_t s) {
   const OptimizerAxis& axis = c.optimizers[s];
   const Standing& standing = axis.tightest();
@@ -169,7 +169,7 @@ std::string optimizer_html(const Comparison& c, std::size_t s) {
   html += row("asks for", html_text(counted_oracles(c, s)));
   if (!axis.privileges.empty())
     html += row("sees", "<span class=privilege>" + list_html(axis.privileges) + "</span>");
-  html += list_row("best on", deeds.won) + list_row("does not solve", deeds.unsolved) +
+  html += list_row("wins", deeds.won) + list_row("does not solve", deeds.unsolved) +
           list_row("failed on", deeds.failed) + list_row("not applicable to", deeds.inapplicable);
   return html + "</dl>" + (axis.sheet == nullptr ? "" : options_html(c, s, *axis.sheet)) +
          "</noscript></article>\n";
@@ -205,7 +205,7 @@ std::string optimizers_html(const Comparison& c) {
 
 namespace {
 
-// Of J at both ends, where they are known.
+// The condition of J at both ends, if known.
 std::string condition_text(const Sheet& sheet) {
   std::string text;
   if (sheet.start_condition) text += figure(*sheet.start_condition) + " at the start";

@@ -111,15 +111,15 @@ function makeMeasures(place) {
   }
 }
 
-// What a reader must know who looks at less, or at another tolerance, than the report was made for.
+// The note about a selection of rows, or a tolerance other than the report's.
 function noteOf() {
   const notes = [];
   if (isFiltered())
     notes.push(`${shownOf('s').length} of ${KINDS.s.names.length} methods and ${shownOf('p').length} of ${KINDS.p.names.length} ` +
-        'problems are shown; every figure is still that of all of them.');
+        'problems are shown; all values still refer to all of them.');
   if (!isOwn())
-    notes.push(`Tables and curves are to τ = ${tauName(view.target)} by ${measureNow().counted}; sentences, intervals and statistics ` +
-        `to the report’s own τ = ${tauName(DEFAULT_TARGET)} by ${DATA.measures[DEFAULT_MEASURE].counted}.`);
+    notes.push(`Tables and curves are for τ = ${tauName(view.target)} by ${measureNow().counted}; sentences, intervals and statistics ` +
+        `for the report’s τ = ${tauName(DEFAULT_TARGET)} by ${DATA.measures[DEFAULT_MEASURE].counted}.`);
   return notes.join(' ');
 }
 

@@ -1,5 +1,5 @@
-// The figures of the page: medians to each of 51 targets by each measure, and who stands where at
-// each, all computed by the report. Here they are only read.
+// The values of the page: medians to each of 51 targets by each measure, and the ranking at each, all
+// computed by the report. This script only reads them.
 'use strict';
 
 const DATA = JSON.parse(document.getElementById('data').textContent);
@@ -42,7 +42,7 @@ function amount(value) {
 }
 const multiple = (ratio) => (ratio === Infinity || ratio === null ? '✗' : `${Number(ratio.toPrecision(3))}×`);
 
-// Who stands where to a target by a measure, best first; then those apart.
+// The ranking to a target by a measure, best first; then methods that are not ranked.
 function standingsAt(measure, target) {
   let same = TARGETS.indexOf(target);
   while (DATA.standings[measure][same] === 0) --same;  // as at the target before

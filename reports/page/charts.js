@@ -93,7 +93,7 @@ function placedEnds(ends) {
   return placed;
 }
 
-// The name of a line at its end, and its points, which the report leaves to those who show it.
+// The name of a line at its end, and its points, which the report leaves to the page.
 const nameOf = (group) => (group.dataset.s === undefined ? group.querySelector('title').textContent : DATA.optimizers[Number(group.dataset.s)]);
 function endOf(chart, group) {
   const ends = chart.querySelector('.ends'), there = lineIn(ends, lineOf(group));

@@ -40,7 +40,8 @@ std::string radix64(std::string_view bytes) {
 std::string canvas_html(std::string_view bytes, Index rows, Index columns, std::string_view ramp,
                         std::string_view words) {
   return fmt::format(
-      "<canvas width={} height={} role=img aria-label=\"{}\" data-ramp={} data-cells=\"{}\"></canvas>",
+      "<canvas width={} height={} role=img aria-label=\"{}\" data-ramp={} "
+      "data-cells=\"{}\"></canvas>",
       columns, rows, html_text(words), ramp, radix64(bytes));
 }
 
@@ -51,12 +52,12 @@ std::string quantity_name(const Quantity& quantity) {
   return quantity.unit.empty() ? quantity.name : quantity.name + ", " + quantity.unit;
 }
 
-// Of x, and where it is a history of all that follows from it.
+// For x, and for all that follows from it if it is a history.
 std::string quantity_name(const FoundFields& all) {
   return all.is_history() ? all.x.name + " → " + quantity_name(all.y) : quantity_name(all.x);
 }
 
-// What the pictures show.
+// The caption of the snapshots.
 struct Labels {
   std::string x, truth, rest;
 };
@@ -105,7 +106,8 @@ std::string given_html(const FoundFields& all) {
   if (frames.has_truth())
     pictures += picture(all, frames.truth(), all.x_scale, truth, truth + ": " + quantity_name(all));
   return fmt::format(
-      "<figure class=given><div class=two>{}</div><figcaption><b>What is given{}.</b> {}{}; its colours "
+      "<figure class=given><div class=two>{}</div><figcaption><b>What is given{}.</b> {}{}; its "
+      "colours "
       "end at ±{}.</figcaption></figure>",
       pictures, frames.has_truth() ? ", and what is sought" : "",
       html_text("y* is the " + quantity_name(all.y)),

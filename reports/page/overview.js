@@ -32,9 +32,9 @@ function standingRow({s, score, solved, settings, wins, typical, reached, runs, 
 function drawStandings(table) {
   const rows = standingsNow().filter((standing) => standing.settings > 0);  // others learn alone
   const shown = rows.filter(({s}) => isShown('s', s));  // what the reader chose is not folded
-  const heads = ['#', 'optimizer', 'score, 0 to 1', 'score', 'solved', 'best on', '× least', 'runs', 'failed'];
+  const heads = ['#', 'optimizer', 'score, 0 to 1', 'score', 'solved', 'wins', 'median slowdown', 'runs', 'failed'];
   if (rows.length === 0 || DATA.allLearned)
-    return table.replaceChildren(element('caption', {}, 'Nothing here is ranked by work: what was learned is told by its error in x.'));
+    return table.replaceChildren(element('caption', {}, 'No problem here is ranked by work; learned problems are compared by the error in x.'));
   filledTable(table, `Standings to ${tauName(view.target)} by ${measureNow().counted}`,
       [element('tr', {}, ...heads.map((head) => element('th', {scope: 'col'}, head)))], rows.map((row) => standingRow(row, row.isApart ? undefined : rows.indexOf(row), shown.indexOf(row) >= SHOWN_AT_FIRST)));
   makeSortable(table);

@@ -82,7 +82,7 @@ std::string title_of(const Document& document) {
   return (parts.empty() ? "" : joined(parts) + " · ") + "Isoline";
 }
 
-// What marks mean besides that of privileges, where any method or problem has them.
+// The meaning of marks except extra information, if any method or problem has them.
 std::string legend_html(const Comparison& c) {
   const Marks shown = marks_shown(c);
   std::string legend;

@@ -143,7 +143,8 @@ std::string claims_about(const Document& document) {
   return text + "}";
 }
 
-// [optimizer, score, solved, best on, × least, runs that get there] of each, one after the other.
+// [optimizer, score, solved, wins, median slowdown, runs that get there] of each, one after the
+// other.
 std::string places_json(const std::vector<Ranked>& places) {
   return list(places, [](const Ranked& place) {
     const Standing& standing = place.standing;

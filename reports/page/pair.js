@@ -27,7 +27,7 @@ function medianInterval(ascending) {
   return [ascending[first], ascending[n - 1 - first]];
 }
 
-// Problems of one name are one: the median over those settings that both were given.
+// Problems of one name count as one: the median over the settings that both were run on.
 const pairOf = (a, b) => pairOfAll([[a, b]]);
 
 // Of several pairs the median over their settings too: of all methods in two results.
@@ -86,8 +86,8 @@ function priceRows() {
       .filter(([x, y]) => x !== undefined && y !== undefined && takenBy(x) < Infinity && takenBy(y) < Infinity);
   const middle = (side, measure) => (both.length === 0 ? '–' : figure(Number(medianOf(both.map((cells) => takenBy(cells[side], view.target, measure)).sort((x, y) => x - y)).toPrecision(4))));
   const rows = MEASURES.map((name, measure) => [`${DATA.measures[measure].counted}, ${DATA.measures[measure].unit}`, middle(0, measure), middle(1, measure)]);
-  return [...rows, ['asks for', DATA.asks[pair.a], DATA.asks[pair.b]],
-    ['privileged information', DATA.privileges[pair.a] || 'none', DATA.privileges[pair.b] || 'none'],
+  return [...rows, ['required derivatives', DATA.asks[pair.a], DATA.asks[pair.b]],
+    ['extra information (†)', DATA.privileges[pair.a] || 'none', DATA.privileges[pair.b] || 'none'],
     ['kind', DATA.kinds[pair.a], DATA.kinds[pair.b]]].map(([what, a, b]) => ({what, a, b, n: both.length}));
 }
 
@@ -107,15 +107,15 @@ function factorWords(ratio, first, second) {
 // A sentence that says no more than the interval does.
 function pairSentence(told) {
   const {a, b} = pair, n = told.names.length, counted = measureNow().counted;
-  if (n === 0) return `Neither solves a problem that both were given to τ = ${tauName(view.target)}.`;
+  if (n === 0) return `Neither solves a problem that both were run on to τ = ${tauName(view.target)}.`;
   const range = n < 6 ? `range of ${n}` : '95 % interval', isOpen = told.low <= 1 && told.high >= 1;
   return `${DATA.optimizers[a]} needs less ${counted} on ${told.wins} of ${n} problems and more on ${told.losses}` +
       `${told.ties > 0 ? `, the same on ${told.ties}` : ''}${told.neither > 0 ? `; neither solves ${told.neither} more` : ''}. ` +
       `Median factor: ${factorWords(told.typical, a, b)} (${range} ${multiple(told.low)} to ${multiple(told.high)}, ` +
-      `above 1 for ${DATA.optimizers[a]})${isOpen || n < 6 ? ': not settled.' : '.'}`;
+      `above 1 for ${DATA.optimizers[a]})${isOpen || n < 6 ? ': not significant.' : '.'}`;
 }
 
-// A bar a setting, to the left where the first needs less; it leads to the problem with these lines.
+// One bar per setting, to the left if the first method needs less; it links to the problem with both lines.
 function pairBar(name, p, value, words) {
   const bar = element('i', {className: value < 0 ? 'first' : 'second'});
   bar.style.setProperty('--w', Math.abs(value) / MOST_DOUBLINGS);
@@ -156,7 +156,7 @@ function drawPair(place) {
       element('p', {className: 'chosen-two'}, pairSelect('a', redraw), ' against ', pairSelect('b', redraw)),
       element('p', {className: 'verdict'}, pairSentence(told)),
       element('div', {className: 'decided'}, element('div', {},
-          element('p', {className: 'legend'}, `To the left ${DATA.optimizers[pair.a]} needs less, to the right ${DATA.optimizers[pair.b]}; a full bar is 64 times or unsolved. Press one for its curves.`),
+          element('p', {className: 'legend'}, `To the left ${DATA.optimizers[pair.a]} needs less, to the right ${DATA.optimizers[pair.b]}; a full bar is a factor of 64 or unsolved. Select a bar for its curves.`),
           pairBars(told), ...learnedSection()),
       priceTable()));
 }

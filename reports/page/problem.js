@@ -50,8 +50,8 @@ function legendRow(problem, s, ends, isDrawn) {
 const MOST_ROWS = 14;  // more on demand
 
 function captionOf(problem, count, all) {
-  if (problem.learned !== undefined) return `At equal work, ${figure(problem.learned.work)} forward solves: error in x, loss in y. Press a name to draw or hide its line.`;
-  return `Median ${measureNow().counted} to τ = ${tauName(view.target)}: ${count} of ${all} reach it. Press a name to draw or hide its line.`;
+  if (problem.learned !== undefined) return `At equal work, ${figure(problem.learned.work)} forward solves: error in x, loss in y. Select a name to show or hide its line.`;
+  return `Median ${measureNow().counted} to τ = ${tauName(view.target)}: ${count} of ${all} reach it. Select a name to show or hide its line.`;
 }
 
 function drawLegend(place, problem, lines) {

@@ -61,7 +61,7 @@ function makeSortable(table) {
   });
 }
 
-// Shows the rows that hold every word of the input, among those of the view; returns how to do so anew.
+// Shows the selected rows that contain every word of the input; returns a function that repeats this.
 function makeFilter(input, table, output) {
   const texts = new Map(), all = pressable('', undefined, () => { most = Infinity; show(); });
   let most = MOST_IN_PAGE;

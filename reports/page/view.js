@@ -1,6 +1,6 @@
-// What the reader looks at: which methods and problems, to which tolerance, by what measure. Kept in
-// the address, so that a view can be shared. Any element with data-s or data-p follows, whoever made
-// it: a filter hides, and changes no number.
+// The selection of the reader: the methods and problems, the tolerance, and the measure. Stored in
+// the address, so that a view can be shared. Any element with data-s or data-p follows, of any
+// script: a filter hides, and changes no number.
 const TARGETS = DATA.targets;  // those there are medians to, of τ = 10^(−j/5)
 const DEFAULT_TARGET = DATA.rungs[DATA.rungs.length - 1];  // the report's own
 const KINDS = {s: {names: DATA.optimizers, address: 'o'}, p: {names: DATA.problems.map((problem) => problem.spec), address: 'p'}};
@@ -93,7 +93,7 @@ function soon(key, task) {
   nextFrame(nextTask);
 }
 
-// What is drawn anew when the view changes: soon where it is seen, else when it comes into sight.
+// Redrawn when the view changes: at once if visible, else when it comes into sight.
 const LIVE = new Map(), STALE = new Set();
 
 function refresh(element) {

@@ -17,8 +17,8 @@ struct Traced {
   std::vector<Real> cost, gap;
 };
 
-// Of a direct problem the best so far, which holds until a better one is evaluated; of a learned
-// one what the network of that iteration is worth.
+// For a direct problem, the best so far, which holds until a better one is evaluated; for a learned
+// one, the value of the network at that iteration.
 std::vector<Real> gaps_of(const Run& run, bool is_learned) {
   std::vector<Real> gaps = losses_left(run);
   for (std::size_t i = 1; i < gaps.size() && !is_learned; ++i)

@@ -22,7 +22,7 @@ Real time_of(const Sheet* sheet, const FieldFrames& frames) {
   return is_of_sheet ? sheet->field->time : 0;
 }
 
-// Of x alone: the first row of a history.
+// The row of x only: the first one of a history.
 std::vector<Real> distances(const FieldFrames& frames, bool is_history) {
   std::vector<Real> apart;
   if (!frames.has_truth()) return apart;
@@ -40,12 +40,12 @@ std::vector<Real> distances(const FieldFrames& frames, bool is_history) {
   return apart;
 }
 
-// Of the same cells, of which x* is known of both or of none.
+// The same cells, with a known x* in both or neither.
 bool is_alike(const FieldFrames& a, const FieldFrames& b) {
   return a.shape[1] == b.shape[1] && a.shape[2] == b.shape[2] && a.has_truth() == b.has_truth();
 }
 
-// Of the least seed that keeps them; of this seed where one is wanted.
+// From the least seed that keeps them, or from this seed if requested.
 std::optional<FoundField> field_of(const Comparison& c, std::size_t p, std::size_t s,
                                    std::optional<std::uint64_t>& seed) {
   std::vector<const Record*> records;

@@ -1,4 +1,5 @@
-// What one method of each kind found of a problem on a grid, from the fields beside its records.
+// The results of one method of each kind for a problem on a grid, from the fields beside its
+// records.
 #pragma once
 
 #include <optional>

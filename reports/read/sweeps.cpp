@@ -113,7 +113,7 @@ bool is_full_enough(const SweepGrid& grid) {
          4 * filled >= 3 * cells_of(grid);
 }
 
-// Of runs that share all but two options, and their length: in iterations, or in samples.
+// Groups of runs that share all but two options, and their length: in iterations, or in samples.
 void add_grids(const Entries& entries, const std::string& first, const std::string& second,
                bool is_by_samples, std::vector<SweepGrid>& out) {
   std::map<std::string, std::vector<const Entry*>> groups;

@@ -10,8 +10,8 @@ namespace isoline::reports {
 
 using namespace results;
 
-// Of one problem and one optimizer by name. Options of the problem, of the optimizer, or of what
-// stands inside one of them: "batch", "kappa", "network-optimizer.rate".
+// A sweep of one problem and one optimizer by name. Its options belong to the problem, the
+// optimizer, or a part inside one of them: "batch", "kappa", "network-optimizer.rate".
 struct SweepGrid {
   std::string problem, optimizer;
   std::string row, column;  // options

@@ -17,8 +17,8 @@ bool has_abscissa(const Evidence& evidence) {
 
 PlotSeries series_of(std::string name) { return {{}, std::move(name), {}, {}, {}, {}}; }
 
-// Of a figure that is read at one point what it should be there: of a ratio where the first of two
-// terms should be, seen from the second.
+// The expected value of a quantity that is read at one point: for a ratio, the place of the first
+// of two terms relative to the second.
 std::vector<PlotSeries> goals_of(const Evidence& evidence) {
   const bool is_ratio = evidence.kind == "ratio";
   const bool is_height = is_ratio || evidence.kind == "value" || evidence.kind == "greatest";
@@ -53,13 +53,13 @@ Plot curves(const Evidence& evidence) {
   plot.is_log_x = end > kLong || evidence.is_over_time;
   plot.published = goals_of(evidence);
   plot.caption =
-      "Medians over seeds with the least and the greatest as a band; a run that has ended keeps its "
+      "Medians over seeds with the range as a band; a run that has ended keeps its "
       "last figure.";
   if (!plot.published.empty())
     plot.caption +=
-        std::string(" The bar stands where the quantity is read: ") +
-        (evidence.kind == "ratio" ? "there the first line should be, seen from the second."
-                                  : "what was published, with its error.");
+        std::string(" The bar marks where the quantity is read: ") +
+        (evidence.kind == "ratio" ? "the published place of the first line, relative to the second."
+                                  : "the published value with its error.");
   return plot;
 }
 
@@ -139,14 +139,14 @@ Plot figures_over_abscissa(const Evidence& evidence) {
             .y_label = column_words(evidence.column),
             .is_log_x = true};
   const std::size_t n = evidence.terms.size();
-  plot.caption = "Medians over seeds with the least and the greatest as a band.";
+  plot.caption = "Medians over seeds with the range as a band.";
   if (evidence.kind != "crossing") {
     const bool is_of_ratios = evidence.kind == "ratio_slope";
     plot.series = {is_of_ratios ? ratios_over_abscissa(evidence) : over_abscissa(evidence, 0, n)};
     if (is_of_ratios) plot.y_label += ", ratio";
     plot.published = {published_slope(evidence, plot.series[0])};
     plot.caption +=
-        " Broken: the published slope through the middle of the figures, with its error.";
+        " Broken line: the published slope through the centre of the values, with its error.";
     return plot;
   }
   plot.series = {over_abscissa(evidence, 0, n / 2), over_abscissa(evidence, n / 2, n)};
@@ -157,7 +157,7 @@ Plot figures_over_abscissa(const Evidence& evidence) {
                      .y = {},
                      .low = std::vector<Real>(3, 0),
                      .high = std::vector<Real>(3, kNever)}};
-  plot.caption += " The upright band is where the lines were published to cross.";
+  plot.caption += " The vertical band is the published crossing of the lines.";
   return plot;
 }
 

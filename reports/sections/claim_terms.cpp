@@ -78,7 +78,7 @@ Real least_coordinate(const Rows& x, std::size_t row) {
   return least;
 }
 
-// Of the first step: its component along the diagonal toward the origin, √2 at most; or its angle
+// For the first step: its component along the diagonal toward the origin, at most √2; or its angle
 // with the straight way to 0, in degrees.
 Real first_step(const Rows& path, bool is_angle) {
   const std::vector<Real>& from = path.at(0);
@@ -119,8 +119,8 @@ Real slowdown(const Curve& curve, std::size_t index) {
   return last > 0 ? first / last : kNever;
 }
 
-// What was spent of that by which the place is named, when the column first was no more than a
-// bound; infinite where it was not by then.
+// The cost, in the unit of the place, when the column was first at most a bound; infinite if it
+// never was.
 Real spent_until(const Record& record, const Place& place) {
   const Curve& curve = record.curve;
   const auto& [name, bound] = bound_of(place.column);
@@ -187,13 +187,13 @@ Real figure_of(const Record& record, const Place& place) {
 
 std::string column_words(const std::string& column) {
   static const std::map<std::string, std::string> words = {
-      {"x_error", "error in x on the validation"},
-      {"loss", "loss on the validation"},
+      {"x_error", "error in x on the validation samples"},
+      {"loss", "loss on the validation samples"},
       {"batch_x_error_64", "error in x, running mean over 64 steps"},
       {"batch_x_error_256", "error in x, running mean over 256 steps"},
       {"batch_loss_64", "loss, running mean over 64 steps"},
       {"batch_loss_256", "loss, running mean over 256 steps"},
-      {"loss_peak", "greatest loss on the validation"},
+      {"loss_peak", "greatest loss on the validation samples"},
       {"loss_drop", "fall of the loss since the start"},
       {"slowdown", "slowing of the error in x, first third over last third"},
       {"gradient_norm", "length of the gradient"},
@@ -208,11 +208,11 @@ std::string column_words(const std::string& column) {
       {"bend", "largest relative change of y2 / y1"},
       {"alignment", "first update's component along the diagonal"},
       {"distance", "distance to the origin"},
-      {"milliseconds", "milliseconds an iteration"}};
+      {"milliseconds", "milliseconds per iteration"}};
   if (column.starts_with(kSeries)) return column.substr(kSeries.size());
   if (column.starts_with(kUntil)) {
     const auto& [name, bound] = bound_of(column);
-    return fmt::format("what was spent until the {} was {}", column_words(name), figure(bound));
+    return fmt::format("the cost until the {} was {}", column_words(name), figure(bound));
   }
   const auto found = words.find(column);
   return found == words.end() ? column : found->second;
@@ -223,8 +223,8 @@ std::string column_words(const std::string& column) {
 std::string tau_name(const Comparison& c) { return std::string(c.yardstick.tightest().name); }
 
 std::string_view counted_name(Measure by) {
-  constexpr std::array<std::string_view, kMeasures.size()> kNames = {
-      "declared work", "cost at measured prices", "iterations", "wall time"};
+  constexpr std::array<std::string_view, kMeasures.size()> kNames = {"work", "measured cost",
+                                                                     "iterations", "wall time"};
   return kNames[static_cast<std::size_t>(by)];
 }
 std::string_view counted_name(const Comparison& c) { return counted_name(c.yardstick.by); }
@@ -272,8 +272,8 @@ std::string success_text(const Comparison& c) {
   const std::string x = fmt::format("the error in x is at most {} of the solution’s norm", tau);
   if (aims_at_x == 0) return fmt::format("Solved to {}: {}.", tau, loss);
   if (aims_at_x == c.problems.size()) return fmt::format("Solved to {}: {}.", tau, x);
-  return fmt::format("Solved to {}: {}; on the {} whose user wants x, {} instead.", tau, loss,
-                     counted_settings(c, aims_at_x), x);
+  return fmt::format("Solved to {}: {}; on the {} with the success criterion x, {} instead.", tau,
+                     loss, counted_settings(c, aims_at_x), x);
 }
 
 // Finds the runs of a claim's terms and reads their figures.

@@ -36,7 +36,7 @@ struct PrintedRow {
   std::int64_t iteration = 0;
   std::vector<Real> printed, reached;
 };
-// Of a table at iterations 1, 2, …; a single row is held against the place's iteration. None where
+// A table at iterations 1, 2, …; a single row is compared at the place's iteration. Nothing if
 // the path is shorter.
 std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
 
@@ -52,13 +52,13 @@ std::string column_words(const std::string& column);  // "error in x"
 
 std::string tau_name(const Comparison& comparison);  // "1e-6", the headline's
 
-// "declared work", "cost at measured prices", "iterations", "wall time".
+// "work", "measured cost", "iterations", "wall time".
 std::string_view counted_name(Measure by);
 std::string_view counted_name(const Comparison& comparison);
 std::string_view unit_name(Measure by);  // "forward solves", …, "ms"
 std::string_view unit_name(const Comparison& comparison);
 
-// "declared work to 1e-6, in forward solves", "iterations to 1e-6".
+// "work to 1e-6, in forward solves", "iterations to 1e-6".
 std::string counted_to_tau(const Comparison& comparison);
 
 // An amount as tables write it, ✗ where infinite: times are given in seconds and told in ms.
@@ -73,7 +73,7 @@ std::string_view common_noun(const Comparison& comparison);  // of the settings 
 std::string n_column(const Comparison& comparison);  // "n settings", the heading of their number
 std::string counted_settings(const Comparison& comparison, std::size_t count);  // "22 settings"
 
-// What success means at this yardstick, a sentence; in a study of one aim, of that alone.
+// The meaning of success by this measure, as a sentence; with a single criterion, for that only.
 std::string success_text(const Comparison& comparison);
 
 using ByCell = std::unordered_map<std::string, const Record*>;
@@ -85,7 +85,7 @@ std::vector<std::string> missing_cells(const nlohmann::json& set, const ByCell& 
 // Where a term of a claim, or of its contrast, is read.
 Place place_of(const nlohmann::json& claim, const nlohmann::json& term);
 
-// What a claim must not survive, beside optimizers that go by each other's names.
+// The comparisons that must refute a claim, besides permuted names of optimizers.
 enum class Null {
   none,
   untrained,  // nothing was learned: each figure is that of iteration 0
@@ -115,7 +115,7 @@ bool has_rivals(const nlohmann::json& claim);
 
 // A claim in words: what it measures, what was published with which error, and where.
 
-// Of a claim, or of its contrast.
+// For a claim, or for its contrast.
 std::string quantity_text(
     const nlohmann::json& claim);  // "ratio of the loss, at the end: adam / sip"
 std::string published_text(const nlohmann::json& claim);  // "≥ 3 (±5 % from text)"

@@ -212,8 +212,8 @@ std::string marked_verdict(const Judgement& judgement) {
   return fmt::format("{} {}", mark_of(judgement.verdict), verdict_text(judgement));
 }
 
-// What a reader must know beside the figures: what it was held against, how else it was read, why
-// not, and what differs from the source.
+// Remarks besides the values: the comparison, other readings, reasons, and differences from the
+// source.
 std::vector<Reading> claim_notes(const Judgement& judgement) {
   std::vector<Reading> notes;
   const auto add = [&](const char* title, std::string text) {
@@ -281,9 +281,12 @@ Section claims_section(const std::vector<Judgement>& judgements) {
                   .otherwise = "No published claim is decided by the runs of this report."};
   if (judgements.empty()) return section;
   section.lead =
-      "Measured are medians over seeds, with 95 % of the bootstrap over seeds, or the range of fewer "
-      "than six. Reproduced: all of that lies within the error of what was published, or, where that "
-      "is one run, one further run of ours may be it. Consistent: some of it does. Stronger: all of "
+      "Measured are medians over seeds, with 95 % of the bootstrap over seeds, or the range of "
+      "fewer "
+      "than six. Reproduced: all of that lies within the error of what was published, or, where "
+      "that "
+      "is one run, one further run of ours may be it. Consistent: some of it does. Stronger: all "
+      "of "
       "it is better than published. Partly: all of it is on the published side of a tie, with a "
       "third to three times the published effect. Fewer than six seeds are consistent or at odds. "
       "Claims that restate one fact count once, by the weakest.";
@@ -354,7 +357,7 @@ Section claims_summary(const std::vector<Judgement>& judgements) {
   return section;
 }
 
-// What the papers say, as marks in their own figures.
+// The published values, as marks in the papers' figures.
 
 namespace {
 

@@ -14,7 +14,7 @@
 namespace isoline::reports {
 namespace {
 
-// What all runs of an optimizer that reached the tightest tolerance had asked by then.
+// The calls of all runs of an optimizer that reached the tightest tolerance, until then.
 struct Calls {
   std::array<Real, kOracles> counts{};
   Real work = 0, cost = 0;
@@ -60,11 +60,11 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
                   {"measured", price->price},
                   {"low", price->low},
                   {"high", price->high}}};
-  if (!is_told(prices, *price)) cell.remark = "declared is used";
+  if (!is_told(prices, *price)) cell.remark = "nominal is used";
   return cell;
 }
 
-// What the prices that are used amount to.
+// A summary of the costs that are used.
 struct PriceSummary {
   std::vector<Real> pullbacks;
   std::size_t measured = 0, untold = 0;
@@ -87,18 +87,19 @@ struct PriceSummary {
     }
   }
   std::string reading() const {
-    if (measured == 0)
-      return "These results hold no measured prices: costs are at the declared ones.";
+    if (measured == 0) return "These results contain no measured costs: nominal costs are used.";
     std::string text;
     if (!pullbacks.empty()) {
       const Spread spread = spread_of(pullbacks);
       text = fmt::format(
-          "A pullback, declared as 1, takes {:.3g} forward solves in the median of the {} where it is resolved, from {:.3g} to {:.3g}; farthest from its declared price: {}. ",
+          "A pullback, with nominal cost 1, takes {:.3g} forward solves in the median of the {} "
+          "where it is resolved, from {:.3g} to {:.3g}; farthest from its nominal cost: {}. ",
           spread.median, spread.n, spread.low, spread.high, farthest);
     }
-    if (untold == 0) return text + "All measured prices are used.";
+    if (untold == 0) return text + "All measured costs are used.";
     return text + fmt::format(
-                      "Of {} measured prices {} are replaced by the declared ones: there a call, "
+                      "{} measured costs in total; {} are replaced by the nominal ones: there, a "
+                      "call, "
                       "or the forward solve that is their unit, takes less than a microsecond, "
                       "which is mostly the overhead of any call, or the rounds disagree.",
                       measured, untold);
@@ -112,8 +113,8 @@ Table calls_table(const Comparison& c) {
               .title = "Oracle calls",
               .reading = "",
               .caption = fmt::format(
-                  "Raw counts until {} was met, summed over the runs that met it; what they come "
-                  "to at declared prices (work) and in {} (cost). Of every single run: "
+                  "Raw counts until {} was met, summed over the runs that met it; their nominal "
+                  "cost (work) and in {} (cost). For every single run: "
                   "report.csv.",
                   tau_name(c), priced_unit(c)),
               .columns = {"optimizer", "runs to " + tau_name(c)},
@@ -142,7 +143,7 @@ Table calls_table(const Comparison& c) {
     cost += all[s].cost;
   }
   rows_are_optimizers(table);
-  table.reading = fmt::format("All that is shown took {} declared forward solves, {} in {}.",
+  table.reading = fmt::format("All of these took {} forward solves at nominal cost, {} in {}.",
                               figure(work), figure(cost), priced_unit(c));
   return table;
 }
@@ -153,9 +154,10 @@ Table prices_table(const Comparison& c) {
       .title = "Prices",
       .reading = "",
       .caption =
-          "What the first call of an oracle at a fresh point takes, in forward solves: declared : "
-          "measured [middle 80 % of the rounds], in processor time, before the runs. Declared is "
-          "used: the call, or the forward solve, takes less than a microsecond, or the rounds "
+          "The cost of the first call of an oracle at a new point, in forward solves: nominal : "
+          "measured [middle 80 % of the rounds], in processor time, before the runs. The nominal "
+          "cost is used if the call, or the forward solve, takes less than a microsecond, or the "
+          "rounds "
           "disagree. Empty: not offered, or left out because it takes too long, and counted at its "
           "declared price.",
       .columns = {"problem", "forward, µs"},
@@ -207,7 +209,7 @@ Section problems_section(const Comparison& c) {
               .caption = fmt::format(
                   "Median {}. Bold: the least of its problem. ✗: not reached by half of the "
                   "runs. (k/n): k of n runs reached it. n/a: not applicable. Empty: "
-                  "never planned. {}",
+                  "not planned. {}",
                   counted_to_tau(c), marks_legend(c)),
               .columns = {"optimizer"},
               .is_folded = c.problems.size() > kMostColumns,
@@ -244,7 +246,7 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
   return attempts;
 }
 
-// The raw counts of the run in the middle of those that got there, for who points at its cost.
+// The raw counts of the median successful run, as a tooltip of its cost.
 TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   std::vector<std::pair<Real, std::size_t>> reached;
   for (const std::size_t index : cell.runs)
@@ -261,7 +263,7 @@ TableCell with_calls(const Comparison& c, const Cell& cell, TableCell shown) {
   return shown;
 }
 
-// What restarts cost on one cell; `rescued` counts cells that only restarts solve.
+// The cost of restarts on one cell; `rescued` counts cells that only restarts solve.
 TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::size_t& rescued) {
   const Cell& cell = c.cell(p, s);
   if (!cell.is_measured()) return cell.planned == 0 ? "" : cell.runs.empty() ? "missing" : "n/a";
@@ -294,11 +296,12 @@ Table restart_table(const Comparison& c) {
       .title = "Expected running time",
       .reading = "",
       .caption = fmt::format(
-          "Cost to {} when a method restarts until it reaches it, in {}: all that was spent over "
-          "the successes, and the middle 80 % of 1,000 simulated restarts drawn from the runs; ✗ "
-          "where no run reached it. In brackets: runs that reached it, of all. The runs are of other seeds, so a "
-          "restart here draws another instance, with another start and where the problem has one "
-          "another target, too: it is the time to solve one of these, not to solve this one.",
+          "Cost to {} of a method that restarts until it reaches it, in {}: the total cost over "
+          "the number of successes, and the middle 80 % of 1,000 simulated restarts resampled "
+          "from the runs; ✗ if no run reached it. In parentheses: successful runs of all runs. "
+          "The runs have different seeds. A restart therefore has another start and, if the "
+          "problem has one, another target: the number is the cost of solving one of these "
+          "instances, not a given one.",
           tau_name(c), cost_unit(c)),
       .columns = {"optimizer"},
       .rows = {}};
@@ -314,7 +317,7 @@ Table restart_table(const Comparison& c) {
   }
   rows_are_optimizers(table);
   columns_are_problems(table, problems);
-  table.reading = fmt::format("Only restarts reach it in {}: the median run does not.",
+  table.reading = fmt::format("In {}, only restarts reach it: the median run does not.",
                               counted(rescued, "cell"));
   return table;
 }

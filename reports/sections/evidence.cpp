@@ -70,10 +70,10 @@ std::string priced_unit(const Comparison& c) {
   const auto measured = static_cast<std::size_t>(std::ranges::count_if(
       c.problems, [](const ProblemAxis& problem) { return problem.prices.are_measured(); }));
   const std::size_t all = c.problems.size();
-  if (measured == all) return "equivalent forward solves at measured prices";
-  if (measured == 0) return "forward solves at declared prices (no measured ones are used)";
+  if (measured == all) return "equivalent forward solves at measured cost";
+  if (measured == 0) return "forward solves at nominal cost (no measured ones are used)";
   return fmt::format(
-      "equivalent forward solves, at declared prices on the {} of {} where none was measured or a "
+      "equivalent forward solves, at nominal cost on the {} of {} where none was measured or a "
       "call is too short to be",
       all - measured, counted_settings(c, all));
 }
@@ -85,8 +85,8 @@ std::string denominators(const Comparison& c, std::size_t shown) {
     failed += c.optimizers[s].failed;
   }
   return fmt::format(
-      "the first {} of {} ranked methods; n = {}, given to all of them; {} of {} of "
-      "their runs failed",
+      "the first {} of {} ranked methods; n = {}, common to all of them; {} of {} of their runs "
+      "failed",
       shown, c.order.methods.size(), counted_settings(c, c.order.settings.size()), failed, runs);
 }
 
@@ -109,7 +109,7 @@ void Leading::offer(Real mine, const std::string& label) {
 }
 
 std::string Leading::names() const {
-  if (count == 0) return "nobody";
+  if (count == 0) return "no method";
   return count == 1 ? name : fmt::format("{} and {} more", name, count - 1);
 }
 
@@ -125,7 +125,7 @@ std::string highest_at(const Plot& plot, Real x) {
     }
     if (y == best && y > 0) names.push_back(line.name);
   }
-  if (names.empty()) return "nobody";
+  if (names.empty()) return "no method";
   return fmt::format("{}{} ({})", names[0],
                      names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "",
                      percent(best));
@@ -156,9 +156,9 @@ Section statistics_section(const Comparison& c) {
     section.readings.push_back({"What cannot be concluded", std::move(sentence)});
   if (c.runs.empty()) return section;
   section.lead = fmt::format(
-      "Orders of methods, ranks and tests among them are by {}{}. What runs cost is in {}; the raw "
-      "counts stand under Oracle calls and Prices.",
-      counted_name(c), c.yardstick.by == Measure::work ? ", which any machine repeats" : "",
+      "Rankings and tests use {}{}. Costs are in {}; the raw counts are in Oracle calls and "
+      "Prices.",
+      counted_name(c), c.yardstick.by == Measure::work ? ", which is equal on every machine" : "",
       cost_unit(c));
   constexpr std::size_t kTables = std::size(kStatisticTables), kPlots = std::size(kStatisticPlots);
   section.tables.resize(kTables);
@@ -182,8 +182,7 @@ namespace {
 
 constexpr std::size_t kPoints = 24;  // a curve has up to twice as many
 
-// What is drawn of a column: itself, what it is the shape of, or nothing where it is of a whole
-// run.
+// The plotted part of a column: itself, its shape, or nothing if it belongs to a complete run.
 std::string curve_of(const std::string& column) {
   constexpr std::array<const char*, 3> kWhole = {"milliseconds", "alignment", "turn"};
   if (column.ends_with("deviation") || std::ranges::find(kWhole, column) != kWhole.end()) return "";
@@ -382,16 +381,16 @@ void read_otherwise(Judgement& out, Measured from) {
     out.verdict = joint_verdict(out.verdict, other.verdict);
 }
 
-// What else would have come to the same verdict: then the data cannot turn it.
+// Other sources of the same verdict: then the data cannot refute the claim.
 void name_survived_nulls(Judgement& out, Measured from) {
   const auto is_survived = [&](Null null) {
     Judgement planted = out;
     from.null = null;
     return take(planted, from) && weakest_verdict(planted, from.claim) <= out.verdict;
   };
-  if (is_survived(Null::untrained)) out.survives.emplace_back("networks that were never trained");
+  if (is_survived(Null::untrained)) out.survives.emplace_back("untrained networks");
   if (has_rivals(from.claim) && is_survived(Null::twins))
-    out.survives.emplace_back("one method under all its names");
+    out.survives.emplace_back("one method under several names");
 }
 
 // The length that the claim speaks of.
@@ -422,10 +421,9 @@ void measure_in(Judgement& out, const Measured& from) {
   if (!out.why.empty()) return;
   if (from.iterations() < out.needs) {
     out.verdict = Verdict::too_short;
-    out.why =
-        fmt::format("{} of the {} iterations that it speaks of", from.iterations(), out.needs);
+    out.why = fmt::format("{} of the {} iterations that it requires", from.iterations(), out.needs);
   } else if (!is_known) {
-    out.why = "the runs have no such figure";
+    out.why = "the runs have no such value";
   } else {
     out.verdict = weakest_verdict(out, claim);
     if (is_supported(out.verdict)) name_survived_nulls(out, from);

@@ -1,6 +1,6 @@
-// The statistics of a report as tables and plots. Orders of optimizers are by what its yardstick
-// counts: declared work, unless asked otherwise, which any machine repeats. What runs cost is then
-// in equivalent forward solves, with raw counts beside.
+// The statistics of a report as tables and plots. Rankings use the measure of the report: work, by
+// default, which is equal on every machine. Costs of runs are then in equivalent forward solves,
+// with raw counts beside.
 #pragma once
 
 #include <map>
@@ -43,17 +43,17 @@ inline constexpr Table (*kStatisticTables[])(const Comparison&) = {
 inline constexpr Plots (*kStatisticPlots[])(const Comparison&) = {profile_plot, log_ratio_plot,
                                                                   data_profile_plot, runtime_plot};
 
-// Of the section on rates: without rows where no method ran both ways.
+// The section on rates; without rows if no method ran both ways.
 Table tuned_and_defaults_table(const Comparison& comparison);
 
-// What so few problems, seeds or runs cannot show, a sentence each.
+// The limits of so few problems, seeds or runs, one sentence each.
 std::vector<std::string> limits_of_evidence(const Comparison& comparison);
 
 inline constexpr std::size_t kMostTableRows = 40;  // the best optimizers
 inline constexpr std::size_t kMostLines = 8;       // of a plot, the best optimizers
 inline constexpr std::size_t kMostRivals = 4;      // of the leader, each in a plot of two lines
 
-// What they share.
+// The common part of the statistics.
 // The best of the common order: of tables that compare. And of all, those apart after them.
 std::size_t shown_optimizers(const Comparison& comparison, std::size_t most);
 std::size_t listed_optimizers(const Comparison& comparison, std::size_t most);
@@ -63,17 +63,18 @@ void columns_are_problems(Table& table, std::size_t count);
 TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);  // "2/80"
 TableCell count_cell(std::size_t count);
 TableCell share_cell(std::size_t part, std::size_t whole);  // "33 %"
-// What costs of single runs are told in: at measured prices where orders go by declared work, else
-// by the yardstick too.
+// The unit of costs of single runs: measured cost if rankings use nominal cost, else the same
+// measure.
 Measure cost_measure(const Comparison& comparison);
 std::string cost_unit(const Comparison& comparison);
-std::string priced_unit(const Comparison& comparison);  // "forward solves at measured prices", …
-Real in_units(Measure by, Real value);                  // as tables and axes have it: times in ms
+std::string priced_unit(
+    const Comparison& comparison);      // "equivalent forward solves at measured cost", …
+Real in_units(Measure by, Real value);  // as tables and axes have it: times in ms
 // "16 to 23 settings; 2 of 345 runs failed", of the first optimizers.
 std::string denominators(const Comparison& comparison, std::size_t shown);
 // 10^(i / 8) from 1, of times from a microsecond, to the first beyond `most`.
 std::vector<Real> cost_grid(Measure by, Real most);
-// Who has the greatest value above 0, ties all.
+// The line with the greatest value above 0, with all ties.
 struct Leading {
   Real value = 0;
   std::size_t count = 0;
@@ -83,7 +84,7 @@ struct Leading {
   std::string names() const;  // "sip † and 2 more", "nobody"
 };
 
-// Who of the lines is highest at x: "sip † and 2 more (80 %)".
+// The line that is highest at x: "sip † and 2 more (80 %)".
 std::string highest_at(const Plot& plot, Real x);
 
 // measure[p] of each problem: nothing where it was never asked, infinite or not-a-number where
@@ -112,7 +113,7 @@ Band band_over_names(const Comparison& comparison, const Column& measure, const 
   return bootstrap_ratio(groups, key);
 }
 
-// What decides a claim, to be looked at: each term of its quantity as it was read, run by run, with
+// The evidence of a claim: each term of its quantity as it was read, run by run, with
 // the curve it was read off.
 
 struct EvidenceRun {
@@ -122,7 +123,7 @@ struct EvidenceRun {
   Status status = Status::running;
 };
 
-// Of several alternatives the one that counts.
+// The alternative that counts.
 struct EvidenceTerm {
   std::string problem, optimizer;         // the optimizer as the claim writes it
   std::string method;                     // the optimizer's name alone
@@ -147,7 +148,7 @@ struct Evidence {
   std::vector<PrintedRow> printed;  // of an equality: the figures, and those of the first run
 };
 
-// Of a claim, or of its contrast. `cells` and `iterations` are those of the set that decides it.
+// For a claim, or for its contrast. `cells` and `iterations` are those of the set that decides it.
 Evidence evidence_of(const nlohmann::json& claim, const nlohmann::json& cells, const ByCell& runs,
                      std::int64_t iterations);
 
@@ -160,14 +161,14 @@ struct CellSet {
 };
 std::vector<CellSet> cell_sets(const nlohmann::json& claim, const ByCell& runs);
 
-// Runs all that decides the claim anew, in a folder of its own.
+// The command that runs the claim again, in a folder of its own.
 std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets);
 
 // Claims of papers judged by records. A claim is JSON, form isoline.claims/1, in which each set of
 // cells also has what makes it findable among records: "iterations" and, for each term of the
 // quantity and of its contrast, its alternatives as {"title", "cells"}: a digest a seed.
 
-// What a claim is held against, so that it can be refuted: a bound that every method keeps says
+// The comparison that can refute a claim: a bound that every method satisfies says
 // nothing of the one that is named.
 struct Contrast {
   std::string quantity, published;
@@ -209,7 +210,7 @@ struct Judgement {
 std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs);
 
 // The verdict on each fact: the weakest of the claims that restate it, of those that are decided.
-// Of verifications, or of all others.
+// For verifications, or for all others.
 std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements,
                                        bool is_verification);
 

@@ -88,7 +88,7 @@ const std::vector<Real>* series_of(const Record& record, const std::string& name
 Figure curve_figure(const Comparison& c, std::size_t p, const std::string& name) {
   const bool is_error = name.empty();
   Figure out{.x_label = "iterations",
-             .y_label = is_error ? "error in x, on the validation" : name,
+             .y_label = is_error ? "error in x, on the validation samples" : name,
              .is_log_x = true,
              .is_log_y = is_error};
   out.lines = lines_of(c, p, [&](const Records& records, FigureLine& line) {
@@ -150,7 +150,7 @@ Figure scatter_figure(const Comparison& c, std::size_t p) {
     for (std::size_t i = 0; i < line.x.size(); ++i) gaps.push_back(std::abs(line.y[i] - line.x[i]));
     return median_of(std::move(gaps));
   };
-  out.reading = fmt::format("Median |x − x*| over the samples drawn here, of the first seed: {}.",
+  out.reading = fmt::format("Median |x − x*| over the plotted samples of the first seed: {}.",
                             read_lines(c, out.lines, out.lines.size(), gap));
   return out;
 }
@@ -174,7 +174,7 @@ Figure decades_figure(const Comparison& c, std::size_t p) {
   return out;
 }
 
-// What was observed of a sample, what each method inferred, and what was to be found.
+// The observation of a sample, the inferred x of each method, and the truth.
 Figure picture_figure(const Comparison& c, std::size_t p) {
   Figure out;
   FieldFrames last;
@@ -193,12 +193,12 @@ Figure picture_figure(const Comparison& c, std::size_t p) {
   if (out.pictures.empty()) return out;
   add("x*", last.truth());
   out.reading =
-      "The first sample of the validation, as inferred after the last iteration of the first seed. "
-      "The x share the grey scale of x*.";
+      "The first validation sample, as inferred after the last iteration of the first seed. All x "
+      "share the grey scale of x*.";
   return out;
 }
 
-// Of one problem; empty where no run has what is asked for.
+// A figure of one problem; empty if no run has the requested data.
 Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
   if (panel.kind == "curve" || panel.kind == "series") return curve_figure(c, p, panel.quantity);
   if (panel.kind == "scatter") return scatter_figure(c, p);

@@ -66,8 +66,8 @@ Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::s
 
 Section learned_section(const Comparison& c) {
   Section section{.id = "learned",
-                  .title = "What was learned",
-                  .otherwise = "No problem of this report is learned."};
+                  .title = "Learned problems",
+                  .otherwise = "This report has no learned problems."};
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
     std::vector<std::size_t> order;
@@ -77,11 +77,11 @@ Section learned_section(const Comparison& c) {
     if (!order.empty()) section.tables.push_back(learned_table(c, p, order));
   }
   if (!section.tables.empty())
-    section.lead = "On the validation, medians over seeds and their range.";
+    section.lead = "On the validation samples: medians over seeds and their range.";
   return section;
 }
 
-// Training once, or solving each: what a network takes to be trained and then for one example,
+// Amortized cost: what a network takes to be trained and then for one example,
 // beside what solvers take on single instances of the same physics to the error in x that it has,
 // and from how many instances on training has paid. Holl, Koltun, Thuerey (2022), Table 1.
 
@@ -194,7 +194,7 @@ std::string named(const Comparison& c, const Side& side) {
 TableCell pays_cell(const Trained& network, const Side& single) {
   const Real from = pays_from(network, single);
   if (std::isnan(from)) return "";
-  if (!single.seconds.is_solved()) return "the solver is not there";
+  if (!single.seconds.is_solved()) return "the solver has not reached it";
   return {from == kNever ? "never" : figure(from), {{"pays_from", from}}};
 }
 
@@ -228,21 +228,22 @@ std::vector<TableCell> amortized_row(const Comparison& c, const Trained& network
 std::string reading_of(const Comparison& c, const Trained& network, const Side& single) {
   if (!single.seconds.is_solved())
     return fmt::format(
-        "No solver that was run here reaches the error of the network of {}, {}, on half of its "
+        "No solver in this report reaches the error of the network of {}, {}, on half of its "
         "instances.",
         named(c, network), figure(network.x_error));
   if (single.seconds.median == 0)
     return fmt::format(
-        "The network of {} has the error {}, and {} starts as near: its training has not paid yet.",
+        "The network of {} has the error {}, and {} starts with an error that small: the training "
+        "has not paid off yet.",
         named(c, network), figure(network.x_error), named(c, single));
   const std::string each = fmt::format(
-      "{} takes {} ms an instance to the error {} of the network of {}, whose training took {} s",
+      "{} takes {} ms per instance to the error {} of the network of {}, whose training took {} s",
       named(c, single), milliseconds(single.seconds.median), figure(network.x_error),
       named(c, network), in_seconds(network.seconds.median));
   const Real from = pays_from(network, single);
-  if (std::isnan(from)) return each + "; what the network takes was not measured.";
-  if (from == kNever) return each + ": it never pays.";
-  return fmt::format("{} and which takes {} ms: training pays from {} instances on.", each,
+  if (std::isnan(from)) return each + "; the time of the network was not measured.";
+  if (from == kNever) return each + ": training never pays off.";
+  return fmt::format("{} and which takes {} ms: training pays off from {} instances on.", each,
                      milliseconds(network.inference), figure(from));
 }
 
@@ -253,12 +254,11 @@ Table table_of(const Comparison& c, std::size_t p, const std::vector<Trained>& n
       .title = shown_spec(c.problems[p].spec),
       .reading = "",
       .caption =
-          "Medians over seeds in processor time; every seed of a solver is an instance of "
-          "its own. Errors of solvers are read at kept iterations: they took at most that, and 0 "
-          "where their start has it. "
-          "The network is timed on a batch, a share of it an example.",
-      .columns = {"network of", "solver", "error in x", "training, s", "an example, ms",
-                  "solver to that error, ms", "there", "failed", "pays from"},
+          "Medians over seeds in processor time; each seed of a solver is another instance. "
+          "Errors of solvers are read at stored iterations, so their times are upper bounds, and "
+          "0 if the start has that error. The network is timed on a batch, divided by its size.",
+      .columns = {"network of", "solver", "error in x", "training, s", "per example, ms",
+                  "solver to that error, ms", "there", "failed", "pays off from"},
       .topic = {.problem = p},
       .align = "llrrrrrrr",
       .names = 2};
@@ -278,7 +278,9 @@ Table table_of(const Comparison& c, std::size_t p, const std::vector<Trained>& n
 Section amortized_section(const Comparison& c) {
   Section section{.id = "amortized",
                   .title = "Training once, or solving each",
-                  .otherwise = "No problem of this report was both learned and solved one by one."};
+                  .otherwise =
+                      "No problem in this report was both learned and solved instance by "
+                      "instance."};
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
     const std::vector<Trained> networks = trained_on(c, p);
@@ -289,8 +291,9 @@ Section amortized_section(const Comparison& c) {
   }
   if (!section.tables.empty())
     section.lead =
-        "A network is trained once and then solves any instance in one pass; a solver begins anew "
-        "with each. From how many instances on training has paid, at the network's own error.";
+        "A network is trained once and then solves each instance in one pass; a solver begins "
+        "again with each. The table gives the number of instances from which training pays off, "
+        "at the error of the network.";
   return section;
 }
 

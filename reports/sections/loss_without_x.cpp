@@ -14,9 +14,9 @@
 namespace isoline::reports {
 namespace {
 
-constexpr const char* kNeitherTold = "No result knows both the least loss and the solution.";
+constexpr const char* kNeitherTold = "No result has both the least loss and the solution.";
 
-// What the median run of a pair came to.
+// The result of the median run of a pair.
 struct Outcome {
   bool is_loss_reached = false, is_x_found = false;
   bool is_x_near = false;     // to √τ: what a loss at τ leaves of x where J is well conditioned
@@ -47,7 +47,7 @@ std::optional<Outcome> outcome_of(const Comparison& c, std::size_t p, std::size_
                   }).median};
 }
 
-// Of all methods on a setting, or of all settings given to a method.
+// Counts over all methods on a setting, or over all settings of a method.
 struct Tally {
   std::size_t n = 0, reached = 0, found = 0, without = 0, far = 0;
 
@@ -106,7 +106,8 @@ std::string near_name(const Comparison& c) {
 std::string caption_of(const Comparison& c) {
   const std::string_view tau = c.yardstick.tightest().name;
   return fmt::format(
-      "Medians over seeds, where both the least loss and the solution are known. Loss: the relative loss gap is at most {}. x: the error is at most {} of the solution's norm, or the "
+      "Medians over seeds, where both the least loss and the solution are known. Loss: the "
+      "relative loss gap is at most {}. x: the error is at most {} of the solution's norm, or the "
       "floor that the data set. Near: at most {}, the square root, which is what a loss at {} "
       "leaves of x where J is well conditioned: a run whose problem wants a loss stops at its "
       "target in loss, which may be short of x, but not of that. In brackets the condition number "

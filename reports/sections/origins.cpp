@@ -68,7 +68,7 @@ std::string setting_text(const Comparison& c, std::size_t p, std::size_t s) {
 
 namespace {
 
-// What is reported of a build, in order; equal ones once.
+// The reported parts of a build, in order; equal ones once.
 constexpr std::array<const char*, 8> kTerms = {
     "version", "commit", "compiler", "build", "instructions", "processor", "system", "libraries"};
 using Lines = std::array<std::string, kTerms.size()>;

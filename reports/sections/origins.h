@@ -14,7 +14,7 @@ namespace isoline::reports {
 using namespace results;
 
 enum class Origin {
-  defaults,   // none was given
+  defaults,   // no rate was set
   given,      // typed, or a suite's
   tuned,      // the best of a grid, on other seeds of this very problem
   published,  // a paper's

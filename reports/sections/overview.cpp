@@ -1,4 +1,4 @@
-// What a report says first, and the sentences that read its charts.
+// The first sentences of a report, and the sentences that read its charts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -127,7 +127,8 @@ std::string imported_text(const Comparison& c) {
   for (const auto& [method, those] : sources)
     named.push_back(fmt::format("{} ({})", method, joined({those.begin(), those.end()}, "; ")));
   return fmt::format(
-      "Imported, marked §: {}. They are judged by their own figures; nothing of them was run or verified "
+      "Imported, marked §: {}. They are judged by their own figures; nothing of them was run or "
+      "verified "
       "here, and their times are those of other machines.",
       joined(named));
 }
@@ -137,9 +138,11 @@ std::vector<std::string> remarks(const Comparison& c) {
   const Study& study = *c.study;
   if (const std::string rows = partial_rows(c); !rows.empty())
     all.push_back(fmt::format(
-        "Not every problem was given to every optimizer, as where a grid is too large for methods "
-        "that factorize a matrix or take no derivatives. An empty cell was never planned. Methods are "
-        "ranked on the {} that all ranked ones were given. Optimizers by problem, of {}: {}.",
+        "Not every optimizer ran on every problem: for example, a grid can be too large for "
+        "methods "
+        "that factorize a matrix or take no derivatives. An empty cell was not planned. Methods "
+        "are "
+        "ranked on the {} common to all ranked methods. Optimizers per problem, of {}: {}.",
         counted(c.order.settings.size(), setting_noun(c)), methods_of(c), rows));
   if (study.superseded > 0)
     all.push_back(fmt::format("Left aside: {} of the same cells.",
@@ -191,7 +194,7 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
   return text + "." + unsolved_text(order.size() - solved, order.size());
 }
 
-// What was learned, at equal work.
+// The learned problems, at equal work.
 
 namespace {
 

@@ -76,7 +76,7 @@ std::string flags_cell(const AuditedOptimizer& audited) { return joined(audited.
 
 struct Property {
   const char* heading;
-  const char* meaning;  // for a reader who meets it first
+  const char* meaning;  // the explanation for a new reader
   std::string (*cell)(const AuditedOptimizer&);
 };
 
@@ -136,7 +136,8 @@ Section properties_section(const Audits& all) {
   if (all.empty()) return section;
   section.lead =
       "Measured at default options, except that epsilon and cutoff are 0 where the method allows "
-      "it, as the names show. Of two exponents the first is that of the first step, the second that "
+      "it, as the names show. Of two exponents the first is that of the first step, the second "
+      "that "
       "of the change of the loss to first order.";
   section.readings = property_readings(all);
   section.tables = {properties_table(all)};
@@ -144,7 +145,7 @@ Section properties_section(const Audits& all) {
   return section;
 }
 
-// What an audit says, in one sentence a property, for a reader who meets these properties first.
+// The results of an audit, one sentence per property, for a new reader.
 
 namespace {
 
@@ -184,21 +185,22 @@ std::string hessian_sentence(const Audits& all) {
   const Real newton = step_of("newton"), gradient = step_of("gd");
   if (std::isnan(newton - gradient)) return "";
   return fmt::format(
-      " Newton’s factor is measured where L has a Hessian: of x rescaled by s its step goes as "
-      "s^{:.2g} and that of gradient descent as s^{:.2g}, which differ by s^{:.2g}.",
+      " Newton’s factor is measured where L has a Hessian: if x is rescaled by s, its step goes "
+      "as s^{:.2g} and that of gradient descent as s^{:.2g}, which differ by s^{:.2g}.",
       newton, gradient, newton - gradient);
 }
 
 // The chapter's L = αx, where the figures and the chapter need not say the same.
 std::string slope_sentence(const Audits& all) {
   return fmt::format(
-      "Of the slope L = αx the book’s chapter states that gradient descent steps by α and changes "
+      "For the linear loss L = αx, the book’s chapter states that gradient descent steps by α and "
+      "changes "
       "L by α², that the inverse Hessian of Newton’s method brings a factor 1/α², and that the "
       "inverse gradient steps by 1/α. It states no law for Adam, half-inverse gradients or others. "
-      "Measured are the exponents 1 for {}; 0 for {}; −1 for {}. That more than the inverse "
-      "gradient have −1 contradicts it only in words: to L alone, whose Hessian is zero, Newton’s "
-      "method has no step, while methods over residuals and inverses are told here y = αx and a "
-      "target one below, and 1/α is the step that reaches it.{}",
+      "Measured exponents: 1 for {}; 0 for {}; −1 for {}. Other methods than the inverse gradient "
+      "with −1 do not contradict the chapter. On L alone, whose Hessian is zero, Newton’s method "
+      "has no step. Methods over residuals and inverses use y = αx with a target one below, which "
+      "the step 1/α reaches.{}",
       listed_with(all, Scaled::slope, 1), listed_with(all, Scaled::slope, 0),
       listed_with(all, Scaled::slope, -1), hessian_sentence(all));
 }
@@ -209,9 +211,9 @@ std::string scaling_sentence(const Audits& all) {
     return law.has_values() && !law.holds();
   };
   return fmt::format(
-      "Write x in a unit s times as large and its numbers shrink by 1/s: a step should do the "
-      "same, exponent −1, and does for {}; it grows by s instead for {}, so that what needs a "
-      "large change gets a small one; no power law at all: {}. {}",
+      "If x is written in a unit s times as large, its values shrink by 1/s, and a step should "
+      "shrink by the same factor. Exponent −1, as required: {}. Exponent 1, a small step where a "
+      "large one is needed: {}. No power law: {}. {}",
       listed_with(all, Scaled::input, -1), listed_with(all, Scaled::input, 1),
       listed_where(all, has_none), slope_sentence(all));
 }
@@ -225,8 +227,8 @@ std::string invariance_sentence(const Audits& all) {
     });
   };
   return fmt::format(
-      "The whole path is the same in other units of x, component by component, for {}; under every "
-      "affine change of x for {}; under every affine change of y for {}.",
+      "The path stays the same in other units of each component of x: {}; under every affine "
+      "change of x: {}; under every affine change of y: {}.",
       kept(0, 1), kept(0, 3), kept(3, 6));
 }
 
@@ -240,9 +242,9 @@ std::string convergence_sentence(const Audits& all) {
   };
   const auto arrives = [](const AuditedOptimizer& audited) { return audited.singular.is_exact; };
   return fmt::format(
-      "Near a solution the number of right digits doubles each step (order 2) for {}; one step "
-      "is enough for {}; others gain digits at a steady rate (order 1) or none. Where the Jacobian "
-      "is singular at the solution, it is still reached to rounding by {}.",
+      "Near a solution, the number of correct digits doubles in each step (order 2): {}. One step "
+      "suffices: {}. Others gain digits at a steady rate (order 1) or not at all. Reach a "
+      "solution with a singular Jacobian to rounding: {}.",
       listed_where(all, is_quadratic), listed_where(all, is_at_once), listed_where(all, arrives));
 }
 
@@ -254,9 +256,9 @@ std::string composition_sentence(const Audits& all) {
         (worst == nullptr || audited.linear_angle > worst->linear_angle))
       worst = &audited;
   return fmt::format(
-      "In a composition of stages, what a step changes in an intermediate quantity should be the "
-      "step that the method would take there. Through a linear stage it is, for {}; the largest "
-      "angle between the two is that of {}.",
+      "In a composition of stages, the change of an intermediate quantity should equal the step "
+      "that the method would take there. Equal through a linear stage: {}. Largest angle between "
+      "the two: {}.",
       listed_where(all, [](const AuditedOptimizer& one) { return one.linear_angle < kSmallest; }),
       worst == nullptr ? "none" : fmt::format("{}, {:.0f}°", worst->name, worst->linear_angle));
 }
@@ -270,8 +272,8 @@ std::string oracle_sentence(const Audits& all) {
     return audited.counted.size() == 1 && audited.counted.contains("forward");
   };
   return fmt::format(
-      "As counted, {} asked for the loss alone, {} for a Jacobian, {} for a Hessian, {} for an "
-      "inverse of the physics, {} for the true x, which is what one is looking for.",
+      "Counted calls. Only the loss: {}. A Jacobian: {}. A Hessian: {}. An inverse of the "
+      "physics: {}. The true x, which a user does not know: {}.",
       listed_where(all, needs_loss_alone), asks("jacobian"), asks("hessian"), asks("inverse"),
       asks("truth"));
 }
@@ -289,9 +291,9 @@ std::string declaration_sentence(const Audits& all) {
   if (!teachers.empty())
     unmeasured += fmt::format(
         " {} train a network: the loss and y are scaled, the path is that of the weights, and "
-        "changes of x, order and angle do not apply, since no step is made in x.",
+        "changes of x, order and angle do not apply, since there is no step in x.",
         joined(teachers));
-  if (text.empty()) text = "Every optimizer measured behaves as it declares";
+  if (text.empty()) text = "Every measured optimizer behaves as it declares";
   return text + "." + unmeasured;
 }
 

@@ -61,7 +61,7 @@ std::vector<Real> ratios(const std::vector<Real>& m) {
   return all;
 }
 
-// Of the first, from 1; those equal to it share the places that they take.
+// The place of the first term, from 1; terms equal to it share their places.
 Real position(const std::vector<Real>& m) {
   const auto nearer = std::ranges::count_if(m, [&](Real other) { return other < m[0]; });
   const auto equal = std::ranges::count(m, m[0]) - 1;
@@ -81,7 +81,7 @@ Chosen chosen_of(const Term& term, const std::vector<std::size_t>& seeds) {
   return chosen.value_or(Chosen{0, kNever});
 }
 
-// Of seeds, of the alternative that counts: whose figure reaches the term's abscissa.
+// The seeds of the alternative that counts, whose values reach the term's abscissa.
 Real share(const Term& term, const std::vector<std::size_t>& seeds) {
   std::optional<Real> chosen;
   for (const auto& alternative : term.figures) {

@@ -17,15 +17,15 @@ namespace isoline::reports {
 
 using namespace results;
 
-// Of terms by their medians: value (of the first), greatest, ratio (first over second), slope of
-// log m over log at, crossing (where the first half of the terms passes from below the second half
-// to above it, in `at`), position (of the first, from 1; a tie counts half), order
+// Quantities of terms by their medians: value (of the first), greatest, ratio (first over second),
+// slope of log m over log at, crossing (where the first half of the terms passes from below the
+// second half to above it, in `at`), position (of the first, from 1; a tie counts half), order
 // (Kendall's τ with that of the terms). Of the first half of the terms over the second: ratio_slope
 // and trend, the slope and the order of these ratios.
 Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
                  const std::vector<Real>& at);
 
-// The value of a quantity at which it says nothing of a direction; none where there is none.
+// The value of a quantity that indicates no direction; nothing if it has no such value.
 std::optional<Real> neutral_of(const std::string& kind);
 
 // One term of a quantity: figures [alternative][seed], of which the alternative of the least median
@@ -77,15 +77,14 @@ inline std::string_view name_of(Verdict verdict) {
 }
 inline bool is_decided(Verdict verdict) { return verdict < Verdict::too_short; }
 inline bool is_supported(Verdict verdict) { return verdict <= Verdict::consistent; }
-// Of one claim that was read in two ways: the weaker, and where one is for it and one against it,
-// neither.
+// Combines two readings of one claim: the weaker, or neither if one is for it and one against it.
 inline Verdict joint_verdict(Verdict one, Verdict other) {
   if (is_supported(one) != is_supported(other)) return Verdict::consistent;
   return std::max(one, other);
 }
 
-// What was published with its error: the values that agree with it. A tie agrees with nothing that
-// says who is ahead, so such a band ends where the tie begins, without it.
+// The published value with its error: the values that agree with it. A tie does not agree with a
+// claim about which is better, so such a band ends where the tie begins, without it.
 struct Agreement {
   Real low = -kNever, high = kNever;
   bool is_low_open = false, is_high_open = false;
@@ -97,7 +96,7 @@ struct Agreement {
 };
 Agreement agreement_of(const nlohmann::json& claim);  // or of a contrast
 
-// Of a claim, or of its contrast. Reproduced: the interval over seeds lies within the band; where
+// For a claim, or for its contrast. Reproduced: the interval over seeds lies within the band; where
 // the published figure is of one run, the band reaches into what one further run of ours would
 // give, the interval is on the published side of a tie, and the value is of the published order.
 // Consistent: it reaches into the band, and the value is on that side. Stronger: the whole interval

@@ -154,15 +154,15 @@ std::string not_run(const Comparison& c) {
   if (never == 0 && inapplicable == 0 && c.missing.empty())
     return fmt::format("Nothing: all {} pairs of method and problem ran.", pairs);
   std::string text =
-      fmt::format("Of {} pairs of method and problem {} were never planned, {} do not apply", pairs,
-                  never, inapplicable);
+      fmt::format("Pairs of method and problem: {} in total, {} not planned, {} not applicable",
+                  pairs, never, inapplicable);
   if (!c.missing.empty())
     text += fmt::format("; {} planned {} missing", counted(c.missing.size(), "run"),
                         c.missing.size() == 1 ? "is" : "are");
   return text + ".";
 }
 
-// Of few problems no order over them is reported, but one on each.
+// With few problems no ranking over them is reported, but one on each.
 std::vector<std::string> problem_sentences(const Comparison& c) {
   constexpr std::size_t kFew = 4;
   std::vector<std::string> all;
@@ -171,7 +171,7 @@ std::vector<std::string> problem_sentences(const Comparison& c) {
   return all;
 }
 
-// Of the settings that all ranked methods were run on, those that this one was run on.
+// The settings common to all ranked methods that this one was run on.
 std::vector<std::size_t> shared_with(const Comparison& c, std::size_t optimizer) {
   std::vector<std::size_t> settings;
   for (const std::size_t p : c.order.settings)
@@ -265,8 +265,8 @@ std::vector<std::string> verdict(const Comparison& c) {
                   decision_sentence(c, *c.open_decision));
   if (c.yardstick.by == Measure::time && c.is_any_timed_together)
     all.push_back(
-        "Some of these times were taken while other runs shared the machine, and are marked ≈: an "
-        "order by them is no evidence. Runs with --exclusive are timed alone.");
+        "Some of these times were taken while other runs shared the machine, and are marked ≈: a "
+        "ranking by them is not evidence. Runs with --exclusive are timed alone.");
   all.push_back(unranked_sentence(c));
   for (std::string& sentence : learned_sentences(c)) all.push_back(std::move(sentence));
   std::erase(all, "");
@@ -317,14 +317,17 @@ Table ranking_table(const Comparison& c) {
   Table table{
       .id = "standings-table",
       .caption = fmt::format(
-          "Methods that were run on the same {}, ranked by their performance profiles; equal scores "
-          "share a place. Bold: not significantly worse than the best. Solved: {}s whose median run "
-          "reaches the tolerance. Best on: with the least {} of these methods. × least: the middle "
-          "of its {} over the least, in logarithms; ✗ if it solves fewer than half. Runs: those that "
-          "reach it. Failed: errors, crashes, time or memory limits, on all that it was run on.{}",
+          "Methods that were run on the same {}, ranked by their performance profiles; equal "
+          "scores "
+          "share a place. Bold: not significantly worse than the best. Solved: {}s whose median "
+          "run "
+          "reaches the tolerance. Wins: problems with the least {} of these methods. Median "
+          "slowdown: the median of its {} over the least, in logarithms; ✗ if it solves fewer "
+          "than half. Runs: those that "
+          "reach it. Failed: errors, crashes, time or memory limits, on all its problems.{}",
           counted(c.order.settings.size(), common_noun(c)), common_noun(c), counted_name(c),
           counted_name(c), legend.empty() ? "" : " " + legend),
-      .columns = {"", "optimizer", "solved", "best on", "× least", "runs", "failed"},
+      .columns = {"", "optimizer", "solved", "wins", "median slowdown", "runs", "failed"},
       .align = "rlrrrrrrr",
       .names = 2};
   for (std::size_t t = kTightest; t-- > 0;)
@@ -395,7 +398,8 @@ Table leader_table(const Comparison& c) {
       .reading = "There is no ranking.",
       .caption = fmt::format(
           "Score: area of the performance profile, with {}. p: of its difference from the first, "
-          "two-sided, by flips of the signs of the differences, {}s of one name together. Group: the "
+          "two-sided, by flips of the signs of the differences, {}s of one name together. Group: "
+          "the "
           "level at which the method leaves the confidence set of the best. First in: share of "
           "bootstrap samples of problems, instances and starts. Work ratio: median {} over that of "
           "the first, on problems that both solve, not limited by the end of the profile.",
@@ -429,9 +433,8 @@ Table choices_table(const Comparison& c) {
               .title = "The first under other choices",
               .reading = "There is no ranking.",
               .caption =
-                  "Who ranks first where one choice is made otherwise: the end of the "
-                  "profile, the accuracy, what is counted, one family of problems left out, "
-                  "one seed alone.",
+                  "The first method under one other choice: the end of the profile, the accuracy, "
+                  "the measure, one family of problems left out, or one seed alone.",
               .columns = {"choice", "first"},
               .align = "ll"};
   if (!c.decision) return table;
@@ -455,7 +458,8 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
                               counted(decision.families, "problem"), decision.least_p));
     if (decision.detectable < kNever)
       all.push_back(fmt::format(
-          "A difference of {:.2g} between two scores, as variable as that of the first two, would be "
+          "A difference of {:.2g} between two scores, as variable as that of the first two, would "
+          "be "
           "significant in 80 % of such comparisons.",
           decision.detectable));
   }
@@ -463,7 +467,9 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
     all.push_back(
         fmt::format("With {} no interval over seeds reaches 95 %: ranges are shown instead.",
                     counted(c.seeds.size(), "seed")));
-  all.push_back("Nothing here speaks for problems unlike these: they were chosen, not sampled.");
+  all.push_back(
+      "These results do not extend to other kinds of problems: the problems were chosen, not "
+      "sampled.");
   return all;
 }
 
@@ -490,7 +496,8 @@ Plots log_ratio_plot(const Comparison& c) {
       .reading = fmt::format("{} needs less {} on {} of {}.", first, counted_name(c),
                              std::ranges::count_if(bars, is_less), counted(bars.size(), "problem")),
       .caption = fmt::format(
-          "log2 of the ratio of median {} to {}, sorted, of several settings the median: below 0 {} "
+          "log2 of the ratio of median {} to {}, sorted, of several settings the median: below 0 "
+          "{} "
           "needs less, above 0 {}; at ±{:.0f} at least {:.0f} times, or the other never reaches it "
           "(Morales 2002). n = {} problems that both were run on, of which neither solves {}; "
           "failed: {} and {}.",

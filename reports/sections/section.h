@@ -13,7 +13,7 @@
 
 namespace isoline::reports {
 
-// What a row, a column or a table is about: filters of the page go by it.
+// The subject of a row, a column or a table: filters of the page use it.
 struct Topic {
   std::optional<std::size_t> optimizer = {}, problem = {};  // indices in the comparison
   std::string method = {};  // an optimizer by name, for all settings
@@ -30,7 +30,7 @@ struct TableCell {
 
   std::string text;
   Numbers numbers;
-  std::string note = {};          // what the page tells who points at it
+  std::string note = {};          // the tooltip on the page
   std::string remark = {};        // beside the text, in small
   std::string link = {};          // where the page leads from here
   bool is_best = false;           // of its column
@@ -46,7 +46,7 @@ struct Table {
   std::vector<std::vector<TableCell>> rows = {};           // a short row's last cell spans the rest
   std::vector<Topic> row_topics = {}, column_topics = {};  // may be fewer, or none
   Topic topic = {};
-  std::vector<std::string> meanings = {};  // of the columns, for a reader who meets them first
+  std::vector<std::string> meanings = {};  // of the columns, for a new reader
   std::string align =
       {};  // a letter a column: r figures, l words, p sentences, c commands; else lr…
   bool is_folded = false;  // behind its reading, where a format can fold
@@ -100,7 +100,7 @@ struct Section {
   std::vector<Reading> readings = {};  // what this data shows, a sentence each
   std::vector<Table> tables = {};
   std::vector<Plot> plots = {};
-  std::string command = {};    // that makes all of it anew
+  std::string command = {};    // the command that repeats it
   std::string otherwise = {};  // what the page says where there is nothing
 
   bool is_empty() const { return readings.empty() && tables.empty() && plots.empty(); }

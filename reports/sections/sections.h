@@ -48,11 +48,11 @@ std::string verdict_text(const Judgement& judgement);                  // "partl
 std::string marked_verdict(const Judgement& judgement);                // "≈ partly on 3 seeds"
 std::vector<Reading> claim_notes(const Judgement& judgement);          // beside its figures
 std::string measured_text(const Judgement& judgement);                 // "23.4 (18.2–31), n = 3"
-// What names a term among the others: its optimizer, its problem where they differ, its abscissa.
+// The distinguishing name of a term: its optimizer, its problem if they differ, its abscissa.
 std::vector<std::string> term_names(const Evidence& evidence);
 // One plot, or none where the figures have no curve and no abscissa.
 std::vector<Plot> claim_plots(const Evidence& evidence, const std::string& id);
-// What this data says, a sentence a property; the last on false declarations.
+// A summary of this data, one sentence per property; the last on false declarations.
 std::vector<Reading> property_readings(const Audits& all);
 std::vector<Plot> property_plots(const Audits& all);  // of each property that is a number
 std::string headline(const Comparison& comparison);

@@ -1,5 +1,5 @@
-// The singular values of J along runs that kept them: who sees which part of the spectrum, and how
-// learning changes the conditioning.
+// The singular values of J along runs that kept them, and the change of the conditioning by
+// learning.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,9 +65,9 @@ PlotSeries values(std::string name, const std::vector<Real>& sigma) {
 
 Plot values_plot(Plot plot, const std::vector<Seen>& seen) {
   plot.caption =
-      "Of J = ∂y/∂θ over the batch of a step, all samples stacked and y unscaled, in the Euclidean "
-      "norms of y and θ; the largest first, at the start and where each method ended; one run "
-      "each, of the least seed.";
+      "Singular values of J = ∂y/∂θ over the batch of a step, all samples stacked and y unscaled, "
+      "in the Euclidean norms of y and θ; the largest first, at the start and at the end of each "
+      "method; one run each, of the least seed.";
   plot.x_label = "number of the singular value";
   plot.y_label = "σ";
   plot.series.push_back(values("at the start", seen[0].first()));
@@ -132,7 +132,9 @@ Table spectra_table(const Comparison& c, std::size_t p, const std::vector<Seen>&
 Section spectra_section(const Comparison& c) {
   Section section{.id = "spectra",
                   .title = "The spectrum of J",
-                  .lead = "What a method over the spectrum of J sees, and what steps make of it.",
+                  .lead =
+                      "The spectrum of J, which spectral methods filter, and its change along "
+                      "the runs.",
                   .otherwise = "No run kept singular values: isoline run --spectrum keeps them."};
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const std::vector<Seen> seen = seen_on(c, p);
@@ -202,7 +204,7 @@ Medians medians_of(const Comparison& c, const SweepGrid& grid) {
 std::string reading_of(const SweepGrid& grid, const Medians& medians) {
   if (medians.least == kNever) return "No setting ends at a finite value.";
   return fmt::format(
-      "The least median, {}, stands at {} = {} and {} = {}; {} of {} {} within a factor of two of it.",
+      "The least median, {}, is at {} = {} and {} = {}; {} of {} {} within a factor of two of it.",
       figure(medians.least), grid.row, figure(grid.rows[medians.row]), grid.column,
       figure(grid.columns[medians.column]), medians.near, counted(medians.measured, "setting"),
       medians.near == 1 ? "lies" : "lie");
@@ -211,8 +213,8 @@ std::string reading_of(const SweepGrid& grid, const Medians& medians) {
 // An option of all of its runs that is not swept stands in the spec of the best.
 std::string caption_of(const SweepGrid& grid, const Medians& medians) {
   return fmt::format(
-      "{} at the end, median over {}{}, {} each. The stronger the colour, the nearer to the least, "
-      "in factors of two; ✗: not finite, or failed.{}",
+      "{} at the end, median over {}{}, {} each. A stronger colour is nearer to the least, in "
+      "factors of two; ✗: not finite, or failed.{}",
       medians.is_of_x ? "Error in x" : "Loss",
       medians.fewest == medians.most ? "" : fmt::format("{} to ", medians.fewest),
       counted(medians.most, "seed"),
@@ -252,10 +254,8 @@ Table heat_map(const Comparison& c, const SweepGrid& grid, std::size_t number) {
 Section sweeps_section(const Comparison& c) {
   Section section{.id = "sweeps",
                   .title = "Two options at a time",
-                  .lead =
-                      "Settings of one method on one problem that differ in two options and "
-                      "in nothing else.",
-                  .otherwise = "No two options were swept together here."};
+                  .lead = "Settings of one method on one problem that differ in two options only.",
+                  .otherwise = "No two options were varied together in these runs."};
   const std::vector<SweepGrid> grids = sweep_grids(c);
   for (std::size_t i = 0; i < std::min(grids.size(), kMostGrids); ++i)
     section.tables.push_back(heat_map(c, grids[i], i + 1));

@@ -54,7 +54,7 @@ Rates rates_of(const Comparison& c, std::size_t s) {
   return rates;
 }
 
-// Of a row: 1 the value of least work, 0 one that takes 64 times as much, or never gets there.
+// The score of a row: 1 the value of least work, 0 one with at least 64 times as much, or unsolved.
 std::vector<Real> scores_of(const TunedRate& rate) {
   const Real least = rate.work.empty() ? kNever : *std::ranges::min_element(rate.work);
   std::vector<Real> scores;
@@ -92,12 +92,12 @@ Table rates_table(const Comparison& c, const std::vector<Rates>& all) {
       .title = "Rates from tables",
       .reading = "",
       .caption = fmt::format(
-          "Tuned: the best of a grid, tried on this very {} on seeds that are never judged. "
-          "Published: a paper’s. All others run as asked, or at their defaults. Edge: the "
-          "best value is the first or last of its grid, so that a better one may lie "
-          "beyond. Never: no value reached the tolerance in tuning. One value, best of 3, of "
-          "all: the expected score of the best of so many values of the grid, 1 the least "
-          "work of all its values, 0 from 64 times it on; mean over {}s.",
+          "Tuned: the best of a grid, tried on this {} on seeds that no result uses. Published: a "
+          "paper’s. All others run as requested, or with their defaults. Edge: the best value is "
+          "the first or last of its grid, so a better one may lie beyond. Never: no value reached "
+          "the tolerance in tuning. One value, best of 3, of all: the expected score of the best "
+          "of that many values of the grid: 1 is the least work of all its values, 0 at least 64 "
+          "times as much; mean over {}s.",
           setting_noun(c), setting_noun(c)),
       .columns = {"optimizer", n_column(c), "tuned", "published", "values chosen", "at an edge",
                   "never", "one value", "best of 3", "of all"}};
@@ -122,13 +122,14 @@ Table rates_table(const Comparison& c, const std::vector<Rates>& all) {
 
 Plot best_of_plot(const Comparison& c, const std::vector<Rates>& all) {
   Plot plot{.id = "plot-best-of",
-            .title = "What tuning buys: the best of b values",
+            .title = "Gain of tuning: the best of b values",
             .reading = "",
             .caption = fmt::format(
-                "Expected score of the best of b values drawn from the grid of a method, 1 the "
-                "least work of all its values and 0 from 64 times it on or unsolved; mean over the "
-                "{}s it was tuned on, on tuning seeds. A flat line asks for no tuning; its end is "
-                "the share of {}s that any value solves. The first {} methods with grids.",
+                "Expected score of the best of b values sampled from the grid of a method: 1 is "
+                "the least work of all its values, and 0 at least 64 times as much, or unsolved; "
+                "mean over the "
+                "{}s it was tuned on, on tuning seeds. A flat line needs no tuning; its end is "
+                "the share of {}s that some value solves. The first {} methods with grids.",
                 setting_noun(c), setting_noun(c), kMostLines),
             .x_label = "values tried, b",
             .y_label = "expected score of the best"};
@@ -146,11 +147,11 @@ Plot best_of_plot(const Comparison& c, const std::vector<Rates>& all) {
     }
     plot.series.push_back(std::move(line));
   }
-  if (!most.empty()) plot.reading = fmt::format("Tuning buys most for {}.", most);
+  if (!most.empty()) plot.reading = fmt::format("Tuning gains most for {}.", most);
   return plot;
 }
 
-// What is open about rates that were tuned.
+// Open questions about rates that were tuned.
 std::string edges_text(const std::vector<Rates>& all) {
   std::size_t rows = 0, edges = 0, never = 0;
   for (const Rates& rates : all) {
@@ -160,7 +161,8 @@ std::string edges_text(const std::vector<Rates>& all) {
   }
   if (rows == 0) return "";
   return fmt::format(
-      "The best value is at an edge of its grid for {} of {}, and for {} of them no value reached the tolerance in tuning.",
+      "The best value is at an edge of its grid for {} of {}, and for {} of them no value reached "
+      "the tolerance in tuning.",
       edges, counted(rows, "tuned rate"), never);
 }
 
@@ -195,8 +197,8 @@ std::string rates_text(const Comparison& c) {
   for (const std::string& method : tuned) published.erase(method);
   const std::size_t fixed = untunable(c, methods);
   return fmt::format(
-      "Of {} methods {} {} rates tuned on the very {}s that judge, on other seeds{}; the others run "
-      "as asked or at their defaults{}.",
+      "Methods in total: {}; {} {} rates tuned on the same {}s with other seeds{}; the others run "
+      "as requested or with their defaults{}.",
       methods.size(), tuned.size(), tuned.size() == 1 ? "has" : "have", setting_noun(c),
       published.empty() ? "" : fmt::format(", and {} published ones", published.size()),
       fixed == 0 ? "" : fmt::format(", {} with nothing to tune", fixed));
@@ -204,10 +206,10 @@ std::string rates_text(const Comparison& c) {
 
 Section tuning_section(const Comparison& c) {
   Section section{.id = "tuning",
-                  .title = "Where rates came from",
+                  .title = "Origin of the rates",
                   .otherwise =
-                      "No run of this report used a table of rates: all methods run as "
-                      "asked, or at their defaults."};
+                      "No run in this report used a table of rates: all methods run as requested, "
+                      "or with their defaults."};
   const std::vector<Rates> all = all_rates(c);
   if (const std::string text = rates_text(c); !text.empty()) {
     section.readings.push_back({"", text});
@@ -219,7 +221,9 @@ Section tuning_section(const Comparison& c) {
   } else if (std::ranges::any_of(
                  c.runs, [](const Run& run) { return !run.record->request.rates.empty(); })) {
     section.readings.push_back(
-        {"", "These runs used tables of rates, but the results do not hold what was tried."});
+        {"",
+         "These runs used tables of rates, but the results do not contain the values that were "
+         "tried."});
   }
   if (Table both = tuned_and_defaults_table(c); !both.rows.empty())
     section.tables.push_back(std::move(both));
@@ -293,8 +297,9 @@ Table tuned_and_defaults_table(const Comparison& c) {
               .title = "Defaults and tuned, side by side",
               .reading = "",
               .caption = fmt::format(
-                  "The same method at the rates of tables and at its defaults, on the {}s given "
-                  "both ways: how many each solves to {}, on how many tuned needs less {} and on "
+                  "The same method with the rates of tables and with its defaults, on the {}s "
+                  "that it ran on with both: how many each solves to {}, on how many tuned needs "
+                  "less {} and on "
                   "how many more, and tuned over default, 2 to the median of the logarithms of "
                   "these ratios where one of the two solves.",
                   setting_noun(c), tau_name(c), counted_name(c)),

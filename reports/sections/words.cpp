@@ -162,8 +162,7 @@ std::string marks_legend(const Comparison& c) {
   std::vector<std::string> all;
   if (shown.has_extra_information) all.emplace_back("†: uses extra information.");
   if (shown.is_foreign) all.emplace_back("‡: computed by another program.");
-  if (shown.is_imported)
-    all.emplace_back("§: imported from others, by their own figures: nothing of it is verified.");
+  if (shown.is_imported) all.emplace_back("§: imported; its values are not verified.");
   return joined(all, " ");
 }
 

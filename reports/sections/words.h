@@ -24,20 +24,21 @@ std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for wha
 std::string range_figure(const Spread& spread, std::string (*written)(Real));
 std::string percent(Real share);
 std::string multiple(Real ratio);  // "1.3×"
-// Of a heat map: 0 the least, then a step for each factor of two, to 7: so many of these steps does
-// value / least pass. Both are above 0.
+// The shade of a heat map: 0 the least, then one step for each factor of two of value / least, up
+// to
+// 7. Both are above 0.
 inline constexpr std::array<Real, 7> kShades = {1, 2, 4, 8, 16, 32, 64};
 int shade_of(Real value, Real least);
 
 std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
 std::string counted(std::size_t count, std::string_view noun);  // "1 seed", "3 seeds"
-// What a range of the bootstrap over so few is: "range of 3", or "95 % bootstrap interval".
+// The name of a bootstrap range over so few: "range of 3", or "95 % bootstrap interval".
 std::string interval_name(std::size_t count);
 std::string ordinal(std::size_t place);  // "1st", "13th"
 
 // A spec as people read it: "newton[rate=0.3333]", its long numbers cut to four digits.
 std::string shown_spec(std::string_view spec);
-// What another program computes is marked, and goes by its own name: "spring ‡".
+// The name of an external component, with its mark: "spring ‡".
 std::string problem_name(const ProblemAxis& problem);
 std::string optimizer_name(const OptimizerAxis& optimizer);
 std::string optimizer_text(const Comparison& comparison, std::size_t optimizer);  // "sip †"

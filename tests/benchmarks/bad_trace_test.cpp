@@ -68,7 +68,7 @@ TEST(BadTrace, OfAnyKindIsACrashThatSaysSo) {
   for (std::size_t i = 0; i < writes.size(); ++i) {
     const Record record = record_after(writes[i]);
     EXPECT_EQ(record.status, Status::crashed) << i;
-    EXPECT_NE(record.message.find("wrote over the trace"), std::string::npos) << record.message;
+    EXPECT_NE(record.message.find("overwrote the trace"), std::string::npos) << record.message;
     EXPECT_TRUE(record.curve.iteration.empty()) << i;
   }
 }

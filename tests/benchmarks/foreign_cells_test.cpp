@@ -51,7 +51,7 @@ class ForeignCells : public testing::Test {
 
 TEST_F(ForeignCells, FailWithWhatTheOtherDid) {
   expect_failed("closes", "closed its socket; it is still running");
-  expect_failed("leaves", "left with exit code 3, and last printed: I have had enough");
+  expect_failed("leaves", "exited with code 3, and last printed: I have had enough");
   expect_failed("half-a-frame", "closed its socket; it exited with code 0");
   expect_failed("a-huge-frame", "answered linearize with 9223372036854775808 bytes instead of 16");
   expect_failed("a-huge-complaint", "sent a text of 9223372036854775808 bytes; at most 65536");
@@ -117,8 +117,8 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
     return "";
   };
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
-  EXPECT_NE(sign.find("is not certified, and not run: 'the remainder after J v is of second order' "
-                      "is broken"),
+  EXPECT_NE(sign.find("fails its checks and does not run: 'the remainder after J v is of second order' "
+                      "is violated"),
             std::string::npos)
       << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;

@@ -28,10 +28,10 @@ struct BadEnd {
 TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
   const std::vector<BadEnd> ends = {
       {[]() -> std::string { throw std::runtime_error("for a reason"); }, 10, "for a reason"},
-      {[]() -> std::string { throw 7; }, 10, "no std::exception"},
+      {[]() -> std::string { throw 7; }, 10, "not a std::exception"},
       {[]() -> std::string { throw std::bad_alloc(); }, 10, "memory"},
       {[]() -> std::string { return std::raise(SIGKILL) == 0 ? "x" : "y"; }, 10, "signal 9"},
-      {[]() -> std::string { _exit(3); }, 10, "exit code 3"},
+      {[]() -> std::string { _exit(3); }, 10, "exited with code 3"},
       {[]() -> std::string { _exit(0); }, 10, "without an answer"},
       {[]() -> std::string { std::exit(0); }, 10, "without an answer"},
       {[]() -> std::string {
@@ -66,7 +66,7 @@ TEST(IsolatedText, OfAProcessThatWaitsForAnIdleOneIsGivenUpAsIdle) {
         for (;;) pause();
       },
       0.2);
-  EXPECT_NE(found.failure.find("in which it did nothing"), std::string::npos) << found.failure;
+  EXPECT_NE(found.failure.find("idle for more than"), std::string::npos) << found.failure;
 }
 
 TEST(IsolatedText, IsNotWaitedForOnADescendantThatLives) {

@@ -70,7 +70,7 @@ TEST_F(Isolation, AProblemThatHangsBeforeItsFirstOracleIsKilled) {
   run_all(catalog, {request}, store, options);
   const Record record = record_of(request);
   EXPECT_EQ(record.status, Status::timeout);
-  EXPECT_NE(record.message.find("no oracle call"), std::string::npos);
+  EXPECT_NE(record.message.find("without an oracle call"), std::string::npos);
 }
 
 TEST_F(Isolation, AProblemThatCrashesCostsItsCellAlone) {

@@ -61,7 +61,7 @@ TEST(Exchange, AnImportedCurveStandsInTheTablesAndIsNeverVerified) {
   const Finished table = shell("./isoline report results");
   EXPECT_EQ(table.exit_code, 0) << table.err;
   EXPECT_TRUE(contains(table.out, "theirs §")) << table.out;
-  EXPECT_TRUE(contains(table.out, "§: imported from others")) << table.out;
+  EXPECT_TRUE(contains(table.out, "§: imported")) << table.out;
   for (const std::string file : {"report.md", "index.html"})
     EXPECT_TRUE(contains(read_text(shell.folder() / "results/report" / file), "§")) << file;
   EXPECT_EQ(shell("./isoline validate results").exit_code, 0)

@@ -78,7 +78,7 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
            {"infer net.json --input wide.csv --output x", "takes 2"},
            {"infer net.json --input holes.csv --output x.npy", "'nan' is no finite number"},
            {"infer net.json --input good.csv --output x.txt", ".npy or .csv"},
-           {"infer good.csv --input good.csv --output x.npy", "no trained network"},
+           {"infer good.csv --input good.csv --output x.npy", "not a trained network"},
            {"infer net.json --input missing.npy --output x.npy", "missing.npy"}}) {
     const Finished result = shell("./isoline " + command);
     EXPECT_EQ(result.exit_code, 1) << command << "\n" << result.err;
@@ -132,7 +132,7 @@ TEST(Network, OfSizesThatCannotBeIsRefusedBeforeThereIsRoomForThem) {
         const Finished refused = shell("./isoline infer " + file + " --input y.csv --output x.npy");
         EXPECT_EQ(refused.exit_code, 1) << file << " " << name << " " << size << refused.err;
         EXPECT_EQ(count_lines(refused.err), 1U) << refused.err;
-        EXPECT_TRUE(contains(refused.err, file + " is no trained network: ")) << refused.err;
+        EXPECT_TRUE(contains(refused.err, file + " is not a trained network: ")) << refused.err;
         EXPECT_TRUE(contains(refused.err, name) || contains(refused.err, "cut short"))
             << refused.err;
         for (const char* foreign : {"stoll", "bad_alloc", "max_size", "json.exception"})
@@ -153,7 +153,7 @@ TEST(Network, WithStatisticsOfAnotherNetworkIsRefused) {
   });
   const Finished refused = shell("./isoline infer x.json --input y.npy --output x.npy");
   EXPECT_EQ(refused.exit_code, 1) << refused.err;
-  EXPECT_TRUE(contains(refused.err, "1 statistics and its network has")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "1 statistics, but its network has")) << refused.err;
 }
 
 TEST(Infer, IsEndedAtItsLimitsAndSaysSo) {

@@ -79,9 +79,9 @@ TEST(Amortized, TrainingPaysFromSoManyInstancesAsItsTimeHoldsSavings) {
   const Shown shown({trained(0, 1, 300 * 0x1p-6), single("newton", 0, 0x1p-6 + 0x1p-10)});
   ASSERT_EQ(shown.section.tables.size(), 1U);
   EXPECT_EQ(shown.number(0, "training, s"), 300 * 0x1p-6);
-  EXPECT_EQ(shown.number(0, "an example, ms"), 0x1p-10);
+  EXPECT_EQ(shown.number(0, "per example, ms"), 0x1p-10);
   EXPECT_EQ(shown.number(0, kSolved), 0x1p-6 + 0x1p-10);
-  EXPECT_EQ(shown.number(0, "pays from"), 300);
+  EXPECT_EQ(shown.number(0, "pays off from"), 300);
   EXPECT_NE(shown.section.tables[0].reading.find("from 300 instances"), std::string::npos);
 }
 
@@ -102,7 +102,7 @@ TEST(Amortized, InstancesThatNeverGetThereStayInTheMedian) {
   late.curve.x_error = lost.curve.x_error;
   const Shown none({trained(0, 1, 3), single("gd", 0, 1), late, lost});
   EXPECT_EQ(none.text(0, kSolved), "✗");
-  EXPECT_EQ(none.text(0, "pays from"), "the solver is not there");
+  EXPECT_EQ(none.text(0, "pays off from"), "the solver has not reached it");
   Record crashed = single("gd", 2, 1);
   crashed.status = Status::crashed;
   const Shown failed({trained(0, 1, 3), single("gd", 0, 1), single("gd", 1, 1), crashed});
@@ -112,21 +112,21 @@ TEST(Amortized, InstancesThatNeverGetThereStayInTheMedian) {
 
 TEST(Amortized, ASolverFasterThanTheNetworkIsNeverPaidFor) {
   const Shown shown({trained(0, 1, 3), single("newton", 0, 5e-4)});
-  EXPECT_EQ(shown.text(0, "pays from"), "never");
+  EXPECT_EQ(shown.text(0, "pays off from"), "never");
 }
 
 TEST(Amortized, ANetworkNoNearerThanWhereSolversStartIsSaidToBe) {
   const Shown shown({trained(0, 11, 3), single("newton", 0, 2)});
   EXPECT_EQ(shown.number(0, kSolved), 0);
-  EXPECT_EQ(shown.text(0, "pays from"), "never");
+  EXPECT_EQ(shown.text(0, "pays off from"), "never");
   EXPECT_NE(shown.section.tables[0].reading.find("newton starts as near"), std::string::npos)
       << shown.section.tables[0].reading;
 }
 
 TEST(Amortized, TimesThatWereNotMeasuredAreAbsent) {
   const Shown shown({trained(0, 1, 3), single("newton", 0, 0.011)}, {});
-  EXPECT_EQ(shown.text(0, "an example, ms"), "");
-  EXPECT_EQ(shown.text(0, "pays from"), "");
+  EXPECT_EQ(shown.text(0, "per example, ms"), "");
+  EXPECT_EQ(shown.text(0, "pays off from"), "");
   EXPECT_EQ(shown.number(0, "training, s"), 3);
 }
 

@@ -100,9 +100,9 @@ TEST(AuditTable, TellsThePageWhichMethodARowIsAbout) {
 TEST(AuditTable, IsReadForANewcomer) {
   const std::vector<Reading> readings = property_readings(samples());
   ASSERT_EQ(readings.size(), 6U);
-  EXPECT_TRUE(has(readings[0].text, "grows by s instead for gd"));
+  EXPECT_TRUE(has(readings[0].text, "a small step where a large one is needed: gd"));
   EXPECT_TRUE(has(readings[0].text, "whose Hessian is zero"));
-  EXPECT_TRUE(has(readings[2].text, "(order 2) for gd"));
+  EXPECT_TRUE(has(readings[2].text, "(order 2): gd"));
   EXPECT_TRUE(has(readings.back().text, "gd declares"));
 }
 

@@ -246,7 +246,7 @@ TEST(Claims, WithoutTheirCellsTellWhichAreMissing) {
 TEST(Claims, TooShortRunsAreMeasuredAndNotJudged) {
   const Judgement judgement = judgement_of({.more = {{"iteration", 5000}}}, adam_and_sip());
   EXPECT_EQ(judgement.verdict, Verdict::too_short);
-  EXPECT_EQ(judgement.why, "100 of the 5000 iterations that it speaks of");
+  EXPECT_EQ(judgement.why, "100 of the 5000 iterations that it requires");
   EXPECT_EQ(judgement.measured->value, 10);
   Json at_the_end = claim_of({});
   at_the_end["length"] = {{"iterations", 101}};
@@ -328,7 +328,7 @@ TEST(Claims, OfWhoIsTheQuickestReadWhatWasSpentUntilALevel) {
 TEST(Claims, TellWhatElseWouldHaveComeToTheSameVerdict) {
   std::vector<Record> runs = adam_and_sip();
   EXPECT_TRUE(judgement_of({}, runs).survives.empty() ||
-              judgement_of({}, runs).survives[0] == "networks that were never trained")
+              judgement_of({}, runs).survives[0] == "untrained networks")
       << "the figures of the fixture do not change on the way";
   for (Record& run : runs) run.curve.x_error.front() = 50;
   EXPECT_TRUE(judgement_of({}, runs).survives.empty());

@@ -87,7 +87,7 @@ TEST(Costs, WithoutMeasuredPricesAreTheDeclaredWork) {
   study.runs = {counted()};
   const Comparison c = compare_optimizers(study);
   EXPECT_EQ(c.cell(0, 0).taken[Measure::cost][kTightest].median, 60);
-  EXPECT_NE(cost_unit(c).find("declared"), std::string::npos);
+  EXPECT_NE(cost_unit(c).find("nominal"), std::string::npos);
   EXPECT_TRUE(prices_table(c).rows.empty());
 }
 
@@ -109,7 +109,7 @@ TEST(Costs, StandBesideTheRawCounts) {
   const Table table = calls_table(c);
   const auto column = std::ranges::find(table.columns, "pullback") - table.columns.begin();
   EXPECT_EQ(table.rows[0][static_cast<std::size_t>(column)].text, "30");
-  EXPECT_NE(table.reading.find("60 declared forward solves, 105 in"), std::string::npos)
+  EXPECT_NE(table.reading.find("60 forward solves at nominal cost, 105 in"), std::string::npos)
       << table.reading;
   EXPECT_NE(prices_table(c).rows[0].back().text.find("1 : 2.5 [2.5–2.5]"), std::string::npos);
   const Json cell = parse_json(json_report(document_of(c)), "report.json").at("cells")[0];

@@ -80,7 +80,7 @@ TEST(LossWithoutX, SaysWhereNeitherCanBeTold) {
   study.runs = {record_of({})};  // no solution is known
   const Table table = loss_without_x_table(compare_optimizers(study));
   EXPECT_TRUE(table.rows.empty());
-  EXPECT_NE(table.reading.find("No result knows both"), std::string::npos);
+  EXPECT_NE(table.reading.find("No result has both"), std::string::npos);
 }
 
 }  // namespace

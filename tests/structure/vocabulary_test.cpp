@@ -78,6 +78,12 @@ constexpr const char* kFolders[] = {"cmake",
                                     "optimizers",
                                     "core",
                                     "benchmarks/plan",
+                                    "benchmarks/run",
+                                    "reports/compare",
+                                    "reports/exports",
+                                    "reports/formats",
+                                    "reports/read",
+                                    "reports/sections",
                                     "benchmarks/shard",
                                     "benchmarks/merge",
                                     "benchmarks/audit",
@@ -145,10 +151,21 @@ std::string avoidable(const std::string& text, const Phrase (&phrases)[N]) {
   return "";
 }
 
+// Whether a comment begins with a relative clause, as "What a run keeps." does.
+bool begins_with_a_relative(const std::string& line) {
+  const std::size_t begin = line.find_first_not_of(' ');
+  if (begin == std::string::npos || line.find('?') != std::string::npos) return false;
+  for (const char* word : {"// What ", "// Who ", "// Of "})
+    if (line.compare(begin, std::string_view(word).size(), word) == 0) return true;
+  return false;
+}
+
 TEST(Vocabulary, APhraseIsFoundAsAWordAndOutsideCode) {
   EXPECT_NE(avoidable(prose("Whoever runs it is told so."), kArchaic), "");
   EXPECT_NE(avoidable(prose("A door to FFTW."), kReplaced), "");
   EXPECT_EQ(avoidable(prose("Who wins?"), kArchaic), "");
+  EXPECT_TRUE(begins_with_a_relative("  // What a run keeps."));
+  EXPECT_FALSE(begins_with_a_relative("// What does a run keep?"));
   EXPECT_EQ(avoidable(prose("The whole; `--sheets`, \"doors\", outdoors, in-door."), kReplaced),
             "");
 }
@@ -168,6 +185,24 @@ TEST(Vocabulary, OfPagesIsPlain) {
   }
 }
 
+TEST(Vocabulary, OfLauncherAndScriptsIsPlain) {
+  for (const char* file : {"isoline", "CMakeLists.txt", "CMakePresets.json", ".ci/run",
+                           ".ci/compare", ".github/workflows/ci.yml", "CITATION.cff"}) {
+    const std::vector<std::string> lines = lines_of(file_text(root() / file));
+    EXPECT_FALSE(lines.empty()) << file;
+    for (const std::string& line : lines)
+      EXPECT_EQ(avoidable(lower(line), kArchaic), "") << file << ": " << line;
+  }
+}
+
+TEST(Vocabulary, TheGlossaryHasAtMostTwentyFiveTerms) {
+  const std::vector<std::string> lines = lines_of(file_text(root() / "docs/glossary.md"));
+  const auto rows =
+      std::ranges::count_if(lines, [](const std::string& line) { return line.starts_with("| "); });
+  EXPECT_GT(rows, 10);
+  EXPECT_LE(rows - 1, 25) << "without the header";
+}
+
 TEST(Vocabulary, OfSourcesIsPlain) {
   constexpr std::string_view kCode[] = {".h", ".cpp", ".c"};
   constexpr std::string_view kText[] = {".json", ".js", ".css", ".cmake", ".txt", ".html", ".py"};
@@ -182,6 +217,8 @@ TEST(Vocabulary, OfSourcesIsPlain) {
         if (extension == ".py" && line.find("None") != std::string::npos) continue;  // "is None"
         const std::string text = is_code ? prose(comment_and_strings(line)) : lower(line);
         EXPECT_EQ(avoidable(text, kArchaic), "") << entry.path() << ":" << number << ": " << line;
+        EXPECT_FALSE(is_code && begins_with_a_relative(line))
+            << entry.path() << ":" << number << ": begin with a noun: " << line;
       }
     }
 }
