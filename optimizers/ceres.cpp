@@ -85,11 +85,13 @@ struct LossFunction final : ceres::FirstOrderFunction {
 struct Watch final : ceres::IterationCallback {
   Meter& f;
   const Vector& theta;
+  Vector last;  // (n), θ after the last iteration
 
-  Watch(Meter& meter, const Vector& current) : f(meter), theta(current) {}
+  Watch(Meter& meter, const Vector& current) : f(meter), theta(current), last(current) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (summary.iteration == 0) return ceres::SOLVER_CONTINUE;  // the start
     if (!summary.step_is_successful) f.reject_step();
+    last = theta;
     return f.iterate(theta) == Status::running ? ceres::SOLVER_CONTINUE
                                                : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
@@ -143,7 +145,10 @@ class Ceres final : public Optimizer {
     Watch watch(f, theta);
     Options options = options_;
     set_common(options, watch);
-    return solve(options, evaluation, theta);
+    const Status status = solve(options, evaluation, theta);
+    if (status == Status::budget)
+      theta = watch.last;  // Ceres goes back to the start if a call failed
+    return status;
   }
 
  private:
