@@ -14,10 +14,6 @@
 #include "core/registry.h"
 #include "core/status.h"
 
-namespace isoline {
-struct PluginComponent;
-}
-
 namespace isoline::problems {
 
 class Draw;

@@ -9,6 +9,8 @@
 
 namespace isoline {
 
+struct PluginComponent;  // of a shared library: core/foreign/plugin_library.h
+
 struct Foreign {
   std::string door;         // "process" or "plugin"; of older records "umbridge"
   std::string command;      // as typed: a command, an address, or the path of a library
