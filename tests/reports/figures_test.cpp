@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "core/digest.h"
@@ -30,7 +31,8 @@ Record learned(const Learned& given) {
   record.request.problem.is_learned = true;
   record.curve.x_error.assign(record.curve.iteration.size(), given.x_error);
   record.summary.x_error = given.x_error;
-  record.summary.loss = given.loss;
+  record.curve.loss.back() = record.summary.loss = given.loss;
+  record.summary.best_loss = std::ranges::min(record.curve.loss);
   record.cell = digest(spec + given.optimizer + std::to_string(given.seed));
   return record;
 }

@@ -2,6 +2,7 @@
 // elsewhere.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -97,12 +98,15 @@ void finish(Record& r, bool is_declared) {
       r.hits->wall_seconds.push_back(is_met ? curve.wall_seconds[k] : NAN);
     }
   }
+  for (const auto& [name, column] : curve.counts)
+    r.counts[std::size_t(std::ranges::find(kOracleNames, name) - kOracleNames.begin())] =
+        column.back();
   r.status = curve.loss.back() <= 1e-10 * start ? Status::target : Status::budget;
   r.summary = {.iterations = curve.iteration.back(),
                .work = curve.work.back(),
                .start_loss = start,
                .loss = curve.loss.back(),
-               .best_loss = curve.loss.back(),
+               .best_loss = std::ranges::min(curve.loss),
                .start_x_error = curve.x_error.front(),
                .x_error = curve.x_error.back(),
                .gradient_norm = curve.gradient_norm.back(),

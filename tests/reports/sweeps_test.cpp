@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/digest.h"
 #include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
@@ -30,7 +32,8 @@ Record swept(const Swept& given) {
   record.request.optimizer.options = {{"kappa", given.kappa}, {"rate", given.rate}};
   if (!given.inner.empty()) record.request.optimizer.options.set("network-optimizer", given.inner);
   record.request.budget.iterations = given.iterations;
-  record.summary.loss = given.loss;
+  record.curve.loss.back() = record.summary.loss = given.loss;
+  record.summary.best_loss = std::ranges::min(record.curve.loss);
   record.cell = digest(name + std::to_string(given.iterations) + std::to_string(given.seed));
   return record;
 }

@@ -66,17 +66,27 @@ std::int64_t iteration_at(std::size_t point) {
   return std::llround(kDense * std::pow(kWider, static_cast<Real>(point - kDense)));
 }
 
+constexpr OracleCounts kPrices = {1, 1, 1, 4, 4, 4, 4, 2, 1, 0, 1, 0};
+
+std::int64_t priced(const Curve& curve) {
+  std::int64_t work = 0;
+  for (const auto& [name, column] : curve.counts)
+    work += column.back() *
+            kPrices[std::size_t(std::ranges::find(kOracleNames, name) - kOracleNames.begin())];
+  return work;
+}
+
 void add_point(Record& record, std::int64_t iteration, Real loss, RandomStream& random) {
   Curve& curve = record.curve;
   const std::int64_t forwards = 1 + 2 * iteration;
   const Real seconds = 2.3e-6 * static_cast<Real>(forwards) * random.uniform(0.9, 1.1);
   const bool is_first = curve.iteration.empty();
   curve.iteration.push_back(iteration);
-  curve.work.push_back(forwards + 3 * iteration);
   curve.counts["forward"].push_back(forwards);
   curve.counts["pullback"].push_back(iteration);
   curve.counts["jacobian"].push_back(iteration / 2);
   curve.counts["inverse"].push_back(iteration / 4);
+  curve.work.push_back(priced(curve));
   curve.wall_seconds.push_back(is_first ? 0 : std::max(seconds, curve.wall_seconds.back()));
   curve.processor_seconds.push_back(0.98 * curve.wall_seconds.back());
   curve.loss.push_back(loss);
@@ -124,7 +134,7 @@ void summarize(Record& record) {
   for (const auto& [name, column] : curve.counts)
     record.counts[std::size_t(std::ranges::find(kOracleNames, name) - kOracleNames.begin())] =
         column.back();
-  record.prices = {1, 1, 1, 4, 4, 4, 4, 2, 1, 0, 1, 0};
+  record.prices = kPrices;
   const Real best = std::ranges::min(curve.loss);
   record.status = best <= kTarget * kStart ? Status::target : Status::budget;
   record.summary = {.iterations = curve.iteration.back(),
