@@ -173,7 +173,7 @@ std::string over_seeds(const Judgement& judgement) {
 }
 
 std::string_view mark_of(Verdict verdict) {
-  constexpr std::array<std::string_view, kVerdictNames.size()> kMarks = {"✓", "✓", "∼", "≈", "✗",
+  constexpr std::array<std::string_view, kVerdictNames.size()> kMarks = {"✓", "✓", "∼", "≈", "≁",
                                                                          "✗", "…", "·", "·"};
   return kMarks[static_cast<std::size_t>(verdict)];
 }
@@ -253,21 +253,15 @@ std::string verdict_text(const Judgement& judgement) {
 std::string claims_reading(const std::vector<Judgement>& judgements) {
   const std::vector<Verdict> facts = verdicts_on_facts(judgements, false),
                              identities = verdicts_on_facts(judgements, true);
-  const auto count = [&](Verdict verdict) { return std::ranges::count(facts, verdict); };
-  std::string text = fmt::format(
-      "{} in {}: {} reproduced and {} stronger than published, {} consistent with what was "
-      "published, {} partly reproduced, {} at odds with it by few seeds, {} not reproduced; the "
-      "runs are too short for {}, {} are undecidable, and {} cannot be compared.",
-      counted(facts.size() + identities.size(), "fact"), counted(judgements.size(), "claim"),
-      count(Verdict::reproduced), count(Verdict::stronger), count(Verdict::consistent),
-      count(Verdict::partly), count(Verdict::at_odds), count(Verdict::not_reproduced),
-      count(Verdict::too_short), count(Verdict::undecidable), count(Verdict::not_comparable));
-  const auto decided = std::ranges::count_if(identities, is_decided);
-  if (decided > 0)
-    text += fmt::format(
-        " Counted apart as verification, of identities and printed digits without chance: {} of {} "
-        "verified.",
-        std::ranges::count(identities, Verdict::reproduced), decided);
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < kVerdictNames.size(); ++i)
+    if (const auto count = std::ranges::count(facts, static_cast<Verdict>(i)); count > 0)
+      parts.push_back(fmt::format("{} {}", count, kVerdictNames[i]));
+  if (const auto decided = std::ranges::count_if(identities, is_decided); decided > 0)
+    parts.push_back(fmt::format("{} of {} identities and printed digits verified, counted apart",
+                                std::ranges::count(identities, Verdict::reproduced), decided));
+  std::string text = fmt::format("{} in {}: {}.", counted(facts.size() + identities.size(), "fact"),
+                                 counted(judgements.size(), "claim"), joined(parts));
   const auto surviving = std::ranges::count_if(
       judgements, [](const Judgement& judgement) { return !judgement.survives.empty(); });
   if (surviving > 0)
@@ -325,18 +319,19 @@ Section papers_section(const std::vector<Judgement>& judgements) {
                                              .columns = {"what it says", "where", "command", "time",
                                                          "published", "measured", "verdict"},
                                              .align = "lllrlll"});
-    const bool is_decided_by_runs = judgement.measured && !judgement.sets.empty();
+    const bool has_runs = judgement.measured.has_value();
     const bool is_long = !judgement.sets.empty() && judgement.sets.back().is_long;
+    const bool is_not_run = !has_runs && !judgement.sets.empty();
+    std::string verdict = verdict_text(judgement);
+    if (!is_decided(judgement.verdict) && !judgement.why.empty()) verdict += ": " + judgement.why;
+    if (is_not_run && judgement.verdict != Verdict::undecidable) verdict = "not run here";
     table->rows.push_back(
         {judgement.sentence, judgement.place,
          fmt::format("isoline claims {}{}", judgement.id, is_long ? " --long" : ""),
-         is_decided_by_runs ? rough_time(judgement.seconds)
-         : is_long          ? "hours"
-                            : kNothing,
-         judgement.published, measured_text(judgement),
-         judgement.verdict == Verdict::undecidable || judgement.verdict == Verdict::not_comparable
-             ? fmt::format("{}: {}", verdict_text(judgement), judgement.why)
-             : verdict_text(judgement)});
+         has_runs  ? rough_time(judgement.seconds)
+         : is_long ? "hours"
+                   : kNothing,
+         judgement.published, measured_text(judgement), verdict});
   }
   return section;
 }

@@ -107,7 +107,9 @@ TEST(PapersPage, HasARowForEachClaimAndTheVerdictsOfTheNotebook) {
       const std::size_t at = page.find("\n" + start);
       ASSERT_NE(at, std::string::npos) << start << " make the page anew";
       const std::string line = page.substr(at + 1, page.find('\n', at + 1) - at - 1);
-      if (row.back().text.ends_with("verified")) EXPECT_TRUE(line.ends_with(end)) << line;
+      if (row.back().text.ends_with("verified")) {
+        EXPECT_TRUE(line.ends_with(end)) << line;
+      }
       ++rows;
     }
   EXPECT_EQ(rows, judgements.size());

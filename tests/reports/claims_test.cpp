@@ -191,7 +191,7 @@ TEST(Quantities, ASlopeReadOffAFigureIsUncertainByItsTwoEnds) {
   claim["quantity"]["terms"][0]["at"] = 1;
   claim["quantity"]["terms"][1]["at"] = 100;
   const auto verdict = [&](Real slope) {
-    return verdict_of({.value = slope, .low = slope, .high = slope}, claim, true);
+    return verdict_of({.value = slope, .low = slope, .high = slope, .n = 6}, claim, true);
   };
   EXPECT_EQ(verdict(0.0880), Verdict::reproduced);
   EXPECT_EQ(verdict(-0.0880), Verdict::reproduced);
@@ -266,22 +266,20 @@ TEST(Claims, AreReadAtEqualTimeWhereTheyAskForIt) {
       curve.processor_seconds.push_back(price * static_cast<Real>(iteration));
     run.summary.iterations = 100;
     run.summary.processor_seconds = 100 * price;
+    curve.work = curve.iteration;
+    run.summary.work = 100;
   }
   EXPECT_EQ(judgement_of({}, runs).measured->value, 1) << "at equal iterations";
   const Asked at_equal_time{
       .published = {{"at_most", 1}}, .tolerance = kNone, .more = {{"clock", "seconds"}}};
   EXPECT_EQ(judgement_of(at_equal_time, runs).measured->value, 1.0 / 9);
   // Beside it by counted work, which no machine changes: a step of either has as much of it.
-  for (Record& run : runs) {
-    run.curve.work = {0, 33, 66, 100};
-    run.summary.work = 100;
-  }
   const Judgement both = judgement_of(at_equal_time, runs);
   ASSERT_EQ(both.others.size(), 1U);
   EXPECT_EQ(both.others[0].measured.value, 1);
   EXPECT_EQ(both.others[0].verdict, Verdict::at_odds);
   EXPECT_EQ(both.verdict, Verdict::consistent) << "for it by the one, against it by the other";
-  for (Record& run : runs)  // SIP half as dear again
+  for (Record& run : runs)  // SIP a third as dear again
     if (run.cell.starts_with("sip"))
       for (Real& second : run.curve.processor_seconds) second *= 1.3;
   EXPECT_EQ(judgement_of(at_equal_time, runs).verdict, both.verdict);
@@ -362,8 +360,8 @@ TEST(Claims, OfIdentitiesAreCountedApartAsVerification) {
   EXPECT_EQ(verdicts_on_facts(judgements, true), std::vector{Verdict::reproduced});
   EXPECT_EQ(verdict_text(judgements[1]), "verified");
   const std::string text = claims_reading(judgements);
-  EXPECT_NE(text.find("0 reproduced"), std::string::npos) << text;
-  EXPECT_NE(text.find("1 of 1 verified"), std::string::npos) << text;
+  EXPECT_EQ(text.find("reproduced"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 of 1 identities"), std::string::npos) << text;
 }
 
 TEST(Claims, WhoseSettingsWereNotPublishedAreUndecidableAndMeasured) {
@@ -446,10 +444,7 @@ TEST(Claims, OfAReportAreToldInEveryFormatByTheSameFigures) {
     for (const char* part :
          {"consistent, n = 3", "One is ahead of the other.", "10–30 (range of 3)", "±5 %"})
       EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
-    EXPECT_NE(
-        text.find("1 fact in 1 claim: 0 reproduced and 0 stronger than published, 1 consistent"),
-        std::string::npos)
-        << text;
+    EXPECT_NE(text.find("1 fact in 1 claim: 1 consistent"), std::string::npos) << text;
   }
   EXPECT_EQ(claims_json(judgements)[0].at("measured").at("value"), 10);
   EXPECT_TRUE(claims_section({}).is_empty());
