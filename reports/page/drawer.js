@@ -10,21 +10,21 @@ function commandOf(p, s) {
   return made.content.firstChild?.dataset.command;
 }
 
-// Its line in the chart of the report's own measure, from the article as it came or as it stands.
+// Its line in the chart that the article shows, from the article as it came or as it stands.
 function sparkline(p, s) {
-  const article = document.getElementById(`problem-${p}`), html = (article.querySelector(':scope > noscript')?.textContent ?? article.querySelector('.curves')?.innerHTML ?? '').replaceAll('="', '=').replaceAll('"', ' ');
-  const chart = html.split('<svg class=chart').find((part) => part.includes('data-by=') && !part.slice(0, part.indexOf('role=')).includes('hidden'));
-  const path = chart?.match(new RegExp(`<g data-s=${s} ?(?:class=off ?)?>(?:<path class=band [^>]*>)?(?:</path>)?<path class=line d=([^>/]*?) ?/?>`))?.[1];
-  if (path === undefined) return [];
+  const article = document.getElementById(`problem-${p}`), packed = article.querySelector(':scope > noscript'), made = document.createElement('template');
+  if (packed !== null) made.innerHTML = packed.textContent;
+  const path = (packed === null ? article : made.content).querySelector(`.curves > .chart:not([hidden]) .area > [data-s="${s}"] .line`);
+  if (path === null) return [];
   const drawn = svgElement('svg', {class: 'spark', viewBox: `0 0 ${AREA} ${AREA}`, preserveAspectRatio: 'none', 'data-s': s, role: 'img', 'aria-label': 'Its curve'});
-  drawn.append(svgElement('path', {d: path}));
+  drawn.append(svgElement('path', {d: path.getAttribute('d')}));
   return [drawn];
 }
 
 const withCopy = (command) => [element('code', {}, command), ' ', Object.assign(pressable('copy', undefined, (event) => copyText(command, event.currentTarget)), {className: 'copy'})];
 
 function openDrawer(p, s) {
-  const drawer = document.getElementById('drawer'), [title, ...lines] = explanationOf(p, s), {records = []} = cellOf(DATA.problems[p], s) ?? {}, command = commandOf(p, s);
+  const drawer = document.getElementById('drawer'), [title, ...lines] = explanationOf(p, s), {records = [], reached = []} = cellOf(DATA.problems[p], s) ?? {}, command = commandOf(p, s);
   const close = pressable('close', undefined, () => drawer.close()), curves = element('a', {href: `#problem-${p}`}, 'all curves of this problem');
   curves.addEventListener('click', () => {
     drawer.close();
@@ -32,7 +32,7 @@ function openDrawer(p, s) {
   });
   drawer.replaceChildren(close, element('h3', {}, title), ...lines.map((line) => element('p', {}, line)), ...sparkline(p, s), element('p', {}, curves),
       ...command === undefined ? [] : [element('p', {}, 'All its runs: ', ...withCopy(command))],
-      ...records.length === 0 ? [] : [element('p', {}, 'Records, and what repeats each:'), element('ul', {}, ...records.map((name) => {
+      ...records.length === 0 ? [] : [element('p', {}, records.length < reached.length ? `The first ${records.length} of ${reached.length} records:` : 'Records, and what repeats each:'), element('ul', {}, ...records.map((name) => {
         const file = `${DATA.runs}${name}.json`;
         return element('li', {}, DATA.runs === '' ? `${name}.json` : element('a', {href: file}, `${name}.json`), element('br'), ...withCopy(`./isoline replay RESULTS/runs/${name}.json`));
       }))]);
@@ -42,7 +42,9 @@ function openDrawer(p, s) {
 }
 
 document.addEventListener('keydown', ({key}) => { if (key === 'Escape') document.getElementById('drawer').close(); });
-document.addEventListener('click', ({target}) => {
-  const cell = target.closest('#heat td[data-p]');
-  if (cell !== null) openDrawer(Number(cell.dataset.p), Number(cell.parentElement.dataset.s));
+document.addEventListener('click', (event) => {
+  const cell = event.target.closest('#heat td[data-p], .reached td, #cells td'), chart = event.target.closest('.curves > .chart');
+  const point = chart && !isDragged ? nearest(chart, event) : undefined, {p} = (chart ?? cell)?.closest('[data-p]')?.dataset ?? {};
+  if (point) openDrawer(Number(p), lineOf(point.group));
+  else if (cell !== null && event.target.closest('button, a') === null) openDrawer(Number(p), Number(cell.parentElement.dataset.s));
 });

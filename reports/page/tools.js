@@ -79,7 +79,7 @@ function addTools(place) {
 }
 
 // A drag over the area of a chart looks at that part of it.
-let drag;
+let drag, isDragged = false;
 const placeIn = (chart, event) => {
   const area = areaOf(chart), box = boxOf(area), [left, top, width, height] = viewOf(area), shape = chart.getBoundingClientRect(), scale = chart.viewBox.baseVal.width / shape.width;
   return [left + ((event.clientX - shape.left) * scale - box.x) / box.width * width, top + ((event.clientY - shape.top) * scale - box.y) / box.height * height];
@@ -91,7 +91,8 @@ document.addEventListener('pointerdown', (event) => {
 });
 document.addEventListener('pointerup', (event) => {
   const least = 8;  // pixels: less is a press
-  if (drag && Math.min(Math.abs(event.clientX - drag.at[0]), Math.abs(event.clientY - drag.at[1])) > least) {
+  isDragged = drag !== undefined && Math.min(Math.abs(event.clientX - drag.at[0]), Math.abs(event.clientY - drag.at[1])) > least;
+  if (isDragged) {
     const [x, y] = placeIn(drag.chart, event), [left, top] = drag.from;
     setView(drag.chart, Math.min(x, left), Math.min(y, top), Math.abs(x - left), Math.abs(y - top));
   }
