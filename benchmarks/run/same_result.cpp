@@ -34,6 +34,7 @@ std::string difference_in_curves(const Json& a, const Json& b, std::size_t point
   std::size_t first = points;
   for (const Json& some : columns)
     for (const auto& [path, value] : some.items()) {
+      if (value.is_null()) continue;  // a column without entries
       const Json::json_pointer place(path);
       const std::size_t i = std::stoul(place.back());
       if (i >= first || (json_text(value_at(a, place)) == json_text(value_at(b, place)))) continue;
