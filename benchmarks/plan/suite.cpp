@@ -59,7 +59,7 @@ MatrixBlock block_from(const Json& json) {
 
 bool is_selector(const std::string& text) { return text == "*" || text.starts_with('@'); }
 
-// What a block names, with the names that a selector stands for in its place.
+// The names in a block, with selectors replaced by the names that they match.
 template <class Registered>
 std::vector<std::string> named_specs(const Registered& registry,
                                      const std::vector<std::string>& texts,

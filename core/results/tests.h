@@ -50,7 +50,7 @@ inline constexpr std::size_t kSmallDesign = 60, kDrawnFlips = 1U << 16U;
 // P(χ² with so many degrees of freedom ≥ x).
 Real chi_square_tail(Real x, Real freedom);
 
-// What a paired test by sign flips can find.
+// The power of a paired test by sign flips.
 
 // The standard deviation of a sample; 0 of fewer than two.
 Real deviation_of(const std::vector<Real>& values);
