@@ -119,8 +119,8 @@ void print(const Sheet& sheet) {
                     aim_text(sheet.aim.value_or(Aim::loss))));
   else
     say(stdout, fmt::format("Family      {}\n", sheet.family));
-  say(stdout,
-      fmt::format("{:11} {}\n", is_problem ? "Offers" : "Requires", fmt::join(sheet.oracles, ", ")));
+  say(stdout, fmt::format("{:11} {}\n", is_problem ? "Offers" : "Requires",
+                          fmt::join(sheet.oracles, ", ")));
   if (!is_problem)
     say(stdout, fmt::format("Tuned by    {}\n", sheet.tunable.empty() ? "nothing" : sheet.tunable));
   if (!is_problem)

@@ -117,9 +117,10 @@ TEST_F(ForeignCells, AreRunOnlyWhereTheProblemIsCertified) {
     return "";
   };
   const std::string sign = complaint("has-a-wrong-sign"), random = complaint("is-random");
-  EXPECT_NE(sign.find("fails its checks and does not run: 'the remainder after J v is of second order' "
-                      "is violated"),
-            std::string::npos)
+  EXPECT_NE(
+      sign.find("fails its checks and does not run: 'the remainder after J v is of second order' "
+                "is violated"),
+      std::string::npos)
       << sign;
   EXPECT_NE(random.find("gives the same bits"), std::string::npos) << random;
   EXPECT_NE(complaint("raises").find("cannot be examined: it threw"), std::string::npos)

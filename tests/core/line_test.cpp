@@ -170,7 +170,8 @@ TEST(Programs, HowTheyEndAndWhatTheyPrintedLastIsSaid) {
 
 TEST(Programs, ThatPrintAGigabyteAreReadToTheEndInLittleMemory) {
   const std::string said = failure_of("head -c 1000000000 /dev/zero; echo; echo the end; exit 5");
-  EXPECT_NE(said.find("exited with code 5, and last printed: "), std::string::npos) << said.substr(0, 200);
+  EXPECT_NE(said.find("exited with code 5, and last printed: "), std::string::npos)
+      << said.substr(0, 200);
   EXPECT_TRUE(said.ends_with("the end")) << said.substr(0, 200);
   EXPECT_LT(said.size(), 4000U);
 }

@@ -252,6 +252,18 @@ TEST(Rounding, StaysRoundingThroughThreeStepsOfEveryMethod) {
   }
 }
 
+TEST(Ceres, KeepsItsLastIterateWhereTheBudgetEndsWithinAnIteration) {
+  const Problem problem = published("square");
+  for (const char* method : {"ceres-lm", "ceres-gauss-newton", "ceres-dogleg", "ceres-bfgs"})
+    for (std::int64_t work = 12; work < 18; ++work) {
+      const Outcome ended = run(problem, method, {.iterations = 1000, .work = work, .target = 0});
+      EXPECT_EQ(ended.status, Status::budget) << method << ", work " << work;
+      EXPECT_LE(ended.trace->last.loss, 0.5 * ended.trace->start_loss)
+          << method << ", work " << work;
+      EXPECT_LE(ended.trace->last.work, work) << method;
+    }
+}
+
 TEST(MatrixMethods, AreForNetworks) {
   for (const char* name : {"muon", "soap"}) {
     const OptimizerEntry& entry = optimizers().at(name);

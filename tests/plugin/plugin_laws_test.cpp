@@ -108,7 +108,8 @@ TEST(PluginLaws, WhatIsNoLibraryIsNamed) {
   EXPECT_NE(told(kPlugins).find("is a folder"), std::string::npos) << told(kPlugins);
   EXPECT_NE(told(ISOLINE_SOURCE_DIR "/README.md").find("cannot be loaded as a library"),
             std::string::npos);
-  EXPECT_NE(told(kPlugins + "/empty.so").find("does not export isoline_plugin()"), std::string::npos);
+  EXPECT_NE(told(kPlugins + "/empty.so").find("does not export isoline_plugin()"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -79,8 +79,7 @@ TEST_F(PluginProgram, WhatCannotBeLoadedIsOneSentence) {
   const struct {
     std::string before, plugin, sentence;
   } all[] = {
-      {"ISOLINE_DEFECT='crash at load'", "./trials.so",
-       "./trials.so cannot be loaded: "},
+      {"ISOLINE_DEFECT='crash at load'", "./trials.so", "./trials.so cannot be loaded: "},
       {"ISOLINE_DEFECT=version", "./trials.so",
        "./trials.so: no. 0: a component must have version"},
       {"", "./nowhere.so", "./nowhere.so: no such file"},

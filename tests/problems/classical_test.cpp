@@ -1,10 +1,9 @@
 // Figures of Moré, Garbow and Hillstrom's problems. Unless it says otherwise, a value was computed
 // from the paper's definitions apart from this code, in rational or quadruple arithmetic.
-#include "problems/dense_physics.h"
-
 #include <gtest/gtest.h>
 
 #include "make.h"
+#include "problems/dense_physics.h"
 
 namespace isoline::problems {
 
