@@ -124,9 +124,7 @@ class Curves {
     for (const Vertical& vertical : kVerticals) {
       const bool is_of_error = &vertical == &kVerticals[1];
       if (is_of_error && !has_x) continue;
-      // Of a study too large for all measures its own alone.
-      const bool is_large = targets_of(c_).size() < kTargets;
-      for (const Measure by : is_large ? std::vector{c_.yardstick.by} : measures_of(c_)) {
+      for (const Measure by : is_large(c_) ? std::vector{c_.yardstick.by} : measures_of(c_)) {
         Drawing drawing = drawing_of(vertical, by, is_of_error);
         const bool is_own = (is_of_error == (has_x && is_of_x)) && by == c_.yardstick.by;
         drawing.attributes = fmt::format(" data-by={} data-vertical={}{}", name_of(by),

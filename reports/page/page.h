@@ -57,6 +57,9 @@ std::vector<Measure> measures_of(const Comparison& comparison);
 // Those of the 51 targets that the page holds medians to: all, but of a study too large for that
 // the tolerances of its report alone.
 std::vector<std::size_t> targets_of(const Comparison& comparison);
+// Whether its page leaves out what would make it too long: commands of cells, which stand in
+// report.csv, and curves by other measures than its own.
+bool is_large(const Comparison& comparison);
 Real tau_of(const Comparison& comparison);  // of the report
 
 // † tells what an optimizer sees that others do not, § that its figures are claims of others; empty

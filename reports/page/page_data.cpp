@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <string_view>
 #include <unordered_map>
 
@@ -64,19 +65,22 @@ std::string medians_json(const Comparison& c, const Cell& cell) {
 }
 
 // [optimizer, targets reached by each run, [medians by measure], runs failed, runs missing, [record
-// of each run]]: what the page chooses from. The optimizer alone where the pair makes no sense.
+// of each run, or of the first]]: what the page chooses from. The optimizer alone where the pair
+// makes no sense.
 std::string cell_json(const Comparison& c, std::size_t p, std::size_t s) {
   const Cell& cell = c.cell(p, s);
   if (!cell.runs.empty() && !cell.is_measured()) return fmt::format("[{}]", s);
   std::vector<std::size_t> reached;
   for (const std::size_t run : cell.runs) reached.push_back(c.runs[run].targets.size());
-  const bool is_large = targets_of(c).size() < kTargets;
-  const std::string records = list(cell.runs, [&](std::size_t run) {
+  constexpr std::size_t kRecords = 10'000, kLeast = 1;  // of all cells; of one
+  const std::size_t most = std::max(kLeast, kRecords / (c.problems.size() * c.optimizers.size()));
+  const std::span runs(cell.runs.data(), std::min(most, cell.runs.size()));
+  const std::string records = list(runs, [&](std::size_t run) {
     const std::string name = c.runs[run].record->file_name();
     return json_quoted(name.substr(0, name.find('.')));
   });
-  return fmt::format("[{},{},{},{},{}{}]", s, indices(reached), medians_json(c, cell), cell.failed,
-                     cell.missing(), is_large ? "" : "," + records);
+  return fmt::format("[{},{},{},{},{},{}]", s, indices(reached), medians_json(c, cell), cell.failed,
+                     cell.missing(), records);
 }
 
 std::string cells_json(const Comparison& c, std::size_t p) {
@@ -219,6 +223,11 @@ std::vector<std::size_t> targets_of(const Comparison& c) {
   }
   for (std::size_t j = 0; j < kTargets; ++j) targets.push_back(j);
   return targets;
+}
+
+bool is_large(const Comparison& c) {
+  constexpr std::size_t kMost = 2500;  // cells
+  return c.problems.size() * c.optimizers.size() > kMost;
 }
 
 std::vector<Measure> measures_of(const Comparison& c) {

@@ -273,7 +273,7 @@ std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
     row += time_cell(cell.taken[Measure::time][t], cell.is_timed_alone);
   row += spread_cell(cell.loss) + spread_cell(cell.x_error);
   return row + fmt::format("<td>{}<td>{}\n", status_text(cell.statuses),
-                           command_button(cell_command(c, cell)));
+                           is_large(c) ? "" : command_button(cell_command(c, cell)));
 }
 
 }  // namespace

@@ -332,16 +332,22 @@ std::string drawing_svg(const Drawing& drawing, Real tau) {
 }
 
 std::string names_html(const Drawing& drawing) {
-  std::string html = "<p class=names>";
+  std::string shown, others;
+  std::size_t count = 0;  // of those that open on demand
   for (std::size_t i = 0; i < drawing.plot.series.size(); ++i) {
     const PlotSeries& line = drawing.plot.series[i];
-    html += fmt::format("<button type=button aria-pressed={}{}>{}{}</button>",
-                        !is_hidden(drawing, line), line_attributes(line, i, "name"), swatch(),
-                        html_text(line.name));
+    const bool is_off = is_hidden(drawing, line);
+    count += is_off;
+    (is_off ? others : shown) +=
+        fmt::format("<button type=button aria-pressed={}{}>{}{}</button>", !is_off,
+                    line_attributes(line, i, "name"), swatch(), html_text(line.name));
   }
   if (!drawing.plot.published.empty())
-    html += fmt::format("<span class=goal>{} published, with its error</span>", swatch());
-  return html + "</p>";
+    shown += fmt::format("<span class=goal>{} published, with its error</span>", swatch());
+  if (count > 0)
+    others = fmt::format("<details><summary>{} more</summary><div class=names>{}</div></details>",
+                         count, others);
+  return "<div class=names>" + shown + "</div>" + others;
 }
 
 // Dots and bars, a row each.
