@@ -30,7 +30,7 @@ Record learned(const Learned& given) {
   record.request.problem.options = {{"mode", "learn"}, {"xi", given.xi}, {"phi", 45}};
   record.request.problem.is_learned = true;
   record.curve.x_error.assign(record.curve.iteration.size(), given.x_error);
-  record.summary.x_error = given.x_error;
+  record.summary.start_x_error = record.summary.x_error = given.x_error;
   record.curve.loss.back() = record.summary.loss = given.loss;
   record.summary.best_loss = std::ranges::min(record.curve.loss);
   record.cell = digest(spec + given.optimizer + std::to_string(given.seed));
