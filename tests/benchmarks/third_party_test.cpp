@@ -22,6 +22,7 @@ using problems::Draw;
 using problems::problem_entry;
 using problems::ProblemParts;
 using reports::compare_optimizers;
+using reports::document_of;
 using reports::markdown_report;
 using reports::read_study;
 namespace {
