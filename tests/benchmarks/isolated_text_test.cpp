@@ -43,7 +43,7 @@ TEST(IsolatedText, OfAProcessThatDoesNotEndWellIsNoneButAReason) {
       {[]() -> std::string {
          for (;;) pause();
        },
-       0.2, "took more than 0.2 s"},
+       0.2, "more than 0.2 s"},
       {[]() -> std::string {
          for (volatile bool go_on = true; go_on;) {
          }

@@ -133,7 +133,7 @@ TEST(Network, OfSizesThatCannotBeIsRefusedBeforeThereIsRoomForThem) {
         EXPECT_EQ(refused.exit_code, 1) << file << " " << name << " " << size << refused.err;
         EXPECT_EQ(count_lines(refused.err), 1U) << refused.err;
         EXPECT_TRUE(contains(refused.err, file + " is not a trained network: ")) << refused.err;
-        EXPECT_TRUE(contains(refused.err, name) || contains(refused.err, "cut short"))
+        EXPECT_TRUE(contains(refused.err, name) || contains(refused.err, "truncated"))
             << refused.err;
         for (const char* foreign : {"stoll", "bad_alloc", "max_size", "json.exception"})
           EXPECT_FALSE(contains(refused.err, foreign)) << refused.err;

@@ -59,7 +59,7 @@ TEST_F(Replay, SeesWhatIsNotInTheCurve) {
   write_changed("newton", [](Json& record) { record["counts"]["forward"] = 12345; });
   const Finished counts = replay();
   EXPECT_EQ(counts.exit_code, 2) << counts.out;
-  EXPECT_TRUE(contains(counts.out, "differs: counts.forward: 12345 against ")) << counts.out;
+  EXPECT_TRUE(contains(counts.out, "differs: counts/forward: 12345 against ")) << counts.out;
   write_changed("newton", [](Json& record) { record["verified"]["1e-3"] = false; });
   EXPECT_EQ(replay().exit_code, 2);
 }

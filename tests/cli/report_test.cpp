@@ -33,7 +33,7 @@ TEST_F(Report, ByAnyMeasureAtAnyToleranceTellsWhichInItsJson) {
 
 TEST_F(Report, AToleranceBetweenTwoIsTheNextStricterOneAndSaysSo) {
   const Finished between = shell("./isoline report out --tolerance 5e-5");
-  EXPECT_TRUE(contains(between.err, "taken as 4e-5, the next stricter one")) << between.err;
+  EXPECT_TRUE(contains(between.err, "4e-5, the next stricter one")) << between.err;
   EXPECT_EQ(made()["yardstick"]["tolerances"][2]["name"], "4e-5");
   const Finished exact = shell("./isoline report out --tolerance 1e-5");
   EXPECT_FALSE(contains(exact.err, "stricter")) << exact.err;

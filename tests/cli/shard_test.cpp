@@ -45,7 +45,7 @@ TEST(Plan, TellsTheShardsAsAMatrixForAWorkflow) {
   EXPECT_EQ(shell("./isoline validate out").exit_code, 0);
   const std::string told = shell("./isoline plan " + kMatrix + "--shards 3 --out out").out;
   EXPECT_TRUE(contains(told, "shard       2/3")) << told;
-  EXPECT_TRUE(contains(told, "out/predicted.json, as it was written before")) << told;
+  EXPECT_TRUE(contains(told, "out/predicted.json, written earlier")) << told;
 }
 
 TEST(Plan, PredictsByWhatEarlierRunsTook) {

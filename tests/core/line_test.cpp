@@ -111,7 +111,7 @@ TEST(Line, WhatBreaksTheLawOfFramesIsRefused) {
   expect_said(frame(4, 0, 16, "12345678"), "closed its socket");
   expect_said(frame(4, 0, std::uint64_t{1} << 63, bytes_of(kNumbers)),
               "answered pullback with 9223372036854775808 bytes instead of 16");
-  expect_said(frame(4, 0, 8, "12345678"), "with 8 bytes, where 16 are");
+  expect_said(frame(4, 0, 8, "12345678"), "8 bytes instead of 16");
   expect_said(frame(4, 0, 8, bytes_of(kNumbers)), "sent more than the header of its frame says");
   expect_said(frame(99, 0, 16, bytes_of(kNumbers)), "answered pullback with a frame of verb 99");
 }

@@ -119,7 +119,7 @@ TEST(Amortized, ANetworkNoNearerThanWhereSolversStartIsSaidToBe) {
   const Shown shown({trained(0, 11, 3), single("newton", 0, 2)});
   EXPECT_EQ(shown.number(0, kSolved), 0);
   EXPECT_EQ(shown.text(0, "pays off from"), "never");
-  EXPECT_NE(shown.section.tables[0].reading.find("newton starts as near"), std::string::npos)
+  EXPECT_NE(shown.section.tables[0].reading.find("newton starts with"), std::string::npos)
       << shown.section.tables[0].reading;
 }
 

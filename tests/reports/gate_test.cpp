@@ -47,7 +47,7 @@ TEST(Gate, CatchesFivePercentOfQualityInOneCell) {
   const GateResult work = compared(take_five_percent_more_work);
   EXPECT_EQ(work.exit_code, 2);
   EXPECT_TRUE(has(work.differences.at(0).what, "work to ")) << work.differences.at(0).what;
-  EXPECT_TRUE(has(work.differences.at(0).note, "more of its kind"));
+  EXPECT_TRUE(has(work.differences.at(0).note, "more like it"));
 }
 
 TEST(Gate, AToleranceLetsSmallDifferencesPass) {

@@ -75,7 +75,7 @@ TEST_F(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
   EXPECT_EQ(map.rows[1][1].text, "3");
   EXPECT_EQ(map.rows[1][1].shade, 1) << "within a factor of two";
   EXPECT_EQ(map.reading,
-            "The least median, 1.5, stands at kappa = 0.5 and rate = 1; 6 of 6 settings lie within "
+            "The least median, 1.5, is at kappa = 0.5 and rate = 1; 6 of 6 settings lie within "
             "a factor of two of it.");
   EXPECT_NE(map.caption.find("median over 3 seeds, 100 iterations each"), std::string::npos);
 }

@@ -169,9 +169,9 @@ const std::vector<std::pair<std::string, std::string>> kDoors = {
 
 // Headers of C++ have no dot; these are the operating system's.
 bool is_system(const std::string& header) {
-  static const Set known = {"unistd.h", "poll.h",      "fcntl.h",     "stdlib.h", "strings.h",
-                            "stdint.h", "cpuid.h",     "x86intrin.h", "dlfcn.h",  "malloc.h",
-                            "spawn.h",  "arpa/inet.h", "netinet/in.h"};
+  static const Set known = {"unistd.h",  "poll.h",   "fcntl.h",     "fnmatch.h",   "stdlib.h",
+                            "strings.h", "stdint.h", "cpuid.h",     "x86intrin.h", "dlfcn.h",
+                            "malloc.h",  "spawn.h",  "arpa/inet.h", "netinet/in.h"};
   return header.find('.') == std::string::npos
              ? header.find('/') == std::string::npos
              : header.starts_with("sys/") || known.contains(header);
