@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes what the first screen of README.md shows: six findings and a moving picture.
+"""Writes the findings and the moving picture on the first screen of README.md.
 
     ./isoline run quick && python3 docs/first_screen.py results/quick
 
-The findings come from report.json and replace the text between the two markers in README.md. The
-picture, docs/heat.svg, shows x of `heat` at the snapshots of three records, against forward solves.
+The findings come from report/report.json in the result folder and replace the text between the two
+markers in README.md. The picture, docs/heat.svg, shows x of `heat` at the snapshots of three records,
+against forward solves.
 """
 
 import base64
@@ -66,7 +67,7 @@ def heat_records(results):
 
 
 def panel(column, title, images, visible):
-    """Images of one panel, and for each the frames at which it is seen; all frames where empty."""
+    """Images of one panel. `visible` lists the frames that show each image; an empty entry means all frames."""
     x = 10 + column * (SIDE + 14)
     out = [f'<text x="{x + SIDE / 2}" y="20" text-anchor="middle" font-weight="600">{title}</text>']
     for image, frames in zip(images, visible):
@@ -116,55 +117,83 @@ def picture(results):
         f'<rect width="{width}" height="{height}" fill="#fff"/>\n' + "\n".join(parts) + "\n</svg>\n")
 
 
-def findings(results):
-    """Six sentences with numbers of report.json."""
-    report = json.loads((results / "report.json").read_text())
+def common_settings(report):
+    """The problems that every ranked method was planned for, without learned ones: the basis of the ranking."""
+    planned = {place["optimizer"]: set() for place in report["leader"]["places"]}
+    for cell in report["cells"]:
+        if cell["optimizer"] in planned and cell["planned"] > 0:
+            planned[cell["optimizer"]].add(cell["problem"])
+    learned = {cell["problem"] for cell in report["cells"]
+               if "mode=learn" in cell["problem"] or cell["problem"] == "hig-toy"}
+    settings = set.intersection(*planned.values()) - learned
+    if len(settings) != report["leader"]["settings"]:
+        sys.exit(f"found {len(settings)} common problems, and the report has {report['leader']['settings']}")
+    return settings
+
+
+def sine_at_equal_work(report):
+    """How many times as large adam's error in x is as that of sip, as the first tab says."""
+    for sentence in report["verdict"]:
+        match = re.match(r"sine\[.*\bsip\b.*nearest in x.*; next adam, ([\d.]+)× as far", sentence)
+        if match:
+            return float(match[1])
+    sys.exit("report.json: no sentence on the error in x of sip and adam on the learned sine; "
+             "make it with: ./isoline run quick")
+
+
+def findings(report):
+    """A paragraph and six sentences with numbers of report.json."""
     by_name = {each["optimizer"]: each["standings"]["1e-6"] for each in report["optimizers"]}
     leader = report["leader"]
     first, second = leader["places"][:2]
-    settings = leader["settings"]
     by_time = next(c["first"] for c in leader["choices"] if c["choice"] == "by wall time")
+    inapplicable = report["statuses"].get("inapplicable", 0)
 
-    def solves(name):
-        return f"{name} solves {by_name[name]['solved']}"
-
-    exact = [c for c in report["cells"]
-             if c["optimizer"] == "sip, given P⁻¹" and "exact inverse of the physics" in c["privileges"]
-             and "mode=learn" not in c["problem"]]
-    least = [c for c in exact if float(c["costs"]["1e-6"]["median"]) <= 3]
-    error = {c["optimizer"]: c["figures"]["x_error"] for c in report["cells"]
-             if c["problem"].startswith("sine[") and "mode=learn" in c["problem"]}
-    sip = next(value for name, value in error.items() if name.startswith("sip"))
+    common = common_settings(report)
+    inverse = [cell["figures"]["work"]["1e-6"]["median"] for cell in report["cells"]
+               if cell["optimizer"] == "sip, given P⁻¹" and cell["problem"] in common]
+    solved = [work for work in inverse if math.isfinite(float(work))]
+    works = " to ".join(f"{work:.0f}" for work in sorted({min(solved), max(solved)}))
+    seeds = next(cell["runs"] for cell in report["cells"]
+                 if cell["problem"].startswith("sine[") and cell["optimizer"].startswith("sip"))
     best = "One method is" if leader["significant"] else "No method is"
     band = sum(place["in_group"] for place in leader["places"])
-    return [
-        f"{best} significantly best by evaluation work. {first['optimizer']} ranks first (solves "
-        f"{first['solved']} of {settings} problems), {second['optimizer']} second (solves "
-        f"{second['solved']}; paired permutation test, p = {second['p']:.2f}); {band} of "
-        f"{len(leader['places'])} are not significantly worse than the best.",
-        f"By wall time {' and '.join(by_time)} ranks first.",
-        f"{solves('adam')} with a tuned rate; its median work is {by_name['adam']['typical']:.0f} "
-        f"times the least. {solves('gd')}.",
-        f"{solves('hig')}, with a median of {by_name['hig']['typical']:.0f} times the least work.",
-        f"sip † with an exact inverse of the simulation solves {len(least)} of {len(exact)} problems "
-        "with three forward solves each.",
-        f"A network trained by sip † to invert a sine map ends with {error['adam']['median'] / sip['median']:.0f} "
-        f"times smaller error in x than one trained by adam in as many steps ({sip['n']} seeds).",
+    lead = (f"**Findings** of the default suite: {report['answered'] - inapplicable:,} runs; {inapplicable} more "
+            f"cells are inapplicable. A score that rewards little work and many solved problems ranks "
+            f"{len(leader['places'])} methods on {leader['settings']} problems with {len(report['seeds'])} starting "
+            "points each.")
+    return lead, [
+        f"{best} significantly best in work. {first['optimizer']} ranks first (solves {first['solved']} of "
+        f"{leader['settings']} problems), {second['optimizer']} second (solves {second['solved']}; paired sign-flip "
+        f"test, p = {second['p']:.2f}). {band} of {len(leader['places'])} methods, including the first, are not "
+        "significantly worse than the first.",
+        f"In wall time, {' and '.join(by_time)} ranks first.",
+        f"adam with a tuned rate solves {by_name['adam']['solved']} problems; its median slowdown, the median over "
+        f"problems of its work divided by the least work, is {by_name['adam']['typical']:.0f}. gd solves "
+        f"{by_name['gd']['solved']}.",
+        f"hig solves {by_name['hig']['solved']} problems; its median slowdown is {by_name['hig']['typical']:.0f}.",
+        f"sip † solves {len(solved)} of the {len(inverse)} ranked problems that have an inverse P⁻¹, each with {works} "
+        "forward solves. P⁻¹ is charged at its declared cost.",
+        "At equal work, the median error in x of a network trained by sip † to invert a sine map is "
+        f"1/{sine_at_equal_work(report):.0f} of adam's ({seeds} seeds).",
     ]
 
 
-def write_findings(results):
+def write_findings(folder):
+    """Replaces the findings in README.md by those of the report.json in this folder."""
     readme = ROOT / "README.md"
     before, rest = readme.read_text().split("<!-- findings -->\n")
     after = rest[rest.index("<!-- end of findings -->"):]
-    items = "".join(textwrap.fill(each, 118, initial_indent="- ", subsequent_indent="  ",
-                                  break_on_hyphens=False) + "\n"
-                    for each in findings(results))
-    readme.write_text(before + "<!-- findings -->\n" + items + after)
+    lead, items = findings(json.loads((folder / "report.json").read_text()))
+    text = textwrap.fill(lead, 118, break_on_hyphens=False) + "\n\n"
+    text += "".join(textwrap.fill(each, 118, initial_indent="- ", subsequent_indent="  ",
+                                  break_on_hyphens=False) + "\n" for each in items)
+    readme.write_text(before + "<!-- findings -->\n" + text + after)
 
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit(__doc__)
-    picture(pathlib.Path(sys.argv[1]))
-    write_findings(pathlib.Path(sys.argv[1]))
+    results = pathlib.Path(sys.argv[1])
+    picture(results)
+    write_findings(results / "report")
