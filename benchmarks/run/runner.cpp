@@ -10,7 +10,7 @@
 #include <memory>
 #include <thread>
 
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/judge.h"

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/isolate.h"
 #include "core/clock.h"

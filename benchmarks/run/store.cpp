@@ -11,7 +11,7 @@
 #include <cstring>
 #include <utility>
 
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/plan.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/run/execute.h"
 #include "core/digest.h"

@@ -8,6 +8,7 @@
 
 #include "benchmarks/cli/terminal.h"
 #include "benchmarks/cli/verb.h"
+#include "benchmarks/plan/claim_cells.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"
 #include "core/text.h"
@@ -120,7 +121,8 @@ int run(const ClaimArguments& given, Session& session) {
   if (given.is_list) return list_claims(claims, given);
   Outcome outcome;
   if (!given.no_run) outcome = run_missing(given, claims, session);
-  const std::vector<Judgement> judgements = judged(claims, read_study({given.out}).runs);
+  const std::vector<Judgement> judgements =
+      reports::judge(json_of(claims), read_study({given.out}).runs);
   say(stdout, given.as_json     ? json_text(claims_json(judgements), 2) + "\n"
               : given.as_papers ? papers_page(judgements)
                                 : terminal_text_of(judgements, given.lists_all));
@@ -135,12 +137,10 @@ void register_claims(VerbRegistry& registry) {
       {.name = "claims",
        .help_position = 110,
        .summary = "Check the claims of papers; runs missing cells first",
-       .examples =
-           "  isoline claims --list                        the claims and their sources\n"
-           "  isoline claims exponential                   one group of claims\n"
-           "  isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence\n"
-           "  isoline claims --no-run --out results/quick      the claims that the runs of a "
-           "suite decide",
+       .examples = R"(  isoline claims --list                        the claims and their sources
+  isoline claims exponential                   one group of claims
+  isoline claims sip-better-in-x-worse-in-loss     one claim, with its evidence
+  isoline claims --no-run --out results/quick      the claims that the runs of a suite decide)",
        .notes =
            "A claim is reproduced where what is measured lies within the source's own error of reading,\n"
            "partly where only the direction holds; of fewer than six seeds it is consistent or at odds.\n"

@@ -65,10 +65,9 @@ void register_compare(VerbRegistry& registry) {
       {.name = "compare",
        .help_position = 40,
        .summary = "Compare two results and list regressions",
-       .examples =
-           "  isoline compare results/old results/new\n"
-           "  isoline compare baseline.json results/quick --tolerance 1e-6 --all\n"
-           "  isoline compare results/old results/new --markdown     for the summary of a job",
+       .examples = R"(  isoline compare results/old results/new
+  isoline compare baseline.json results/quick --tolerance 1e-6 --all
+  isoline compare results/old results/new --markdown     for the summary of a job)",
        .notes =
            "Exit codes: 0 no worse and no better; 2 worse, or NEW lacks a cell of BASE; 3 better only;\n"
            "4 not comparable: a clock ended a cell, its record contradicts itself, success is judged by\n"

@@ -72,10 +72,9 @@ void register_export(VerbRegistry& registry) {
        .help_position = 120,
        .summary = "Write curves as CSV, as COCO data, or as Bencher metrics",
        .examples =
-           "  isoline export results/quick --out curves.csv             one row per stored point\n"
-           "  isoline export results/quick --format coco --out exdata   for COCO's "
-           "post-processing\n"
-           "  isoline export results.tar.gz --format bencher --out metrics.json",
+           R"(  isoline export results/quick --out curves.csv             one row per stored point
+  isoline export results/quick --format coco --out exdata   for COCO's post-processing
+  isoline export results.tar.gz --format bencher --out metrics.json)",
        .notes =
            "Numbers survive the round trip exactly, including inf, -inf and nan. Bencher's format "
            "has no\n"

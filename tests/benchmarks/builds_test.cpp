@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/plan/build_parts.h"
+#include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/runner.h"
 #include "core/files.h"

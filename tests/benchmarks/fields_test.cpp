@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/merge/merge.h"
-#include "benchmarks/merge/record_union.h"
 #include "benchmarks/run/same_result.h"
 #include "core/decompose.h"
 #include "core/errors.h"

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/process_group.h"
 #include "benchmarks/run/run_plan.h"

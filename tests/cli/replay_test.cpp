@@ -102,25 +102,12 @@ TEST_F(Replay, OfARunThatAClockEndedGoesAsFarAsBothWent) {
   EXPECT_TRUE(contains(part.out, "equal up to iteration 11")) << part.out;
 }
 
-TEST_F(Replay, ASampleOfAFolderIsRunAgain) {
-  const Finished half = shell("./isoline replay out --sample 50% --seed 3");
-  EXPECT_EQ(half.exit_code, 0) << half.out << half.err;
-  EXPECT_TRUE(contains(half.out, "6 of 12 records, drawn with --seed 3")) << half.out;
-  EXPECT_EQ(count_lines(half.out), 7U) << half.out;
-  EXPECT_EQ(shell("./isoline replay out --sample 50% --seed 3").out, half.out);
-  write_changed("gd", [](Json& record) { record["curve"]["loss"][17] = 0.25; });
-  fs::create_directories(shell.folder() / "forged" / "runs");
-  fs::rename(shell.folder() / "changed.json", shell.folder() / "forged" / "runs" / "one.json");
-  EXPECT_EQ(shell("./isoline replay forged --sample 1%").exit_code, 2);
-  EXPECT_EQ(shell("./isoline replay forged").exit_code, 1) << "a folder without --sample";
-  EXPECT_EQ(shell("./isoline replay out --sample nothing").exit_code, 1);
-}
-
 TEST_F(Replay, TheWorstOfSeveralIsTheExitCode) {
   write_changed("gd", [](Json& record) { record["curve"]["loss"][3] = 1; });
   const Finished several = replay("changed.json out/runs/*.json");
   EXPECT_EQ(several.exit_code, 2) << several.out;
   EXPECT_EQ(count_lines(several.out), 13U);
+  EXPECT_EQ(replay("out").exit_code, 1) << "a folder";
 }
 
 }  // namespace

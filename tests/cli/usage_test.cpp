@@ -14,9 +14,9 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
   EXPECT_EQ(program.exit_code, 0);
   EXPECT_EQ(program.err, "");
   for (const std::string verb :
-       {"run",  "plan",   "report", "compare",    "baseline", "merge",   "submit", "status",
-        "best", "claims", "list",   "describe",   "check",    "audit",   "new",    "replay",
-        "tune", "train",  "infer",  "completion", "help",     "version", "export", "validate"}) {
+       {"run",    "plan",  "report",     "compare", "baseline", "merge",  "status",  "best",
+        "claims", "list",  "describe",   "check",   "audit",    "new",    "replay",  "tune",
+        "train",  "infer", "completion", "help",    "version",  "export", "validate"}) {
     EXPECT_TRUE(contains(program.out, verb)) << verb;
     const Finished help = shell("./isoline " + verb + " --help");
     EXPECT_TRUE(contains(help.out, "Examples:\n  isoline " + verb)) << verb;
@@ -29,11 +29,11 @@ TEST(Help, OfTheProgramAndOfEveryVerbIsWrittenOutAndGood) {
 
 TEST(Help, OfTheProgramNamesNoVerbThatTheTestsForget) {
   const std::string completion = Shell()("./isoline completion bash").out;
-  EXPECT_TRUE(contains(
-      completion,
-      "\"run plan report compare baseline replay merge submit status best claims export list "
-      "describe check audit new "
-      "validate tune train infer completion help version  --help --version\""))
+  EXPECT_TRUE(
+      contains(completion,
+               "\"run plan report compare baseline replay merge status best claims export list "
+               "describe check audit new "
+               "validate tune train infer completion help version  --help --version\""))
       << completion;
 }
 
@@ -90,10 +90,6 @@ const std::vector<Mistake> kMistakes = {
     {"run quick --shard auto", "needs ISOLINE_SHARD or SLURM_ARRAY_TASK_ID"},
     {"plan quick --shards 0", "--shards"},
     {"status absent", "absent is not a result folder"},
-    {"submit -- quick", "--slurm is the only one"},
-    {"submit --slurm -- quick --shard 1/2", "leave it out after --"},
-    {"submit --slurm -- quick --dry-run", "no --dry-run"},
-    {"submit --slurm -- --problm sine", "unknown option --problm; did you mean --problem?"},
     {"run quik", "did you mean 'quick'"},
     {"run --problem rosenbrok", "did you mean 'rosenbrock'"},
     {"run --optimizer ceres-ml", "did you mean 'ceres-lm'"},

@@ -1,8 +1,7 @@
 // The command line: an argument a line. No verb is run.
-#include "benchmarks/cli/command_line.h"
-
 #include <vector>
 
+#include "benchmarks/cli/verb.h"
 #include "tests/fuzz/targets.h"
 
 namespace isoline::fuzz {

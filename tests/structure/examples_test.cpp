@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "benchmarks/cli/command_line.h"
+#include "benchmarks/cli/verb.h"
 #include "core/errors.h"
 
 namespace isoline::benchmarks {

@@ -30,7 +30,7 @@ const std::map<std::string, Set> kAllowed = {
      {"core", "core/foreign", "core/records", "problems", "optimizers", "benchmarks/plan"}},
     {"benchmarks/audit",
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
-    {"benchmarks/merge", {"core", "core/records"}},
+    {"benchmarks/merge", {"core", "core/records", "benchmarks/run/interrupts.h"}},
     {"benchmarks/shard",
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
     {"reports/read", {"core", "core/records", "core/results"}},
