@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -44,15 +43,8 @@ std::optional<Number> number_in(std::string_view text) {
   return value;
 }
 
-struct Unit {
-  std::string_view name;
-  double bytes;
-};
 constexpr double kKilo = 1024;
-constexpr std::array<Unit, 4> kUnits = {{{"k", kKilo},
-                                         {"m", kKilo* kKilo},
-                                         {"g", kKilo* kKilo* kKilo},
-                                         {"t", kKilo* kKilo* kKilo* kKilo}}};
+constexpr std::string_view kUnits = "kmgt";
 
 // The unit that the text ends with, which is taken off: "", "b", "g", "gb" or "gib".
 double unit_of(std::string& text) {
@@ -61,12 +53,10 @@ double unit_of(std::string& text) {
       text.resize(text.size() - end.size());
       break;
     }
-  for (const auto& [name, bytes] : kUnits)
-    if (text.ends_with(name)) {
-      text.resize(text.size() - name.size());
-      return bytes;
-    }
-  return 1;
+  const std::size_t unit = text.empty() ? kUnits.npos : kUnits.find(text.back());
+  if (unit == kUnits.npos) return 1;
+  text.pop_back();
+  return std::pow(kKilo, unit + 1);
 }
 
 // Complete numbers: no sign is dropped and nothing clamped. UsageError, which begins with `option`,
@@ -108,14 +98,14 @@ double read_time(const std::string& option, const std::string& text) {
 
 // "2GB", "1.5GiB" or bytes; a unit is 1024 of the one before. Less than 16MB starts no cell.
 std::int64_t read_bytes(const std::string& option, const std::string& text) {
-  constexpr double kLeast = 16 * kKilo * kKilo, kMost = kKilo * kUnits.back().bytes;
+  const double least = 16 * kKilo * kKilo, most = std::pow(kKilo, 5);
   std::string amount = text;
   for (char& letter : amount)
     letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   const double unit = unit_of(amount);
   const auto value = number_in<double>(amount);
   const double bytes = value ? *value * unit : -1;
-  require(bytes >= kLeast && bytes <= kMost, [&] {
+  require(bytes >= least && bytes <= most, [&] {
     return fmt::format("{} must be from 16MB to 1024TB, such as 2GB, got '{}'", option, text);
   });
   return static_cast<std::int64_t>(bytes);
@@ -227,8 +217,9 @@ void CommandLine::declare(const Verb& verb) {
   CLI::App& declared = *app_.add_subcommand(verb.name, verb.summary);
   VerbArguments arguments(declared, session_);
   if (verb.declare) verb.declare(arguments);
-  const std::string notes = verb.notes.empty() ? "" : "\n\n" + verb.notes;
-  declared.footer("Examples:\n" + verb.examples + notes)->group("Verbs");
+  const char* between = verb.notes.empty() ? "" : "\n\n";
+  declared.footer(fmt::format("Examples:\n{}{}{}", verb.examples, between, verb.notes))
+      ->group("Verbs");
   declared.callback([this, &verb] {
     if (!helped_.empty()) require_verb(helped_);
     if (runs_) exit_code_ = verb.run(session_);

@@ -94,12 +94,6 @@ void Rates::add(const Rates& other) {
 
 // Best losses: read, looked up, renewed.
 
-namespace {
-
-constexpr const char* kSchema = "isoline.best/1";
-
-}  // namespace
-
 const BestLosses& BestLosses::builtin() {
   static const BestLosses all =
       from_json(parse_json(std::string(embedded_best()), "best.json"), "best.json");
@@ -131,7 +125,7 @@ Json BestLosses::to_json() const {
     rows.push_back(
         {{"problem", row.problem}, {"options", isoline::to_json(row.options)}, {"losses", losses}});
   }
-  return {{"schema", kSchema}, {"rows", rows}};
+  return {{"schema", "isoline.best/1"}, {"rows", rows}};
 }
 
 std::size_t BestLosses::place_of(const Component& problem) const {

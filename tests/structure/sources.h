@@ -32,6 +32,10 @@ inline std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+inline std::string without_comment(const std::string& line) {
+  return line.substr(0, line.find("//"));
+}
+
 inline const std::filesystem::path& root() {
   static const std::filesystem::path path = ISOLINE_SOURCE_DIR;
   return path;

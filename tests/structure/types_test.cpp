@@ -2,6 +2,7 @@
 // and over the symbols of the compiled objects.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <map>
@@ -9,12 +10,48 @@
 #include <set>
 #include <sstream>
 
-#include "tests/structure/code.h"
+#include "tests/structure/sources.h"
 
 namespace isoline {
 namespace {
 
 using Set = std::set<std::string>;
+
+struct Type {
+  std::string name;  // isoline::reports::Point; of a nested one the outer alone is listed
+  std::size_t line;
+  bool is_anonymous;
+  bool is_defined;  // or only declared
+};
+
+// Types at namespace scope, which clang-format puts at the beginning of a line.
+std::vector<Type> types_of(const Source& source) {
+  static const std::regex space(R"re(^(inline )?namespace ?([\w:]*) ?\{)re");
+  static const std::string kind = "(?:struct|class|enum class|enum|union) (?:alignas\\([^)]*\\) )?";
+  static const std::regex type("^(?:template <.*> )?" + kind +
+                               R"re((\w+)( final)?( :.*| \{.*|;.*)?$)re");
+  std::vector<std::string> spaces;
+  std::vector<Type> types;
+  for (std::size_t i = 0; i < source.lines.size(); ++i) {
+    std::smatch match;
+    const std::string& line = source.lines[i];
+    if (std::regex_search(line, match, space)) {
+      spaces.push_back(match[2]);
+    } else if (line.starts_with("}  // namespace") && !spaces.empty()) {
+      spaces.pop_back();
+    } else if (std::regex_match(line, match, type)) {
+      const std::string rest = without_comment(match[3].str());
+      const bool is_declaration =
+          rest.find(';') != std::string::npos && rest.find('{') == std::string::npos;
+      std::string name;
+      for (const std::string& each : spaces)
+        if (!each.empty()) name += each + "::";
+      const bool is_anonymous = std::ranges::find(spaces, "") != spaces.end();
+      types.push_back({name + match[1].str(), i + 1, is_anonymous, !is_declaration});
+    }
+  }
+  return types;
+}
 
 std::string list_of(const Set& names) {
   std::string text;

@@ -71,27 +71,10 @@ std::vector<std::filesystem::path> pages() {
 }
 
 // Folders whose sources are held to kArchaic.
-constexpr const char* kFolders[] = {"cmake",
-                                    "clients",
-                                    "networks",
-                                    "problems",
-                                    "optimizers",
-                                    "core",
-                                    "benchmarks/plan",
-                                    "benchmarks/run",
-                                    "reports/compare",
-                                    "reports/exports",
-                                    "reports/formats",
-                                    "reports/read",
-                                    "reports/sections",
-                                    "benchmarks/shard",
-                                    "benchmarks/merge",
-                                    "benchmarks/audit",
-                                    "benchmarks/cli",
-                                    "benchmarks/verbs",
-                                    "benchmarks/schemas",
-                                    "benchmarks/suites",
-                                    "benchmarks/micro"};
+constexpr const char* kFolders[] = {"cmake",           "clients",         "core",
+                                    "networks",        "problems",        "optimizers",
+                                    "benchmarks",      "reports/compare", "reports/exports",
+                                    "reports/formats", "reports/read",    "reports/sections"};
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(),
