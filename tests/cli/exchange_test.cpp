@@ -100,11 +100,6 @@ TEST_F(Report, AToleranceBetweenTwoIsTheNextStricterOneAndSaysSo) {
   EXPECT_FALSE(contains(exact.err, "stricter")) << exact.err;
 }
 
-TEST_F(Report, OfAnUnknownMeasureIsWrongUsage) {
-  shell.expect("./isoline report results --by energy", {.exit_code = 1});
-  shell.expect("./isoline report results --tolerance 1e-12", {.exit_code = 1});
-}
-
 // --- the table of best losses, renewed from runs
 
 TEST(BestVerb, KeepsTheLeastLossOfRunsThatDeclareNoneAndNoOther) {

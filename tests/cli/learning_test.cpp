@@ -51,16 +51,11 @@ TEST(Train, KeepsTheRunningStatisticsOfBatchNormForPictures) {
   for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(alone.values[i], all.values[256 + i]) << i;
 }
 
-// A command that is wrong, and what the one sentence about it must contain.
-struct Mistake {
-  std::string command, sentence;
-};
-
 TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
   const Shell shell;
   shell.expect("./isoline train sine --iterations 5 --out net.json");
   shell("printf '1,2,3\\n' > wide.csv; printf '1,nan\\n' > holes.csv; printf '1,2\\n' > good.csv");
-  for (const auto& [command, sentence] : std::vector<Mistake>{
+  for (const auto& [command, sentence] : std::vector<std::pair<std::string, std::string>>{
            {"train 'sine[network=unet]' --out x", "unet"},
            {"train 'poisson[N=20,network=unet]' --out x", "20"},
            {"train 'sine[network=mlp[layers=a-b]]' --out x", "layers"},
@@ -76,10 +71,9 @@ TEST(Train, MistakesAreOneSentenceAndLeaveNothing) {
            {"infer net.json --input good.csv --output x.txt", ".npy or .csv"},
            {"infer good.csv --input good.csv --output x.npy", "not a trained network"},
            {"infer net.json --input missing.npy --output x.npy", "missing.npy"}}) {
-    const Finished result = shell("./isoline " + command);
-    EXPECT_EQ(result.exit_code, 1) << command << "\n" << result.err;
+    const Finished result =
+        shell.expect("./isoline " + command, {.exit_code = 1, .err = {sentence}});
     EXPECT_EQ(count_lines(result.err), 1U) << command << "\n" << result.err;
-    EXPECT_TRUE(contains(result.err, sentence)) << command << "\n" << result.err;
     for (const char* file : {"x", "x.npy", "x.txt"})
       EXPECT_FALSE(fs::exists(shell.folder() / file)) << command;
   }
@@ -103,8 +97,7 @@ TEST(Network, IsReadHoweverItsJsonIsLaidOut) {
   write_text(shell.folder() / "blank-lines.json", read_text(shell.folder() / "net.json") + "\n\n");
   shell.expect("./isoline infer net.json --input y.csv --output x.csv");
   for (const std::string name : {"one-line.json", "pretty.json", "blank-lines.json"}) {
-    const Finished inferred = shell("./isoline infer " + name + " --input y.csv --output z.csv");
-    EXPECT_EQ(inferred.exit_code, 0) << name << ": " << inferred.err;
+    shell.expect("./isoline infer " + name + " --input y.csv --output z.csv");
     EXPECT_EQ(read_text(shell.folder() / "x.csv"), read_text(shell.folder() / "z.csv")) << name;
   }
   shell.expect("./isoline validate net.json pretty.json");
@@ -125,10 +118,10 @@ TEST(Network, OfSizesThatCannotBeIsRefusedBeforeThereIsRoomForThem) {
       header[name] = parse_json(size, "size");
       write_text(shell.folder() / "x.bin", header.dump() + binary.substr(end));
       for (const std::string file : {"x.json", "x.bin"}) {
-        const Finished refused = shell("./isoline infer " + file + " --input y.csv --output x.npy");
-        EXPECT_EQ(refused.exit_code, 1) << file << " " << name << " " << size << refused.err;
+        const Finished refused =
+            shell.expect("./isoline infer " + file + " --input y.csv --output x.npy",
+                         {.exit_code = 1, .err = {file + " is not a trained network: "}});
         EXPECT_EQ(count_lines(refused.err), 1U) << refused.err;
-        EXPECT_TRUE(contains(refused.err, file + " is not a trained network: ")) << refused.err;
         EXPECT_TRUE(contains(refused.err, name) || contains(refused.err, "truncated"))
             << refused.err;
         for (const char* foreign : {"stoll", "bad_alloc", "max_size", "json.exception"})
@@ -168,9 +161,7 @@ TEST(Infer, IsEndedAtItsLimitsAndSaysSo) {
 
 TEST(Train, IsEndedAtItsLimitsLikeACell) {
   const Shell shell;
-  const Finished timed =
-      shell("./isoline train sine --iterations 1000000000 --time 500ms --out n.json");
-  EXPECT_EQ(timed.exit_code, 0) << timed.err;
+  shell.expect("./isoline train sine --iterations 1000000000 --time 500ms --out n.json");
   EXPECT_TRUE(fs::exists(shell.folder() / "n.json")) << "what was learned by then is kept";
 #ifndef ISOLINE_SANITIZE
   shell.expect(
@@ -191,9 +182,9 @@ TEST(Train, DoesNotBeginWhatCannotBeWritten) {
 
 TEST(Network, ThatDoesNotFitLeavesNoFolder) {
   const Shell shell;
-  const Finished result = shell(
-      "./isoline run --problem 'sine[mode=learn,network=unet]' --optimizer adam --out results/r");
-  EXPECT_EQ(result.exit_code, 1);
+  const Finished result = shell.expect(
+      "./isoline run --problem 'sine[mode=learn,network=unet]' --optimizer adam --out results/r",
+      {.exit_code = 1});
   EXPECT_EQ(count_lines(result.err), 1U) << result.err;
   EXPECT_FALSE(fs::exists(shell.folder() / "results"));
 }

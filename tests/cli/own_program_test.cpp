@@ -13,8 +13,8 @@ const std::string kOwn = OWN_BINARY;
 
 class OwnProgram : public testing::Test {
  protected:
-  Json only_record() const {
-    for (const auto& entry : std::filesystem::directory_iterator(shell.folder() / "out" / "runs"))
+  Json only_record(const char* out) const {
+    for (const auto& entry : std::filesystem::directory_iterator(shell.folder() / out / "runs"))
       return read_json(entry.path());
     return nullptr;
   }
@@ -30,14 +30,13 @@ TEST_F(OwnProgram, ListsDescribesAndChecksWhatOnlyItHas) {
 
 TEST_F(OwnProgram, ItsRecordsNameItsCommandAndItsCommit) {
   shell.expect(kOwn + " run --problem twist --optimizer newton --out out --quiet");
-  const Json provenance = only_record().at("provenance");
+  const Json provenance = only_record("out").at("provenance");
   EXPECT_EQ(provenance.at("commit"), "0f1e2d3c4b5a");
   EXPECT_EQ(provenance.at("dirty"), true);
   EXPECT_EQ(provenance.at("run").at("command"),
             "isoline_own run --problem twist --optimizer newton --out out --quiet");
   shell("./isoline run --problem square --optimizer newton --out plain --quiet --no-report");
-  for (const auto& entry : std::filesystem::directory_iterator(shell.folder() / "plain" / "runs"))
-    EXPECT_EQ(provenance.at("isoline_commit"), read_json(entry.path())["provenance"]["commit"]);
+  EXPECT_EQ(provenance.at("isoline_commit"), only_record("plain")["provenance"]["commit"]);
   shell.expect("./isoline validate out");
 }
 

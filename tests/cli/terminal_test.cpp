@@ -20,11 +20,11 @@ TEST(Terminal, ARunSaysHowLongItTook) {
 
 TEST(Terminal, AnOptionOfSpecificationsMayBeRepeated) {
   const std::string once = "./isoline run --problem square,scaling --optimizer gd,adam --dry-run";
-  const std::string twice =
-      "./isoline run --problem square --problem scaling --optimizer gd --optimizer adam --dry-run";
   const Shell shell;
-  EXPECT_TRUE(shell(once).out.starts_with("4 cells")) << shell(once).out;
-  EXPECT_EQ(shell(twice).out, shell(once).out);
+  const Finished twice = shell(
+      "./isoline run --problem square --problem scaling --optimizer gd --optimizer adam --dry-run");
+  EXPECT_TRUE(twice.out.starts_with("4 cells")) << twice.out;
+  EXPECT_EQ(twice.out, shell(once).out);
 }
 
 TEST(Terminal, ClaimsAreCountedThenListedTwentyAtMost) {
@@ -85,9 +85,8 @@ TEST(Terminal, CellsRunInOneProcessForADebuggerAndLeaveNoRecord) {
 
 TEST(Terminal, ACrashSaysHowToDebugItAndTheCommandCrashesAgain) {
   const Shell shell;
-  const std::string own = OWN_BINARY;
   const Finished result =
-      shell.expect(own + " run --problem aborter --optimizer gd --out out --no-report",
+      shell.expect(OWN_BINARY " run --problem aborter --optimizer gd --out out --no-report",
                    {.exit_code = 2,
                     .err = {"crashed: signal 6", "\"message\" is the cause", "gdb --args ",
                             "ulimit -c unlimited"}});

@@ -46,11 +46,7 @@ TEST(Help, VersionIsOneLine) {
 }
 
 // A command that is wrong, and what the one sentence about it must contain.
-struct Mistake {
-  std::string command, sentence;
-};
-
-const std::vector<Mistake> kMistakes = {
+const std::vector<std::pair<std::string, std::string>> kMistakes = {
     {"rnu", "did you mean 'run'"},
     {"", "name a verb, such as run; `isoline help` lists them"},
     {"help rnu", "did you mean 'run'"},
@@ -119,6 +115,7 @@ const std::vector<Mistake> kMistakes = {
     {"run --problem square --optimizer gd --retry failed,crashd", "did you mean 'crashed'"},
     {"check square --seed -1", "--seed must be a whole number from 0"},
     {"check square --seed 18446744073709551616", "--seed must be a whole number from 0"},
+    {"report . --tolerance 1e-12", "--tolerance must be a number in [1e-10, 1]"},
     {"report . --tolerance nan", "--tolerance must be a number in [1e-10, 1]"},
     {"compare . . --noise inf", "--noise must be a number in [0, 10]"},
     {"tune square --tuning-seeds 0..9999999", "at most 1,000,000"},

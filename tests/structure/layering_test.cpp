@@ -165,12 +165,10 @@ bool declares_main(const Source& source) {
 // The types of CLI11 that the verbs' interface names, without its headers.
 bool declares_parser(const Source& source) { return source.path == "benchmarks/cli/verb.h"; }
 
-bool is_in_c(const Source& source) { return source.path == "core/foreign/isoline.h"; }
-
 TEST(Layering, EveryFileStandsInTheNamespaceOfItsRoom) {
   static const std::regex opening(R"re(^(?:inline )?namespace ([\w:]+) \{)re");
   for (const Source& source : sources()) {
-    if (source.is_test() || is_in_c(source)) continue;
+    if (source.is_test() || source.path == "core/foreign/isoline.h") continue;  // in C
     const std::string own = source.folder() == "core/results" ? "isoline::results"
                             : source.room() == "core"         ? "isoline"
                                                               : "isoline::" + source.room();
@@ -297,12 +295,6 @@ const std::vector<HeavyHeader> kHeavyHeaders = {
     {"oneapi/dnnl/", kProduct, 1, "one adapter"},
     {"regex", kProduct, 0, "its matches recurse, a level a character: texts are read by hand"}};
 
-std::string chain(const std::vector<std::string>& way) {
-  std::string text;
-  for (const std::string& file : way) text += (text.empty() ? "" : " -> ") + file;
-  return text;
-}
-
 TEST(HeavyHeaders, AreParsedByNoMoreFilesThanNeedThem) {
   for (const HeavyHeader& header : kHeavyHeaders) {
     const std::regex counted(header.files);
@@ -313,7 +305,8 @@ TEST(HeavyHeaders, AreParsedByNoMoreFilesThanNeedThem) {
       const auto way = way_to(source, header.name);
       if (!way) continue;
       ++count;
-      ways << "\n  " << chain(*way);
+      ways << "\n ";
+      for (const std::string& file : *way) ways << " -> " << file;
     }
     EXPECT_LE(count, header.most) << header.name << " in " << header.files << " (" << header.reason
                                   << "): include a lighter header, or raise the number"

@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
 
 #include "tests/structure/sources.h"
+#include "tests/temporary_folder.h"
 
 namespace isoline {
 namespace {
@@ -102,21 +103,15 @@ struct Symbol {
 // What the objects of our libraries define for one another: the upper-case symbols of nm.
 std::vector<Symbol> symbols() {
   static const std::regex pattern(R"re(^(\S.*\.o): ?[0-9a-f]* +([A-Z]) (.*)$)re");
-  const std::string command = "nm -AC --defined-only " ISOLINE_ARCHIVES;
-  FILE* lines = popen(command.c_str(), "r");
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "symbols").string();
+  EXPECT_EQ(std::system(("nm -AC --defined-only " ISOLINE_ARCHIVES " > " + file).c_str()), 0);
   std::vector<Symbol> found;
-  std::string line;
-  std::array<char, 4096> part{};
-  while (std::fgets(part.data(), part.size(), lines) != nullptr) {
-    line += part.data();
-    if (!line.ends_with('\n')) continue;
-    line.pop_back();
-    std::smatch match;
+  std::ifstream lines(file);
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);)
     if (line.find("isoline::") != std::string::npos && std::regex_match(line, match, pattern))
       found.push_back({match[1], match[3], match[2] == "W" || match[2] == "V"});
-    line.clear();
-  }
-  pclose(lines);
   return found;
 }
 
