@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "benchmarks/plan/suite.h"
-#include "benchmarks/run/certificate.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/run_plan.h"
 #include "benchmarks/shard/split.h"

@@ -1,4 +1,4 @@
-// The pace of what has ended, over what is to come.
+// The pace of what has ended, over what is to come, and the line that shows it.
 #include "benchmarks/run/progress.h"
 
 #include <fmt/format.h>
@@ -35,8 +35,6 @@ std::optional<double> TimeLeft::at(double now) const {
   const double left = std::max(0.0, expected - done) * last_ / done;
   return std::max(0.0, left - (now - last_));
 }
-
-// The progress line, its rate and its time left.
 
 namespace {
 
@@ -89,13 +87,6 @@ void Progress::finished(std::optional<double> predicted_seconds) {
   time_left_.finish(predicted_seconds, seconds_since(begun_));
 }
 
-std::string Progress::left_text(double elapsed, double rate) const {
-  const std::optional<double> predicted = time_left_.at(elapsed);
-  if (predicted && *predicted <= 0) return "longer than predicted";
-  const double seconds = predicted.value_or(static_cast<double>(total_ - already_ - done_) / rate);
-  return duration_text(seconds) + " left";
-}
-
 std::string Progress::line() const {
   const std::int64_t done = already_ + done_;
   std::string text = fmt::format("{} {}/{}", what_, done, total_);
@@ -103,7 +94,11 @@ std::string Progress::line() const {
   if (done_ > 0 && elapsed > 0) {
     const double rate = static_cast<double>(done_) / elapsed;
     text += fmt::format("  {:.3g}/s", rate);
-    if (done < total_) text += "  " + left_text(elapsed, rate);
+    const std::optional<double> predicted = time_left_.at(elapsed);
+    const double left = predicted.value_or(static_cast<double>(total_ - done) / rate);
+    if (done < total_)
+      text +=
+          left > 0 || !predicted ? "  " + duration_text(left) + " left" : "  longer than predicted";
   }
   return current_.empty() ? text : text + "  " + current_;
 }

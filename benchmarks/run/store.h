@@ -1,11 +1,11 @@
-// A result folder: what was planned, what is done, and one whole file a record.
+// A result folder: what was planned, what is done, what is being done, and one whole file a record.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,10 +55,8 @@ class Store {
   void remove_checkpoint(const Request& request) const;
 
  private:
-  void write_files(const Record& record);
   // Creates the folders again if they are removed during the run.
   void try_to_write(const std::function<void()>& write);
-  void sweep() const;  // removes what killed runs of this machine left half-written
   void clear_way(
       const std::filesystem::path& path);  // where a file is to stand: of a folder, a pipe
 
@@ -78,5 +76,40 @@ class RecordsOfAnyBuild {
  private:
   std::map<std::string, std::vector<std::filesystem::path>> paths_;  // by cell
 };
+
+// Locks on one file of the folder, one byte per cell. The system releases them when their process
+// ends, in whatever way; processes started by it do not share them. On a file system without locks
+// each run does all cells: some work is done twice, and nothing is lost. One object per folder and
+// process: closing the file drops all of its locks.
+class Holds {
+ public:
+  explicit Holds(const std::filesystem::path& folder);
+  ~Holds();
+  Holds(const Holds&) = delete;
+  Holds& operator=(const Holds&) = delete;
+
+  bool take(const std::string& cell);  // false while another process has it
+  void release(const std::string& cell);
+
+ private:
+  int descriptor_;
+};
+
+// How many cells of a result folder runs in other processes hold at the moment, according to the
+// file system; 0 if the folder has none.
+std::size_t held_cells(const std::filesystem::path& folder);
+
+// Whether two runs of one cell by one build gave the same, bit for bit, timings aside.
+bool same_result(const Record& a, const Record& b);
+
+struct Comparison {
+  std::string difference;       // the first, "loss at iteration 17: 0.25 against 0.26"; empty: none
+  std::int64_t iterations = 0;  // up to here
+  bool is_up_to_there = false;  // a clock or a kill ended one of them: only so far
+};
+
+// The curve first, iteration by iteration, then all else that the request and not the build
+// decides.
+Comparison compare_results(const Record& a, const Record& b);
 
 }  // namespace isoline::benchmarks

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -14,6 +15,8 @@
 #include "core/records/record.h"
 
 namespace isoline::benchmarks {
+
+using Json = nlohmann::json;
 
 // The option that is tuned for a pair of problem and optimizer: the method's tunable option, or
 // that of the gradient rule inside its network-optimizer, if the problem has a network to train.
@@ -30,15 +33,9 @@ struct Knob {
 // has anyway.
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
                             const Component& problem, const OptionValues& given);
-// The same for an option that is named; UsageError where the method has no such number.
-Knob knob_named(const Catalog& catalog, const std::string& optimizer, const Component& problem,
-                const OptionValues& given, const std::string& option);
 
 // The options of the pair with the knob set.
 OptionValues with_value(const Knob& knob, OptionValues given, Real value);
-
-// ‖∇L‖²/‖J∇L‖² at the problem's start, in a process of its own; 1 where it cannot be had.
-Real cauchy_step(const Catalog& catalog, const Component& problem);
 
 inline constexpr int kGridValues = 7, kMostExtensions = 3;
 
@@ -58,11 +55,6 @@ struct GivenGrid {
   std::string unit = "one";
 };
 GivenGrid parse_grid(const std::string& text, const std::string& unit);
-std::vector<Real> values_of(const Knob& knob, const GivenGrid& grid, Real unit);
-
-Real three_digits(Real value);  // enough of a rate, and they read well
-
-// The score of a value of a tuned option, and the choice of the best.
 
 // The median work to τ = 1e-6 of what the problem's user wants, then the median of what was left at
 // the end, the loss or the error in x; less is better.
@@ -86,11 +78,6 @@ std::size_t best_value(const std::vector<Real>& values, const std::vector<Tuning
 
 // E[best of b] of n losses: Σ y₍ᵢ₎ C(n − i, b − 1)/C(n, b) over the sorted ones, for b = 1 … n.
 std::vector<Real> best_of(std::vector<Real> losses);
-
-// Chooses one option of each pair of problem and optimizer over a grid, with an equal budget for
-// all and on seeds of their own, and keeps the whole grid beside the winner.
-
-using Json = nlohmann::json;
 
 struct TunedPair {
   Component problem;

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "benchmarks/run/pending.h"
-#include "benchmarks/run/prediction.h"
+#include "benchmarks/run/preview.h"
 #include "benchmarks/run/store.h"
 #include "benchmarks/shard/split.h"
 #include "core/clock.h"

@@ -11,7 +11,7 @@
 #include "benchmarks/cli/verb.h"
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/runner.h"
-#include "benchmarks/run/same_result.h"
+#include "benchmarks/run/store.h"
 #include "core/draws.h"
 #include "core/errors.h"
 #include "core/files.h"

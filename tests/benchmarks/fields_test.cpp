@@ -3,7 +3,7 @@
 
 #include "benchmarks/merge/merge.h"
 #include "benchmarks/merge/record_union.h"
-#include "benchmarks/run/same_result.h"
+#include "benchmarks/run/store.h"
 #include "core/decompose.h"
 #include "core/errors.h"
 #include "core/files.h"

@@ -1,6 +1,4 @@
 // When a cell is ended: what it used counts, what others used does not.
-#include "benchmarks/run/limits.h"
-
 #include <sys/wait.h>
 
 #include "benchmarks/run/isolate.h"

@@ -1,12 +1,11 @@
 // Where two runs of one cell part is named by what a reader of the curve would look for.
-#include "benchmarks/run/same_result.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/store.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/pieces.h"
 

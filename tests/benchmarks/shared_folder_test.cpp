@@ -7,8 +7,8 @@
 #include <csignal>
 #include <fstream>
 
-#include "benchmarks/run/pending.h"
 #include "benchmarks/run/run_plan.h"
+#include "benchmarks/run/store.h"
 #include "core/files.h"
 #include "tests/benchmarks/hostile.h"
 #include "tests/deadline.h"

@@ -1,9 +1,8 @@
 // Checkpoints: a file as it is, and the input as the state in a file that is right besides.
-#include "benchmarks/run/checkpoint.h"
-
 #include <new>
 
 #include "benchmarks/plan/catalog.h"
+#include "benchmarks/run/execute.h"
 #include "core/digest.h"
 #include "core/trace.h"
 #include "tests/fuzz/targets.h"
