@@ -10,6 +10,8 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "benchmarks/audit/audit_problems.h"
@@ -22,7 +24,6 @@
 namespace isoline::benchmarks {
 namespace {
 
-constexpr double kAuditSeconds = 60;        // an optimizer; nearly all take a hundredth of a second
 constexpr std::int64_t kStepsOfPath = 5;    // of invariance: few, so that rounding stays small
 constexpr std::int64_t kStepsOfCount = 10;  // of the oracles
 constexpr std::int64_t kStepsOfApproach = 1000;
@@ -220,12 +221,11 @@ void audit_teacher(const Subject& subject, AuditedOptimizer& audited) {
 
 // --- fits
 
-struct Line {
-  Real slope = kUnknown, residual = kUnknown;
-};
-
-// Least squares, summed one by one: vectorized sums would depend on where the points lie in memory.
-Line line_through(const std::vector<Real>& x, const std::vector<Real>& y) {
+// The slope of log10 y over log10 x and the residual, by least squares, summed one by one:
+// vectorized sums would depend on where the points lie in memory.
+std::pair<Real, Real> line_through(std::vector<Real> x, std::vector<Real> y) {
+  for (std::vector<Real>* values : {&x, &y})
+    for (Real& value : *values) value = std::log10(value);
   const auto count = static_cast<Real>(x.size());
   const Real x_mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
   const Real y_mean = std::accumulate(y.begin(), y.end(), 0.0) / count;
@@ -234,17 +234,11 @@ Line line_through(const std::vector<Real>& x, const std::vector<Real>& y) {
     spread += (x[i] - x_mean) * (x[i] - x_mean);
     shared += (x[i] - x_mean) * (y[i] - y_mean);
   }
-  if (spread == 0) return {};
+  if (spread == 0) return {kUnknown, kUnknown};
   const Real slope = shared / spread;
   for (std::size_t i = 0; i < x.size(); ++i)
     squares += std::pow(y[i] - y_mean - slope * (x[i] - x_mean), 2);
   return {slope, std::sqrt(squares / count)};
-}
-
-std::vector<Real> decades(const std::vector<Real>& values) {
-  std::vector<Real> logarithms;
-  for (const Real value : values) logarithms.push_back(std::log10(value));
-  return logarithms;
 }
 
 bool is_positive(Real value) { return std::isfinite(value) && value > 0; }
@@ -276,6 +270,7 @@ AuditedOptimizer audit_optimizer(const Catalog& catalog, const std::string& name
 
 std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
                                         const std::vector<std::string>& names) {
+  constexpr double kAuditSeconds = 60;  // an optimizer; nearly all take a hundredth of a second
   std::vector<AuditedOptimizer> all;
   for (const std::string& name : names) {
     const auto [text, failure] = isolated_text(
@@ -300,10 +295,8 @@ void write_audit(const std::vector<AuditedOptimizer>& all, const std::filesystem
 
 PowerLaw power_law(const std::vector<Real>& scales, std::vector<Real> values) {
   PowerLaw law{.values = std::move(values)};
-  if (!std::ranges::all_of(law.values, is_positive)) return law;
-  const Line line = line_through(decades(scales), decades(law.values));
-  law.exponent = line.slope;
-  law.residual = line.residual;
+  if (std::ranges::all_of(law.values, is_positive))
+    std::tie(law.exponent, law.residual) = line_through(scales, law.values);
   return law;
 }
 
@@ -323,10 +316,8 @@ Approach approach_of(const std::vector<Real>& errors, Real floor) {
   const Real last =
       approach.is_exact ? errors[static_cast<std::size_t>(approach.steps)] : errors.back();
   approach.remaining = std::isfinite(last) ? last / errors.front() : kUnknown;
-  if (before.size() < 2 || !(approach.remaining <= kNear)) return approach;
-  const Line line = line_through(decades(before), decades(after));
-  approach.order = line.slope;
-  approach.residual = line.residual;
+  if (before.size() >= 2 && approach.remaining <= kNear)
+    std::tie(approach.order, approach.residual) = line_through(before, after);
   return approach;
 }
 

@@ -39,8 +39,6 @@ Link affine(const Matrix& A, const Vector& b) {
           }};
 }
 
-Link scale(Real s) { return affine(s * Matrix::Identity(2, 2), Vector::Zero(2)); }
-
 // (sinh x₁, sinh x₂ + x₁²/2)
 Link bend() {
   return {.value = [](VectorRef x) -> Vector {
@@ -202,10 +200,11 @@ Vector value_of(const Chain& chain, VectorRef x) {
 Problem bent_problem() { return scaled_loss(1); }
 Problem scaled_loss(Real c) { return make(bent(), kBentStart, kBentSolution, c); }
 Problem scaled_output(Real s) {
-  return make(joined(bent(), {scale(s)}), kBentStart, kBentSolution);
+  return changed_output({s * Matrix::Identity(2, 2), Vector::Zero(2)});
 }
 Problem scaled_input(Real s) {
-  return make(joined({scale(s)}, bent()), kBentStart / s, kBentSolution / s);
+  const Link scale = affine(s * Matrix::Identity(2, 2), Vector::Zero(2));
+  return make(joined({scale}, bent()), kBentStart / s, kBentSolution / s);
 }
 
 Problem slope(Real alpha) {

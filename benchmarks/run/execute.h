@@ -24,9 +24,9 @@ class Checkpoint {
   // `identity` names the owner of the state: a file of another cell or build is not touched.
   Checkpoint(std::filesystem::path path, std::string identity, double every_seconds);
 
-  // Restores method, meter and θ if there is a state. The method is started. A file that claims to
-  // be such a state and is invalid is moved away: DamagedCheckpoint; the arguments are then partly
-  // overwritten. The next call finds nothing.
+  // Restores method, meter and θ if there is a state. The method is started. DamagedCheckpoint
+  // where a file claims to be such a state and is invalid: it is moved away, the arguments are
+  // overwritten.
   bool restore(Optimizer& method, Meter& meter, Vector& theta);
   // Writes the state if the last time is long enough ago, or if the process is to stop: then
   // returns true. If the disk refuses, the run continues without.

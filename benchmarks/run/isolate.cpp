@@ -31,11 +31,41 @@
 namespace isoline::benchmarks {
 namespace {
 
-constexpr int kLookMilliseconds = 20;  // how often limits and output are looked at
-
 double seconds_between(std::int64_t begin, std::int64_t end) {
   return 1e-9 * static_cast<double>(end - begin);
 }
+
+// --- the output of a child process, through a pipe that its parent empties
+
+void close_one(int& descriptor) {
+  if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
+}
+
+// --- workers
+
+std::vector<void*>& all_shared_memory() {
+  static std::vector<void*> all;
+  return all;
+}
+
+void* mapped(std::size_t bytes) {
+  void* const address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                             MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (address == MAP_FAILED) throw std::bad_alloc();
+  all_shared_memory().push_back(address);
+  return address;
+}
+
+// A file of memory, which is read once the child said that it is whole.
+struct Answer {
+  Answer() = default;
+  ~Answer() { ::close(descriptor); }
+  Answer(const Answer&) = delete;
+  Answer& operator=(const Answer&) = delete;
+
+  const int descriptor = memfd_create("answer", MFD_CLOEXEC);
+  const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
+};
 
 }  // namespace
 
@@ -82,10 +112,6 @@ double DeclaredTimes::of(const Request& request) {
   return std::min(seconds, request.budget.seconds);
 }
 
-bool LimitWatch::is_due(std::int64_t now_nanoseconds) const {
-  return seconds_between(last_nanoseconds_, now_nanoseconds) >= 1e-3 * kLookMilliseconds;
-}
-
 std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& usage,
                                                     bool has_asked_oracle,
                                                     std::int64_t now_nanoseconds) {
@@ -121,16 +147,6 @@ std::optional<LimitWatch::Breach> LimitWatch::check(const ProcessGroup::Usage& u
       fmt::format("killed: it used less than 1 % of a core for {} s", limits_.idle_seconds), true};
 }
 
-// --- the output of a child process, through a pipe that its parent empties
-
-namespace {
-
-void close_one(int& descriptor) {
-  if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
-}
-
-}  // namespace
-
 void CapturedOutput::open() {
   close();
   kept_.clear();
@@ -156,8 +172,8 @@ void CapturedOutput::close_child_end() { close_one(write_end_); }
 
 void CapturedOutput::drain() {
   constexpr std::size_t kTail = 200;  // bytes of the end that are remembered
-  constexpr int kWidePipe = 1 << 20;  // bytes: who writes much does not wait for every read
-  constexpr int kMostReads = 64;      // so that who writes forever does not hold us up
+  constexpr int kWidePipe = 1 << 20;  // bytes: a child that writes much does not wait for us
+  constexpr int kMostReads = 64;      // so that one that writes forever does not hold us up
   std::array<char, 1 << 14> chunk;
   for (int i = 0; i < kMostReads && read_end_ >= 0; ++i) {
     const ssize_t got = read(read_end_, chunk.data(), chunk.size());
@@ -186,25 +202,6 @@ std::string CapturedOutput::last_words() const {
   const std::string_view words(tail_.data(), tail_.find_last_not_of("\n\r\t ") + 1);
   return valid_utf8(words.substr(words.find_last_of('\n') + 1));  // or from its beginning
 }
-
-// --- workers
-
-namespace {
-
-std::vector<void*>& all_shared_memory() {
-  static std::vector<void*> all;
-  return all;
-}
-
-void* mapped(std::size_t bytes) {
-  void* const address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                             MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (address == MAP_FAILED) throw std::bad_alloc();
-  all_shared_memory().push_back(address);
-  return address;
-}
-
-}  // namespace
 
 Worker::Worker() : shared_(new (mapped(sizeof(Shared))) Shared) {}
 
@@ -328,21 +325,6 @@ void Worker::finish(const ProcessGroup::End& end) {
                                          watch_.limits().memory_bytes >> 20));
   }
 }
-
-namespace {
-
-// A file of memory, which is read once the child said that it is whole.
-struct Answer {
-  Answer() = default;
-  ~Answer() { ::close(descriptor); }
-  Answer(const Answer&) = delete;
-  Answer& operator=(const Answer&) = delete;
-
-  const int descriptor = memfd_create("answer", MFD_CLOEXEC);
-  const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
-};
-
-}  // namespace
 
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
                            std::int64_t memory_bytes, const std::function<void()>& waiting) {

@@ -23,7 +23,7 @@
 namespace isoline::benchmarks {
 
 // Processor time is that of the complete group, divided by the requested threads. Wall time, five
-// times that, protects waiting users. Other load on the machine affects only the second limit.
+// times that, protects waiting users: other load on the machine affects it alone.
 struct Limits {
   double startup_seconds = 30;   // of processor time, from the fork to the first oracle call
   double hard_seconds = 60;      // of processor time, from the first oracle call
@@ -34,13 +34,14 @@ struct Limits {
   static constexpr double kWallFactor = 5;
 };
 
+inline constexpr int kLookMilliseconds = 20;  // how often limits and output are looked at
+
 // The limit of one request: twice its soft time limit, if it has one; else its suite's; else ten
 // times its predicted time, if that is more than the standard.
 Limits limits_of(const Request& request, const Limits& standard, double declared_seconds = 0);
 
-// The time for the nominal cost of cells, within their own limits: each unit costs a forward solve,
-// as measured in the metadata of a result folder, and a factorizing step about n³ in addition. 0 if
-// nothing was measured. Each file is read once.
+// The time for the nominal cost of cells: each unit costs a forward solve, as measured in the
+// metadata of a result folder, and a factorizing step about n³ in addition. 0 if not measured.
 class DeclaredTimes {
  public:
   DeclaredTimes(const Catalog& catalog, std::filesystem::path folder)
@@ -70,7 +71,9 @@ class LimitWatch {
 
   const Limits& limits() const { return limits_; }
   // Whether it is time to look again: each look reads files of the system.
-  bool is_due(std::int64_t now_nanoseconds) const;
+  bool is_due(std::int64_t now_nanoseconds) const {
+    return now_nanoseconds - last_nanoseconds_ >= kLookMilliseconds * std::int64_t{1'000'000};
+  }
   std::optional<Breach> check(const ProcessGroup::Usage& usage, bool has_asked_oracle,
                               std::int64_t now_nanoseconds);
 
@@ -95,8 +98,7 @@ struct Returned {
   double theta[kMost];                // (n)
 };
 
-// Captures the standard output and standard error of a child process, so that no terminal gets it,
-// and keeps a bounded part.
+// Captures the output of a child process, so that no terminal gets it, and keeps a bounded part.
 class CapturedOutput {
  public:
   static constexpr std::size_t kMost = std::size_t{64} << 10;  // bytes kept, from the first on
@@ -141,8 +143,8 @@ class Worker {
   void ask_to_stop();
   // Tells it, waits a little, ends it: what was not done by then is `interrupted`.
   void interrupt();
-  // For a child that has ended: replaces its result.
-  void dispute(Status status, const std::string& message) { conclude(status, message); }
+  void conclude(Status status,
+                const std::string& message);  // of one that has ended: another result
   const Trace& trace() const { return shared_->trace; }
   const CapturedOutput& output() const { return output_; }
   // The point that the child returned, for verification by another process, which inherits the
@@ -158,7 +160,6 @@ class Worker {
     alignas(4096) Returned returned;  // pages of its own, which take no memory until written
   };
   [[noreturn]] void do_in_child(const std::function<void(Trace&)>& work, int threads);
-  void conclude(Status status, const std::string& message);
   void finish(const ProcessGroup::End& end);
 
   Shared* const shared_;
@@ -177,8 +178,8 @@ struct IsolatedText {
 };
 
 // Ends it after this many seconds of processor time, or five times as many of wall time, or if it
-// and all that it started are idle for as long, at most a minute. Calls `waiting` fifty times a
-// second. Ends it, too, when this process is to end (process_group.h).
+// and all that it started are idle for as long, at most a minute, or when this process is to end.
+// Calls `waiting` fifty times a second.
 IsolatedText isolated_text(const std::function<std::string()>& work, double seconds,
                            std::int64_t memory_bytes = Limits{}.memory_bytes,
                            const std::function<void()>& waiting = {});

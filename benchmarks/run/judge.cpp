@@ -34,34 +34,7 @@ bool agree(double a, double b, double size) {
   return std::abs(a - b) <= kRelative * std::max(std::abs(a), std::abs(b)) + floor;
 }
 
-}  // namespace
-
-Judged told_by(const Trace& trace) {
-  return {trace.last.loss, trace.last.x_error, trace.minimum,
-          trace.scale,     trace.x_scale,      trace.x_floor};
-}
-
-std::string contradiction(const Judged& told, const Judged& judged) {
-  const struct {
-    const char* name;
-    double told, judged, size;
-  } numbers[] = {{"its loss", told.loss, judged.loss, judged.scale},
-                 {"its error in x", told.x_error, judged.x_error, judged.x_scale},
-                 {"the least loss f_L", told.minimum, judged.minimum, judged.scale},
-                 {"the scale of the loss", told.scale, judged.scale, 0},
-                 {"the scale of x", told.x_scale, judged.x_scale, 0},
-                 {"the floor of the error in x", told.x_floor, judged.x_floor, judged.x_scale}};
-  for (const auto& one : numbers)
-    if (!agree(one.told, one.judged, one.size))
-      return fmt::format(
-          "{} is {:.6g} on a new instance of the problem, but was {:.6g} in the cell", one.name,
-          one.judged, one.told);
-  return "";
-}
-
 // --- the work of a verifier, in its own process
-
-namespace {
 
 // Messages of the socket between a run and its judge.
 struct PointToJudge {
@@ -142,6 +115,30 @@ JudgesReply reply_to(const PointToJudge& asked, const Worker& worker, Instances&
 }
 
 }  // namespace
+
+Judged told_by(const Trace& trace) {
+  return {trace.last.loss, trace.last.x_error, trace.minimum,
+          trace.scale,     trace.x_scale,      trace.x_floor};
+}
+
+std::string contradiction(const Judged& told, const Judged& judged) {
+  const struct {
+    const char* name;
+    double Judged::*number;
+    double size;
+  } numbers[] = {{"its loss", &Judged::loss, judged.scale},
+                 {"its error in x", &Judged::x_error, judged.x_scale},
+                 {"the least loss f_L", &Judged::minimum, judged.scale},
+                 {"the scale of the loss", &Judged::scale, 0},
+                 {"the scale of x", &Judged::x_scale, 0},
+                 {"the floor of the error in x", &Judged::x_floor, judged.x_scale}};
+  for (const auto& [name, number, size] : numbers)
+    if (!agree(told.*number, judged.*number, size))
+      return fmt::format(
+          "{} is {:.6g} on a new instance of the problem, but was {:.6g} in the cell", name,
+          judged.*number, told.*number);
+  return "";
+}
 
 // --- verifiers, as a run sees them
 

@@ -54,48 +54,7 @@ std::string question_of(const std::string& problem, const std::string& optimizer
                      budget.seconds, budget.target, threads);
 }
 
-}  // namespace
-
-std::vector<RecordOutline> record_outlines(const std::vector<fs::path>& folders,
-                                           const Listener& listener) {
-  std::vector<std::pair<std::size_t, std::string>> files;  // a path for each would be a kilobyte
-  for (std::size_t i = 0; i < folders.size(); ++i)
-    for (std::string& name : names_in(folders[i] / "runs"))
-      if (name.ends_with(".json")) files.emplace_back(i, std::move(name));
-  std::vector<std::optional<RecordOutline>> seen(files.size());
-  const auto read = [&](std::size_t i) {
-    seen[i] = outline_of(folders[files[i].first] / "runs" / files[i].second);
-  };
-  share(files.size(), read, listener);
-  std::vector<RecordOutline> all;
-  for (std::optional<RecordOutline>& one : seen)
-    if (one) all.push_back(std::move(*one));
-  return all;
-}
-
-EarlierTimes::EarlierTimes(const std::vector<RecordOutline>& earlier) {
-  for (const RecordOutline& one : earlier) {
-    if (one.status == Status::interrupted || !std::isfinite(one.wall_seconds)) continue;
-    seconds_[one.cell].push_back(one.wall_seconds);
-    seconds_[question_of(one.problem, one.optimizer, one.budget, one.threads)].push_back(
-        one.wall_seconds);
-  }
-  for (auto& [cell, seconds] : seconds_) std::ranges::sort(seconds);
-}
-
-std::optional<double> EarlierTimes::of(const Request& request) const {
-  if (seconds_.empty()) return std::nullopt;
-  auto found = seconds_.find(request.cell);
-  if (found == seconds_.end())
-    found = seconds_.find(
-        question_of(request.problem.spec, request.optimizer.spec, request.budget, request.threads));
-  if (found == seconds_.end()) return std::nullopt;
-  return found->second[found->second.size() / 2];
-}
-
 // --- which pairs are inapplicable
-
-namespace {
 
 // The reason why an optimizer cannot run on a problem, by its spec; empty if it can.
 using Reasons = std::map<std::string, std::string>;
@@ -110,16 +69,10 @@ struct Setting {
 std::vector<Setting> settings_of(const std::vector<Request>& requests) {
   std::vector<Setting> settings;
   std::map<std::string_view, std::size_t> places;
-  const std::string* last = nullptr;
-  std::size_t place = 0;
   for (const Request& request : requests) {
-    if (!last || *last != request.problem.spec) {
-      const auto [at, is_new] = places.try_emplace(request.problem.spec, settings.size());
-      if (is_new) settings.push_back({&request.problem, {}});
-      place = at->second;
-      last = &request.problem.spec;
-    }
-    settings[place].optimizers.try_emplace(request.optimizer.spec, &request.optimizer);
+    const auto [at, is_new] = places.try_emplace(request.problem.spec, settings.size());
+    if (is_new) settings.push_back({&request.problem, {}});
+    settings[at->second].optimizers.try_emplace(request.optimizer.spec, &request.optimizer);
   }
   std::set<std::string_view> names;
   std::ranges::stable_partition(
@@ -180,6 +133,43 @@ std::vector<char> cached_in(const std::vector<fs::path>& folders,
 }
 
 }  // namespace
+
+std::vector<RecordOutline> record_outlines(const std::vector<fs::path>& folders,
+                                           const Listener& listener) {
+  std::vector<std::pair<std::size_t, std::string>> files;  // a path for each would be a kilobyte
+  for (std::size_t i = 0; i < folders.size(); ++i)
+    for (std::string& name : names_in(folders[i] / "runs"))
+      if (name.ends_with(".json")) files.emplace_back(i, std::move(name));
+  std::vector<std::optional<RecordOutline>> seen(files.size());
+  const auto read = [&](std::size_t i) {
+    seen[i] = outline_of(folders[files[i].first] / "runs" / files[i].second);
+  };
+  share(files.size(), read, listener);
+  std::vector<RecordOutline> all;
+  for (std::optional<RecordOutline>& one : seen)
+    if (one) all.push_back(std::move(*one));
+  return all;
+}
+
+EarlierTimes::EarlierTimes(const std::vector<RecordOutline>& earlier) {
+  for (const RecordOutline& one : earlier) {
+    if (one.status == Status::interrupted || !std::isfinite(one.wall_seconds)) continue;
+    seconds_[one.cell].push_back(one.wall_seconds);
+    seconds_[question_of(one.problem, one.optimizer, one.budget, one.threads)].push_back(
+        one.wall_seconds);
+  }
+  for (auto& [cell, seconds] : seconds_) std::ranges::sort(seconds);
+}
+
+std::optional<double> EarlierTimes::of(const Request& request) const {
+  if (seconds_.empty()) return std::nullopt;
+  auto found = seconds_.find(request.cell);
+  if (found == seconds_.end())
+    found = seconds_.find(
+        question_of(request.problem.spec, request.optimizer.spec, request.budget, request.threads));
+  if (found == seconds_.end()) return std::nullopt;
+  return found->second[found->second.size() / 2];
+}
 
 void PreviewCounts::add(const PreviewedCell& cell) {
   ++cells;

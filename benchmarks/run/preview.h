@@ -16,8 +16,7 @@
 
 namespace isoline::benchmarks {
 
-// The few values that are read from records by the hundred thousand: the cell, its status, and its
-// times.
+// The few values that are read from records by the hundred thousand.
 struct RecordOutline {
   std::string cell;
   std::string problem, optimizer;  // specs
@@ -84,9 +83,9 @@ struct PreviewOptions {
   std::set<Status> retry = {};  // but those that ended so
 };
 
-// Looks into result folders without touching them: a cell is cached where one of them has it.
-// Problems are made in processes of their own; of a sweep over more settings than can be made in a
-// second, the rest are taken to be like the first.
+// Looks into result folders without touching them: a cell is cached where one of them has it. Of a
+// sweep over more settings of problems than can be made in a second, the rest are likened to the
+// first.
 Preview preview(const Catalog& catalog, const std::vector<Request>& requests,
                 const std::vector<std::filesystem::path>& folders, const EarlierTimes& earlier = {},
                 const PreviewOptions& options = {});

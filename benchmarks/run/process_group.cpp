@@ -21,6 +21,7 @@
 #include <new>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "core/clock.h"
 #include "core/status.h"
@@ -43,7 +44,7 @@ std::string process_text(const std::string& path) {
   return text;
 }
 
-// The number behind a word of a file of a process; 0 where there is none, as behind "unlimited".
+// The number behind a word of a file of a process; 0 without one, as behind "unlimited".
 std::uint64_t number_behind(std::string_view word, pid_t process, const char* file) {
   const std::string text = process_text(fmt::format("/proc/{}/{}", process, file));
   const std::size_t at = text.find(word);
@@ -61,7 +62,7 @@ std::vector<pid_t> all_processes() {
 
 // The mark that a process sets and all its descendants inherit, in every session, group and
 // program: its limit of file locks, which Linux has ignored since 2.4. It is a flag, the process
-// that set it, and a number that none of its other groups has; 0: there is none.
+// that set it, and a number that no other of its groups has; 0: no mark.
 constexpr auto kMarked = static_cast<__rlimit_resource>(RLIMIT_LOCKS);
 constexpr std::uint64_t kOurs = 0x1501;
 constexpr int kProcessBits = 22, kCountBits = 24;  // the kernel's most, and enough
@@ -105,6 +106,35 @@ void settle(pid_t parent, std::uint64_t mark) {
   setrlimit(RLIMIT_CORE, &none);
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+}
+
+// --- interrupts: handlers call only safe functions
+
+constexpr std::array kHandled = {SIGINT, SIGTERM, SIGHUP, SIGTSTP};
+
+volatile std::sig_atomic_t heard = 0;  // what is asked for
+bool is_guarded = false;
+std::array<struct sigaction, kHandled.size()> earlier_actions;
+
+void signal_all_groups(int signal) {
+  for (const auto& leader : leaders)
+    if (const pid_t process = leader; process > 0) ::kill(-process, signal);
+}
+
+void hear(int signal, siginfo_t* sent, void*) {
+  if (signal == SIGTSTP) {
+    signal_all_groups(SIGSTOP);
+    raise(SIGSTOP);
+    return signal_all_groups(SIGCONT);
+  }
+  const pid_t group = sent->si_code <= 0 && sent->si_pid > 0 ? getpgid(sent->si_pid) : -1;
+  if (group > 0 && is_leader(group)) return;  // from a process of one of our groups
+  if (asked_to_end() == Asked::stop) {
+    signal_all_groups(SIGKILL);
+    _exit(kInterrupted);
+  }
+  const bool is_first_ctrl_c = signal == SIGINT && asked_to_end() == Asked::nothing;
+  heard = static_cast<int>(is_first_ctrl_c ? Asked::finish : Asked::stop);
 }
 
 }  // namespace
@@ -315,39 +345,6 @@ void end_what_killed_runs_left() {
       ::kill(process, SIGKILL);
   }
 }
-
-// --- interrupts: handlers call only safe functions
-
-namespace {
-
-constexpr std::array kHandled = {SIGINT, SIGTERM, SIGHUP, SIGTSTP};
-
-volatile std::sig_atomic_t heard = 0;  // what is asked for
-bool is_guarded = false;
-std::array<struct sigaction, kHandled.size()> earlier_actions;
-
-void signal_all_groups(int signal) {
-  for (const auto& leader : leaders)
-    if (const pid_t process = leader; process > 0) ::kill(-process, signal);
-}
-
-void hear(int signal, siginfo_t* sent, void*) {
-  if (signal == SIGTSTP) {
-    signal_all_groups(SIGSTOP);
-    raise(SIGSTOP);
-    return signal_all_groups(SIGCONT);
-  }
-  const pid_t group = sent->si_code <= 0 && sent->si_pid > 0 ? getpgid(sent->si_pid) : -1;
-  if (group > 0 && is_leader(group)) return;  // from a process of one of our groups
-  if (asked_to_end() == Asked::stop) {
-    signal_all_groups(SIGKILL);
-    _exit(kInterrupted);
-  }
-  const bool is_first_ctrl_c = signal == SIGINT && asked_to_end() == Asked::nothing;
-  heard = static_cast<int>(is_first_ctrl_c ? Asked::finish : Asked::stop);
-}
-
-}  // namespace
 
 InterruptGuard::InterruptGuard() : is_outermost_(!std::exchange(is_guarded, true)) {
   if (!is_outermost_) return;

@@ -1,10 +1,8 @@
 // A child process and all its descendants, as one group: started, measured, stopped, killed and
 // reaped together. Descendants cannot escape by a session of their own or by outliving their
-// parent: this process is a subreaper, and every descendant carries the mark of its group. And the
-// signals that ask this process to end while it has such children.
-//
-// A process with the rights of the user can still end this process by SIGKILL;
-// docs/running-a-matrix.md states the limits.
+// parent: this process is a subreaper, and every descendant carries the mark of its group. Only
+// SIGKILL of this process escapes it (docs/running-a-matrix.md). And the signals that ask this
+// process to end while it has such children.
 #pragma once
 
 #include <sys/types.h>

@@ -38,8 +38,6 @@ std::optional<double> TimeLeft::at(double now) const {
 
 namespace {
 
-constexpr double kLiveSeconds = 0.1, kPlainSeconds = 10;
-
 double seconds_since(std::int64_t nanoseconds) {
   return 1e-9 * static_cast<double>(monotonic_nanoseconds() - nanoseconds);
 }
@@ -50,8 +48,7 @@ std::size_t terminal_width() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
-// The only control sequence that we emit.
-void clear_line() { std::fputs("\r\x1b[K", stderr); }
+void clear_line() { std::fputs("\r\x1b[K", stderr); }  // the only control sequence that we emit
 
 }  // namespace
 
@@ -104,7 +101,7 @@ std::string Progress::line() const {
 }
 
 void Progress::show(bool now) {
-  const double pause = style_ == Style::live ? kLiveSeconds : kPlainSeconds;
+  const double pause = style_ == Style::live ? 0.1 : 10;  // seconds
   if (style_ == Style::silent || (!now && seconds_since(shown_) < pause)) return;
   shown_ = monotonic_nanoseconds();
   if (style_ == Style::live) {

@@ -7,33 +7,18 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "benchmarks/run/isolate.h"
 #include "benchmarks/run/sheets.h"
 #include "core/clock.h"
 #include "core/digest.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/options.h"
 #include "optimizers/optimizer.h"
 #include "problems/conformance.h"
 #include "problems/problem.h"
 
 namespace isoline::benchmarks {
 namespace {
-
-// The complaint, or nothing. Direct problems were checked whole when their options were completed.
-std::string complaint_about(const Catalog& catalog, const Request& request) {
-  try {
-    const OptimizerEntry& entry = catalog.optimizers.at(request.optimizer.name);
-    entry.make(request.optimizer.options, catalog.optimizers);
-    if (request.problem.is_learned) make_problem(catalog, request.problem, request.seed);
-  } catch (const UsageError& error) {
-    return error.what();
-  } catch (const std::exception&) {  // its cells end as `failed` and say so
-  }
-  return "";
-}
 
 // Empty if every property holds.
 std::string broken_property_of(const Catalog& catalog, const Request& request) {
@@ -78,16 +63,20 @@ void require_certified(const Catalog& catalog, const std::vector<Request>& reque
 
 void require_sound(const Catalog& catalog, const std::vector<Request>& requests) {
   constexpr double kSeconds = 60;
-  const auto first_complaint = [&] {
+  const auto first_complaint = [&]() -> std::string {
     std::set<std::string> problems, optimizers;
-    for (const Request& request : requests) {
-      const bool is_new_problem = problems.insert(request.problem.spec).second;
-      const bool is_new_optimizer = optimizers.insert(request.optimizer.spec).second;
-      if (!is_new_problem && !is_new_optimizer) continue;
-      const std::string text = complaint_about(catalog, request);
-      if (!text.empty()) return text;
-    }
-    return std::string();
+    for (const Request& request : requests) try {
+        const Component &problem = request.problem, &optimizer = request.optimizer;
+        if (optimizers.insert(optimizer.spec).second)
+          catalog.optimizers.at(optimizer.name).make(optimizer.options, catalog.optimizers);
+        // Direct problems were checked whole when their options were completed.
+        if (problem.is_learned && problems.insert(problem.spec).second)
+          make_problem(catalog, problem, request.seed);
+      } catch (const UsageError& error) {
+        return error.what();
+      } catch (const std::exception&) {  // its cells end as `failed` and say so
+      }
+    return "";
   };
   const auto complaint = isolated_text(first_complaint, kSeconds).text;
   if (complaint && !complaint->empty()) throw UsageError(*complaint);

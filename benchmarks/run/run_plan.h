@@ -22,7 +22,7 @@ void require_sound(const Catalog& catalog, const std::vector<Request>& requests)
 // damaged file is set aside.
 void write_used_rates(const Rates& rates, const std::vector<Request>& requests, Store& store);
 
-// What is stored as planned, which may be more than is run.
+// The plan that is stored, which may be more than is run.
 struct WholePlan {
   std::string name;
   std::vector<PlannedCell> cells;

@@ -14,12 +14,10 @@
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/judge.h"
 #include "benchmarks/run/preview.h"
-#include "benchmarks/run/process_group.h"
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/provenance.h"
-#include "core/status.h"
 #include "core/text.h"
 #include "core/threads.h"
 
@@ -176,6 +174,7 @@ class Runner {
 
   // There is one worker more than may run: what it did is judged and stored while the others run.
   void start_some() {
+    constexpr double kCheckpointSeconds = 120;  // how often a long run is kept on disk
     auto running = std::ranges::count_if(workers_, &Worker::is_running);
     for (std::size_t i = 0; i < workers_.size() && running < jobs_; ++i) {
       if (tasks_[i].request) continue;
@@ -194,9 +193,8 @@ class Runner {
             trace.spectra.are_wanted = options_.keeps_spectra;
             const auto path = store_.checkpoint_path(*request);
             Vector returned;
-            execute(catalog_, *request, trace,
-                    {path, path.stem().string(), options_.checkpoint_seconds}, &returned,
-                    options_.perturbation);
+            execute(catalog_, *request, trace, {path, path.stem().string(), kCheckpointSeconds},
+                    &returned, options_.perturbation);
             workers_[i].keep_returned({returned.data(), static_cast<std::size_t>(returned.size())});
           },
           limits(*request), request->threads);
@@ -215,12 +213,11 @@ class Runner {
   }
 
   void wait() const {
-    constexpr int kMilliseconds = 20;  // how often limits are looked at
     std::vector<pollfd> waiting;
     for (const Worker& worker : workers_)
       if (worker.is_running()) waiting.push_back({worker.descriptor(), POLLIN, 0});
     judges_.add_to(waiting);
-    ::poll(waiting.data(), waiting.size(), kMilliseconds);
+    ::poll(waiting.data(), waiting.size(), kLookMilliseconds);
   }
 
   // Cells that have ended go to a judge where they claim a point, and are kept once it has spoken.
@@ -242,11 +239,11 @@ class Runner {
     for (const Verdict& verdict : judges_.collect()) {
       Worker& worker = workers_[verdict.slot];
       if (!verdict.judged)
-        worker.dispute(verdict.is_interrupted ? Status::interrupted : Status::failed,
-                       "its point could not be verified: " + verdict.failure);
+        worker.conclude(verdict.is_interrupted ? Status::interrupted : Status::failed,
+                        "its point could not be verified: " + verdict.failure);
       else if (const auto found = contradiction(told_by(worker.trace()), *verdict.judged);
                !found.empty())
-        worker.dispute(Status::failed, found);
+        worker.conclude(Status::failed, found);
       keep(verdict.slot);
     }
   }

@@ -49,7 +49,6 @@ struct RunOptions {
   bool exclusive = false;       // one at a time, for tables of wall time
   int repeat = 1;               // timings wanted of each cell
   Limits limits;
-  double checkpoint_seconds = 120;  // how often a long run is kept on disk while it goes
   int perturbation = 0;  // of the starts, in the last bit; of 0 alone the records are results
   Progress::Style progress = Progress::Style::silent;
   bool keeps_output = false;   // of cells, in their records
@@ -68,8 +67,7 @@ Outcome run_all(const Catalog& catalog, const std::vector<Request>& requests, St
 int one_a_core();  // how many cells at a time a machine is meant for
 
 // Runs cells in this process, one after another, for a debugger, and calls back after each. No
-// isolation, no limits but the soft budgets, no verification, no record: a crash ends this process,
-// and leaves a core file if the shell allows it.
+// isolation, no limits but the soft budgets, no verification, no record: a crash ends this process.
 void run_in_process(const Catalog& catalog, const std::vector<Request>& requests,
                     const std::function<void(const Request&, const Trace&)>& ended);
 
@@ -78,10 +76,9 @@ void run_in_process(const Catalog& catalog, const std::vector<Request>& requests
 Request request_again(const Catalog& catalog, const Record& record, double hard_seconds);
 
 // Recorded runs repeated from starts that differ in the last bit: values that then move depend on
-// rounding, and so on the processor and the libraries, not on the method. The records of
-// perturbation `number`, run in a folder that is gone afterwards, without cells that a clock or a
-// kill ended, and inapplicable ones. UsageError where a record is of another build: its figures
-// would differ by more than the perturbation. Nothing where it was interrupted.
+// rounding, and so on the processor and the libraries, not on the method. Without cells that a
+// clock or a kill ended, and inapplicable ones. UsageError where a record is of another build.
+// Nothing where it was interrupted.
 std::optional<std::vector<Record>> perturbed_records(const Catalog& catalog,
                                                      const std::vector<Record>& records, int number,
                                                      RunOptions options);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -21,7 +22,6 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/plan.h"
 #include "core/records/provenance.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
@@ -30,8 +30,7 @@ namespace isoline::benchmarks {
 namespace {
 
 constexpr double kRoundSeconds = 2e-4;  // of calls, so that a round is many of the short ones
-constexpr double kOracleSeconds = 1e-2, kLongOracleSeconds = 0.15, kMatrixSeconds = 1e-2;
-constexpr double kProblemSeconds = 1;
+constexpr double kOracleSeconds = 1e-2, kLongOracleSeconds = 0.15, kProblemSeconds = 1;
 constexpr double kClockSeconds = 2e-5;  // a call this long can afford the clock of the processor
 constexpr std::size_t kMostPairs = 1000, kMostRounds = 31, kFewRounds = 3;
 constexpr Real kTail = 0.1;  // on either side of the middle 80 %
@@ -56,37 +55,26 @@ struct Room {
   Workspace space;
 };
 
-void ask(Oracle oracle, const Problem& problem, Point& at, Room& room) {
-  switch (oracle) {
-    case Oracle::pullback:
-      return problem.pullback(room.w, room.gradient, at);
-    case Oracle::pushforward:
-      return problem.pushforward(room.v, room.y, at);
-    case Oracle::jacobian:
-      return problem.jacobian(room.J, at);
-    case Oracle::hessian:
-      return problem.hessian(room.H, at);
-    case Oracle::curvature:
-      room.bent.resize(problem.inputs(), problem.inputs() * problem.samples());
-      return problem.curvature(room.w, room.bent, at);
-    case Oracle::sensitivity:
-      return problem.sensitivity(room.dy_dx, at);
-    case Oracle::hessian_product:
-      return problem.hessian_product(room.v, room.gradient, at);
-    case Oracle::inverse:
-      problem.local_inverse(problem.target(), room.x, at);
-      return;
-    case Oracle::network:
-      return problem.network_pullback(room.u, room.gradient, at);
-    case Oracle::layer_factors:
-      return problem.layer_factors(room.w, room.factors, at);
-    case Oracle::layer_moments:
-      return problem.layer_moments(room.w, room.moments, room.gradient, at);
-    case Oracle::forward:
-    case Oracle::truth:  // nothing is computed
-      return;
-  }
-}
+// The calls of all oracles that compute something beside the forward solve.
+const std::map<Oracle, std::function<void(const Problem&, Point&, Room&)>> kCalls = {
+    {Oracle::pullback, [](auto& p, auto& at, auto& r) { p.pullback(r.w, r.gradient, at); }},
+    {Oracle::pushforward, [](auto& p, auto& at, auto& r) { p.pushforward(r.v, r.y, at); }},
+    {Oracle::jacobian, [](auto& p, auto& at, auto& r) { p.jacobian(r.J, at); }},
+    {Oracle::hessian, [](auto& p, auto& at, auto& r) { p.hessian(r.H, at); }},
+    {Oracle::curvature,
+     [](auto& p, auto& at, auto& r) {
+       r.bent.resize(p.inputs(), p.inputs() * p.samples());
+       p.curvature(r.w, r.bent, at);
+     }},
+    {Oracle::sensitivity, [](auto& p, auto& at, auto& r) { p.sensitivity(r.dy_dx, at); }},
+    {Oracle::hessian_product,
+     [](auto& p, auto& at, auto& r) { p.hessian_product(r.v, r.gradient, at); }},
+    {Oracle::inverse, [](auto& p, auto& at, auto& r) { p.local_inverse(p.target(), r.x, at); }},
+    {Oracle::network, [](auto& p, auto& at, auto& r) { p.network_pullback(r.u, r.gradient, at); }},
+    {Oracle::layer_factors,
+     [](auto& p, auto& at, auto& r) { p.layer_factors(r.w, r.factors, at); }},
+    {Oracle::layer_moments,
+     [](auto& p, auto& at, auto& r) { p.layer_moments(r.w, r.moments, r.gradient, at); }}};
 
 // Processor time; wall time if another process computes.
 double seconds_by(bool is_elsewhere) {
@@ -185,53 +173,14 @@ MeasuredPrice inference_price(const Problem& problem, double forward) {
   return price_of(kInference, 0, forward, std::move(rounds));
 }
 
-}  // namespace
-
-bool is_resolved(const MeasuredPrice& price, double forward_seconds) {
-  constexpr double kLeastForwardSeconds = 1e-6;
-  constexpr Real kWidest = 4;  // a range over this factor, or down to nothing, says too little
-  return forward_seconds >= kLeastForwardSeconds && price.low > 0 &&
-         price.high <= kWidest * price.low;
-}
-
-MeasuredPrices measure_prices(const Problem& problem, const std::string& build) {
-  MeasuredPrices measured{.build = build, .processor = this_build()->processor, .oracles = {}};
-  Point at;
-  const std::function<void()> solve = [&] { problem.forward(problem.start(), at); };
-  const double begin = seconds_by(problem.is_elsewhere());
-  seconds_of(problem, 1, solve);  // allocates
-  const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
-  Rounds alone = rounds_of(problem, {once, once});
-  const double forward = measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
-  measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, forward, std::move(alone)));
-  if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward));
-  // Products before the dense matrices, which large networks take up the time with.
-  for (const bool is_matrix : {false, true})
-    for (const OracleRow& row : kOracleTable) {
-      const bool is_computed = row.kind != Oracle::forward && row.kind != Oracle::truth;
-      if (!is_computed || row.is_dense_matrix != is_matrix || !problem.offers().contains(row.kind))
-        continue;
-      if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) return measured;
-      const std::int64_t declared = problem.prices()[static_cast<std::size_t>(row.kind)];
-      const double expected = forward * static_cast<double>(declared);
-      if (is_matrix && expected > kMatrixSeconds) continue;
-      const auto call = [&](Point& there, Room& room) { ask(row.kind, problem, there, room); };
-      measured.oracles.push_back(
-          price_of(row.name, declared, forward, rounds_of(problem, {forward, expected, call})));
-    }
-  return measured;
-}
-
 // --- metadata of problems and optimizers, including plotted landscapes
-
-namespace {
 
 constexpr Index kGrid = 81;  // points a side of a landscape
 
 std::vector<std::string> names_of(OracleSet oracles) {
   std::vector<std::string> names;
-  for (std::size_t kind = 0; kind < kOracles; ++kind)
-    if (oracles.contains(static_cast<Oracle>(kind))) names.emplace_back(kOracleNames[kind]);
+  for (const OracleRow& row : kOracleTable)
+    if (oracles.contains(row.kind)) names.emplace_back(row.name);
   return names;
 }
 
@@ -239,13 +188,6 @@ std::vector<Real> small(const Matrix& values) {
   constexpr Index kSmall = 16;  // largest target and truth in a file of metadata
   if (values.size() > kSmall) return {};
   return {values.data(), values.data() + values.size()};
-}
-
-bool has_small_jacobian(const Problem& problem) {
-  constexpr Index kMostEntries = Index{256} * 256;  // of what is factorized: 20 ms
-  const bool is_small = problem.unknowns() * problem.residuals() <= kMostEntries;
-  return !problem.is_learned() && problem.has_identity_network() && is_small &&
-         problem.offers().contains(Oracle::jacobian);
 }
 
 // σ_max / σ_min of J there; nothing if it is not a number.
@@ -345,56 +287,7 @@ Sheet described(const char* kind, const Entry& entry, const Component& component
   return sheet;
 }
 
-}  // namespace
-
-Sheet described_problem(const Catalog& catalog, const Component& component) {
-  const ProblemEntry& entry = catalog.problems.at(component.name);
-  Sheet sheet = described("problem", entry, component);
-  sheet.aim = entry.aim;
-  sheet.group = std::string(name_of(entry.group));
-  sheet.panels = entry.panels;
-  return sheet;
-}
-
-Sheet described_optimizer(const Catalog& catalog, const Component& component) {
-  const OptimizerEntry& entry = catalog.optimizers.at(component.name);
-  Sheet sheet = described("optimizer", entry, component);
-  sheet.oracles = names_of(entry.needs);
-  sheet.family = std::string(name_of(entry.family));
-  sheet.mathematics = std::string(name_of(entry.kind));
-  sheet.tunable = entry.tunable.option;
-  return sheet;
-}
-
-Sheet problem_sheet(const Catalog& catalog, const Component& component) {
-  constexpr const char* kInverses[] = {"none", "exact", "damped", "estimate", "approximate"};
-  const Problem problem = make_problem(catalog, component, 0);
-  Sheet sheet = described_problem(catalog, component);
-  sheet.aim = problem.aim();  // as its entry has it, or as another program says
-  sheet.oracles = names_of(problem.offers());
-  sheet.inverse = kInverses[static_cast<int>(problem.inverse_kind())];
-  sheet.unknowns = problem.unknowns();
-  sheet.residuals = problem.residuals();
-  sheet.target = small(problem.target());
-  if (has_small_jacobian(problem)) {
-    sheet.start_condition = condition_at(problem, problem.start());
-    if (problem.truth()) sheet.condition = condition_at(problem, problem.truth()->reshaped());
-  }
-  sheet.field = problem.field();
-  if (problem.truth()) sheet.truth = small(*problem.truth());
-  if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
-  return sheet;
-}
-
-Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
-  Sheet sheet = described_optimizer(catalog, component);
-  sheet.privileges = possible_privileges(catalog.optimizers.at(component.name), component);
-  return sheet;
-}
-
 // --- the metadata of a plan
-
-namespace {
 
 // Creates metadata, each in its own process: a failure costs the measured values of one file.
 class SheetWriter {
@@ -484,6 +377,90 @@ class SheetWriter {
 };
 
 }  // namespace
+
+bool is_resolved(const MeasuredPrice& price, double forward_seconds) {
+  constexpr double kLeastForwardSeconds = 1e-6;
+  constexpr Real kWidest = 4;  // a range over this factor, or down to nothing, says too little
+  return forward_seconds >= kLeastForwardSeconds && price.low > 0 &&
+         price.high <= kWidest * price.low;
+}
+
+MeasuredPrices measure_prices(const Problem& problem, const std::string& build) {
+  MeasuredPrices measured{.build = build, .processor = this_build()->processor, .oracles = {}};
+  Point at;
+  const std::function<void()> solve = [&] { problem.forward(problem.start(), at); };
+  const double begin = seconds_by(problem.is_elsewhere());
+  seconds_of(problem, 1, solve);  // allocates
+  const double once = std::max(seconds_of(problem, 1, solve), 1e-9);
+  Rounds alone = rounds_of(problem, {once, once});
+  const double forward = measured.forward_seconds = at_share(alone.forward_seconds, 0.5);
+  measured.oracles.push_back(price_of(name_of(Oracle::forward), 1, forward, std::move(alone)));
+  if (problem.is_learned()) measured.oracles.push_back(inference_price(problem, forward));
+  // Products before the dense matrices, which large networks take up the time with.
+  for (const bool is_matrix : {false, true})
+    for (const OracleRow& row : kOracleTable) {
+      const auto found = kCalls.find(row.kind);
+      if (found == kCalls.end() || row.is_dense_matrix != is_matrix ||
+          !problem.offers().contains(row.kind))
+        continue;
+      if (seconds_by(problem.is_elsewhere()) - begin > kProblemSeconds) return measured;
+      const std::int64_t declared = problem.prices()[static_cast<std::size_t>(row.kind)];
+      const double expected = forward * static_cast<double>(declared);
+      if (is_matrix && expected > kOracleSeconds) continue;
+      const auto call = [&](Point& there, Room& room) { found->second(problem, there, room); };
+      measured.oracles.push_back(
+          price_of(row.name, declared, forward, rounds_of(problem, {forward, expected, call})));
+    }
+  return measured;
+}
+
+Sheet described_problem(const Catalog& catalog, const Component& component) {
+  const ProblemEntry& entry = catalog.problems.at(component.name);
+  Sheet sheet = described("problem", entry, component);
+  sheet.aim = entry.aim;
+  sheet.group = std::string(name_of(entry.group));
+  sheet.panels = entry.panels;
+  return sheet;
+}
+
+Sheet described_optimizer(const Catalog& catalog, const Component& component) {
+  const OptimizerEntry& entry = catalog.optimizers.at(component.name);
+  Sheet sheet = described("optimizer", entry, component);
+  sheet.oracles = names_of(entry.needs);
+  sheet.family = std::string(name_of(entry.family));
+  sheet.mathematics = std::string(name_of(entry.kind));
+  sheet.tunable = entry.tunable.option;
+  return sheet;
+}
+
+Sheet problem_sheet(const Catalog& catalog, const Component& component) {
+  constexpr const char* kInverses[] = {"none", "exact", "damped", "estimate", "approximate"};
+  const Problem problem = make_problem(catalog, component, 0);
+  Sheet sheet = described_problem(catalog, component);
+  sheet.aim = problem.aim();  // as its entry has it, or as another program says
+  sheet.oracles = names_of(problem.offers());
+  sheet.inverse = kInverses[static_cast<int>(problem.inverse_kind())];
+  sheet.unknowns = problem.unknowns();
+  sheet.residuals = problem.residuals();
+  sheet.target = small(problem.target());
+  constexpr Index kMostEntries = Index{256} * 256;  // of a J that is factorized: 20 ms
+  if (!problem.is_learned() && problem.has_identity_network() &&
+      problem.offers().contains(Oracle::jacobian) &&
+      problem.unknowns() * problem.residuals() <= kMostEntries) {
+    sheet.start_condition = condition_at(problem, problem.start());
+    if (problem.truth()) sheet.condition = condition_at(problem, problem.truth()->reshaped());
+  }
+  sheet.field = problem.field();
+  if (problem.truth()) sheet.truth = small(*problem.truth());
+  if (problem.window() && problem.unknowns() == 2) draw_landscapes(problem, sheet);
+  return sheet;
+}
+
+Sheet optimizer_sheet(const Catalog& catalog, const Component& component) {
+  Sheet sheet = described_optimizer(catalog, component);
+  sheet.privileges = possible_privileges(catalog.optimizers.at(component.name), component);
+  return sheet;
+}
 
 void write_sheets(const Catalog& catalog, const std::vector<Request>& requests, Store& store,
                   Progress::Style style) {

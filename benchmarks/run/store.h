@@ -27,19 +27,18 @@ class Store {
   void plan(const std::string& suite, const std::vector<PlannedCell>& cells);
 
   // The record of this request by this build, unless it is missing, damaged or interrupted. A
-  // damaged one is moved away; `find_in`, which only reads, leaves it in place.
+  // damaged one is moved away, by `find_in` it is left.
   std::optional<Record> find(const Request& request);
   static std::optional<Record> find_in(const std::filesystem::path& folder, const Request& request);
 
-  // The file name of this build's record of the request, and whether a file of any kind has this
-  // name.
+  // The file name of this build's record of the request, and whether anything has this name.
   static std::string name_of(const Request& request);
   bool has(const Request& request) const;
 
   // Creates the folder and its subfolders if they are missing; UsageError if that fails.
   void make_folders() const;
-  // Moves a file that cannot be read as what it should be into `damaged/`, where nothing is ever
-  // overwritten, with a remark that names it and the reason.
+  // Moves a file that is not what it should be into `damaged/`, where nothing is ever overwritten,
+  // with a remark that names it and the reason.
   void set_aside(const std::filesystem::path& path, const std::string& reason);
 
   // Messages for the user, one sentence each.
@@ -78,9 +77,9 @@ class RecordsOfAnyBuild {
 };
 
 // Locks on one file of the folder, one byte per cell. The system releases them when their process
-// ends, in whatever way; processes started by it do not share them. On a file system without locks
-// each run does all cells: some work is done twice, and nothing is lost. One object per folder and
-// process: closing the file drops all of its locks.
+// ends, in whatever way; its children do not share them. On a file system without locks some work
+// is done twice, and nothing is lost. One object per folder and process: closing the file drops
+// all.
 class Holds {
  public:
   explicit Holds(const std::filesystem::path& folder);
@@ -108,8 +107,7 @@ struct Comparison {
   bool is_up_to_there = false;  // a clock or a kill ended one of them: only so far
 };
 
-// The curve first, iteration by iteration, then all else that the request and not the build
-// decides.
+// The curve first, by iteration, then all else that the request and not the build decides.
 Comparison compare_results(const Record& a, const Record& b);
 
 }  // namespace isoline::benchmarks

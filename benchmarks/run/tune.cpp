@@ -110,75 +110,7 @@ Real cauchy_step(const Catalog& catalog, const Component& problem) {
   return std::isfinite(step) && step > 0 ? step : 1;
 }
 
-}  // namespace
-
-std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
-                            const Component& problem, const OptionValues& given) {
-  const OptimizerEntry& entry = catalog.optimizers.at(optimizer);
-  const Tunable& tunable = entry.tunable;
-  if (tunable.option.empty()) return std::nullopt;
-  const bool trains = problem.is_learned && field_of(entry, kNested);
-  if (trains || tunable.option == kNested) return knob_inside(catalog, entry, problem, given);
-  return knob_named(catalog, optimizer, problem, given, tunable.option);
-}
-
-OptionValues with_value(const Knob& knob, OptionValues given, Real value) {
-  if (knob.is_whole)
-    given.set(knob.option, static_cast<Index>(std::round(value)));
-  else if (knob.rule.empty())
-    given.set(knob.option, value);
-  else
-    given.set(kNested, fmt::format("{}[{}={}]", knob.rule, knob.option, value));
-  return given;
-}
-
-std::vector<Real> grid_of(const Knob& knob, Real unit) {
-  std::vector<Real> values;
-  for (int i = 0; i < kGridValues; ++i) {
-    const Real value = unit * std::pow(knob.tunable.factor, i - knob.tunable.below);
-    if (const auto each = allowed(knob, value)) values.push_back(*each);
-  }
-  if (values.empty()) return {knob.standard};
-  if (knob.standard < values.front() || knob.standard > values.back()) return values;
-  *std::ranges::min_element(values, {}, [&](Real value) {
-    return std::abs(std::log(value / knob.standard));
-  }) = knob.standard;
-  return values;
-}
-
-std::optional<Real> value_beyond(const Knob& knob, const std::vector<Real>& values, bool upward) {
-  const Real two = std::pow(knob.tunable.factor, 2);  // from the last but one: less is rounded
-  const std::size_t next = values.size() > 1 ? 1 : 0;
-  const Real value = upward ? values[values.size() - 1 - next] * two : values[next] / two;
-  const auto each = allowed(knob, value);
-  return each && *each != values.front() && *each != values.back() ? each : std::nullopt;
-}
-
-GivenGrid parse_grid(const std::string& text, const std::string& unit) {
-  const auto equals = text.find('='), dots = text.find(".."), cross = text.rfind('x');
-  Real low = 0, high = 0;
-  int count = 0;
-  const auto number = [&](std::size_t from, std::size_t to, auto& value) {
-    if (to == std::string::npos || from > to) return false;
-    return std::from_chars(text.data() + from, text.data() + to, value).ptr == text.data() + to;
-  };
-  const bool is_read = equals != std::string::npos && number(equals + 1, dots, low) &&
-                       number(dots + 2, cross, high) && number(cross + 1, text.size(), count);
-  constexpr int kMost = 1000;
-  const bool is_grid = is_read && low > 0 && high >= low && std::isfinite(high) && count >= 1;
-  require(is_grid,
-          [&] { return fmt::format("expected a grid such as rate=1e-4..1e-1x4, got '{}'", text); });
-  require(count <= kMost,
-          [&] { return fmt::format("a grid has at most 1,000 values, got '{}'", text); });
-  GivenGrid grid{.option = text.substr(0, equals), .values = {}, .unit = unit};
-  for (int i = 0; i < count; ++i)
-    grid.values.push_back(low * std::pow(high / low, count > 1 ? Real(i) / (count - 1) : 0));
-  return grid;
-}
-
 // --- scores, read off records
-
-namespace {
 
 Real median(std::vector<Real> values) {
   std::ranges::sort(values, [](Real a, Real b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
@@ -200,51 +132,7 @@ Real work_of(const Record& run) {
   return INFINITY;
 }
 
-}  // namespace
-
-TuningScore score_of(const std::vector<Record>& runs) {
-  std::vector<Real> work, left;
-  for (const Record& run : runs) {
-    if (is_failure(run.status) || run.status == Status::diverged ||
-        run.status == Status::inapplicable)
-      return {};
-    const Real end = run.aim == Aim::x ? run.summary.x_error : run.summary.loss;
-    work.push_back(run.request.problem.is_learned ? INFINITY : work_of(run));
-    left.push_back(std::isnan(end) ? INFINITY : end);
-  }
-  if (runs.empty()) return {};
-  return {median(work), median(left)};
-}
-
-std::size_t best_value(const std::vector<Real>& values, const std::vector<TuningScore>& scores,
-                       Real standard) {
-  const auto away = [&](std::size_t i) { return std::abs(std::log(values[i] / standard)); };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < values.size(); ++i)
-    if (scores[i] < scores[best] || (scores[i] == scores[best] && away(i) < away(best))) best = i;
-  return best;
-}
-
-std::vector<Real> best_of(std::vector<Real> losses) {
-  std::ranges::sort(losses);
-  const auto n = losses.size();
-  std::vector<Real> expected;
-  for (std::size_t b = 1; b <= n; ++b) {
-    // C(n − i, b − 1)/C(n, b) by its ratio from one i to the next, i = 1 … n − b + 1.
-    Real weight = static_cast<Real>(b) / static_cast<Real>(n), sum = 0;
-    for (std::size_t i = 1; i + b <= n + 1; ++i) {
-      sum += weight * losses[i - 1];
-      weight *=
-          static_cast<Real>(n - i - b + 1) / static_cast<Real>(std::max<std::size_t>(1, n - i));
-    }
-    expected.push_back(sum);
-  }
-  return expected;
-}
-
 // --- the choice of one option over a recorded grid
-
-namespace {
 
 struct Candidate {
   TunedPair pair;
@@ -362,6 +250,110 @@ Json candidate_row(const Candidate& candidate, const Budget& usual) {
 }
 
 }  // namespace
+
+std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
+                            const Component& problem, const OptionValues& given) {
+  const OptimizerEntry& entry = catalog.optimizers.at(optimizer);
+  const Tunable& tunable = entry.tunable;
+  if (tunable.option.empty()) return std::nullopt;
+  const bool trains = problem.is_learned && field_of(entry, kNested);
+  if (trains || tunable.option == kNested) return knob_inside(catalog, entry, problem, given);
+  return knob_named(catalog, optimizer, problem, given, tunable.option);
+}
+
+OptionValues with_value(const Knob& knob, OptionValues given, Real value) {
+  if (knob.is_whole)
+    given.set(knob.option, static_cast<Index>(std::round(value)));
+  else if (knob.rule.empty())
+    given.set(knob.option, value);
+  else
+    given.set(kNested, fmt::format("{}[{}={}]", knob.rule, knob.option, value));
+  return given;
+}
+
+std::vector<Real> grid_of(const Knob& knob, Real unit) {
+  std::vector<Real> values;
+  for (int i = 0; i < kGridValues; ++i) {
+    const Real value = unit * std::pow(knob.tunable.factor, i - knob.tunable.below);
+    if (const auto each = allowed(knob, value)) values.push_back(*each);
+  }
+  if (values.empty()) return {knob.standard};
+  if (knob.standard < values.front() || knob.standard > values.back()) return values;
+  *std::ranges::min_element(values, {}, [&](Real value) {
+    return std::abs(std::log(value / knob.standard));
+  }) = knob.standard;
+  return values;
+}
+
+std::optional<Real> value_beyond(const Knob& knob, const std::vector<Real>& values, bool upward) {
+  const Real two = std::pow(knob.tunable.factor, 2);  // from the last but one: less is rounded
+  const std::size_t next = values.size() > 1 ? 1 : 0;
+  const Real value = upward ? values[values.size() - 1 - next] * two : values[next] / two;
+  const auto each = allowed(knob, value);
+  return each && *each != values.front() && *each != values.back() ? each : std::nullopt;
+}
+
+GivenGrid parse_grid(const std::string& text, const std::string& unit) {
+  const auto equals = text.find('='), dots = text.find(".."), cross = text.rfind('x');
+  Real low = 0, high = 0;
+  int count = 0;
+  const auto number = [&](std::size_t from, std::size_t to, auto& value) {
+    if (to == std::string::npos || from > to) return false;
+    return std::from_chars(text.data() + from, text.data() + to, value).ptr == text.data() + to;
+  };
+  const bool is_read = equals != std::string::npos && number(equals + 1, dots, low) &&
+                       number(dots + 2, cross, high) && number(cross + 1, text.size(), count);
+  constexpr int kMost = 1000;
+  const bool is_grid = is_read && low > 0 && high >= low && std::isfinite(high) && count >= 1;
+  require(is_grid,
+          [&] { return fmt::format("expected a grid such as rate=1e-4..1e-1x4, got '{}'", text); });
+  require(count <= kMost,
+          [&] { return fmt::format("a grid has at most 1,000 values, got '{}'", text); });
+  GivenGrid grid{.option = text.substr(0, equals), .values = {}, .unit = unit};
+  for (int i = 0; i < count; ++i)
+    grid.values.push_back(low * std::pow(high / low, count > 1 ? Real(i) / (count - 1) : 0));
+  return grid;
+}
+
+TuningScore score_of(const std::vector<Record>& runs) {
+  std::vector<Real> work, left;
+  for (const Record& run : runs) {
+    if (is_failure(run.status) || run.status == Status::diverged ||
+        run.status == Status::inapplicable)
+      return {};
+    const Real end = run.aim == Aim::x ? run.summary.x_error : run.summary.loss;
+    work.push_back(run.request.problem.is_learned ? INFINITY : work_of(run));
+    left.push_back(std::isnan(end) ? INFINITY : end);
+  }
+  if (runs.empty()) return {};
+  return {median(work), median(left)};
+}
+
+std::size_t best_value(const std::vector<Real>& values, const std::vector<TuningScore>& scores,
+                       Real standard) {
+  const auto away = [&](std::size_t i) { return std::abs(std::log(values[i] / standard)); };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (scores[i] < scores[best] || (scores[i] == scores[best] && away(i) < away(best))) best = i;
+  return best;
+}
+
+std::vector<Real> best_of(std::vector<Real> losses) {
+  std::ranges::sort(losses);
+  const auto n = losses.size();
+  std::vector<Real> expected;
+  for (std::size_t b = 1; b <= n; ++b) {
+    // C(n − i, b − 1)/C(n, b) by its ratio from one i to the next, i = 1 … n − b + 1.
+    Real weight = static_cast<Real>(b) / static_cast<Real>(n), sum = 0;
+    for (std::size_t i = 1; i + b <= n + 1; ++i) {
+      sum += weight * losses[i - 1];
+      weight *=
+          static_cast<Real>(n - i - b + 1) / static_cast<Real>(std::max<std::size_t>(1, n - i));
+    }
+    expected.push_back(sum);
+  }
+  return expected;
+}
 
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options) {

@@ -29,8 +29,7 @@ struct Knob {
   optimizers::Tunable tunable;  // the tunable option of the method
 };
 
-// The tunable option of a method, if it has one. `given` are the options that the pair
-// has anyway.
+// The tunable option of a method, if it has one. `given` are options that the pair has anyway.
 std::optional<Knob> knob_of(const Catalog& catalog, const std::string& optimizer,
                             const Component& problem, const OptionValues& given);
 
@@ -67,8 +66,8 @@ struct TuningScore {
   }
 };
 
-// From the runs of one value, one per seed. A diverged or failed run gives neither number. Learning
-// problems are judged by the remainder on their validation samples only.
+// From the runs of one value, one per seed. A diverged or failed run gives neither number, a
+// learning problem the second alone, on its validation samples.
 TuningScore score_of(const std::vector<Record>& runs);
 
 // Which of the values is best. Ties go to the default, or to what is nearest to it on a logarithmic
@@ -86,9 +85,8 @@ struct TunedPair {
   OptionValues options = {};  // that it has anyway, as from a paper
 };
 
-// Every pair is tried at seven values of its method's tunable option. While the best stands at an
-// edge, one more is tried beyond it, three at most. A grid of one's own is for all pairs, and is
-// not extended.
+// Every pair is tried at seven values of its method's option, and while the best stands at an edge
+// at one more beyond it, three at most. A grid of one's own is for all pairs, and is not extended.
 struct TuningPlan {
   std::vector<TunedPair> pairs;
   std::vector<std::uint64_t> seeds;
@@ -111,10 +109,9 @@ struct TuningResult {
   Outcome outcome;                   // runs and seconds are those of all rounds
 };
 
-// A row has the values, their scores, the expected least loss (or error in x) of the best of b
-// randomly sampled ones, for b = 1 to all, whether the best is at an edge, and the budget of work
-// if it differs from that of the first pair. Inapplicable pairs have none; if every value failed,
-// the one nearest to the default is used.
+// A row has the values, their scores, `best_of`, whether the best is at an edge, and the budget of
+// work if it differs from that of the first pair. Inapplicable pairs have none; if every value
+// failed, the one nearest to the default is used.
 TuningResult tune(const Catalog& catalog, const TuningPlan& plan,
                   const std::filesystem::path& folder, const RunOptions& options);
 
