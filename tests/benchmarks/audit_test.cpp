@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <csignal>
-#include <nlohmann/json.hpp>
 
 #include "benchmarks/audit/audit_problems.h"
 #include "core/records/schema.h"

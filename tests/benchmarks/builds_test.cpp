@@ -2,7 +2,6 @@
 // other; a record of another build is not taken for one of this.
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "benchmarks/plan/build_parts.h"

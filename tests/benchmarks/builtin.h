@@ -2,6 +2,7 @@
 // at its own rates, and its schemas, for tests of what is held to them.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

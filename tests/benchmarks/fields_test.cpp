@@ -1,5 +1,4 @@
 // Fields of a run stand beside its record, change nothing of it, and stay with it where it goes.
-#include <nlohmann/json.hpp>
 
 #include "benchmarks/merge/merge.h"
 #include "benchmarks/merge/record_union.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/run/process_group.h"

@@ -2,7 +2,6 @@
 // over the memory that it shares is not read unless it can be.
 
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "benchmarks/run/execute.h"
 #include "benchmarks/run/run_plan.h"

@@ -2,7 +2,6 @@
 #include "benchmarks/plan/rates.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "benchmarks/plan/build_parts.h"

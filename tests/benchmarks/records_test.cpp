@@ -1,6 +1,5 @@
 // What every record must hold, over every problem with every optimizer.
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "core/records/schema.h"

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "benchmarks/run/run_plan.h"

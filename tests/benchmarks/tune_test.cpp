@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "benchmarks/run/sheets.h"
 #include "core/records/schema.h"
