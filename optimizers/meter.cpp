@@ -10,7 +10,7 @@
 #include "core/decompose.h"
 #include "core/errors.h"
 #include "core/frames.h"
-#include "core/ladder.h"
+#include "core/status.h"
 
 namespace isoline::optimizers {
 namespace {

@@ -2,7 +2,6 @@
 // They are taken at kept iterations, off the clock, and no method sees them.
 #pragma once
 
-#include "core/learning_options.h"
 #include "core/options.h"
 #include "problems/problem.h"
 

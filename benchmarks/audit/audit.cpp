@@ -317,7 +317,7 @@ std::vector<AuditedOptimizer> audit_all(const Catalog& catalog,
     const auto [text, failure] = isolated_text(
         [&] { return json_text(to_json(audit_optimizer(catalog, name))); }, kAuditSeconds);
     if (text)
-      all.push_back(audited_from_json(parse_json(*text, name)));
+      all.push_back(audited_from_text(*text, name));
     else
       all.push_back({.name = name,
                      .spec = name,

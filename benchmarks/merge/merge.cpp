@@ -17,10 +17,10 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/audited.h"
 #include "core/records/json_view.h"
-#include "core/records/plan.h"
 #include "core/records/record.h"
+#include "core/records/request.h"
+#include "core/records/sheet.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
@@ -208,7 +208,7 @@ class Merge {
 
   void merge_audits() {
     const auto audits = read_all<Json>("audit.json", [](const auto& text, const auto& origin) {
-      return audit_to_json(audit_from_json(parse_json(text, origin)));
+      return audit_to_json(audit_from_text(text, origin));
     });
     if (audits.empty()) return;
     std::map<std::string, Json> by_name;

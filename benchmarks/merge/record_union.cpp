@@ -9,12 +9,9 @@
 #include <string_view>
 #include <tuple>
 
-#include "core/digest.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/field_frames.h"
-#include "core/records/plan.h"
 #include "core/records/record.h"
 #include "core/records/request.h"
 #include "core/text.h"

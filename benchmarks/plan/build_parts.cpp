@@ -3,7 +3,6 @@
 
 #include <sstream>
 
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/records/provenance.h"
 

@@ -7,9 +7,9 @@
 
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/rates.h"
-#include "core/digest.h"
+#include "core/files.h"
 #include "core/foreign/plugin_library.h"
-#include "core/learning_options.h"
+#include "core/options.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 

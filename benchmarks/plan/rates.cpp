@@ -11,9 +11,8 @@
 #include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/learning_options.h"
 #include "core/options.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/spec.h"
 
 namespace isoline::benchmarks {

@@ -4,7 +4,6 @@
 #include <csignal>
 
 #include "core/clock.h"
-#include "core/digest.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"

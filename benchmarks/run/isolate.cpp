@@ -24,7 +24,7 @@
 #include "benchmarks/run/interrupts.h"
 #include "benchmarks/run/process_group.h"
 #include "core/clock.h"
-#include "core/foreign/child.h"
+#include "core/foreign/foreign.h"
 #include "core/text.h"
 #include "core/threads.h"
 

@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "core/clock.h"
-#include "core/digest.h"
 #include "core/errors.h"
+#include "core/files.h"
 
 namespace isoline::benchmarks {
 namespace {

@@ -9,9 +9,8 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/records/json_view.h"
-#include "core/records/plan.h"
 #include "core/records/record.h"
-#include "core/records/record_fields.h"
+#include "core/records/request.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;
@@ -27,7 +26,7 @@ std::optional<RecordOutline> outline_of(const fs::path& file) {
     RecordOutline seen{.cell = json.at("cell"),
                        .problem = request.at("problem").at("spec"),
                        .optimizer = request.at("optimizer").at("spec")};
-    Form<Budget>::read(request.at("budget"), seen.budget);
+    seen.budget = budget_from(request.at("budget"));
     seen.threads = request.at("threads");
     const std::optional<Status> status = status_of(json.at("status").get<std::string>());
     require(status.has_value(), "it has no known status");

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/foreign/child.h"
+#include "core/foreign/foreign.h"
 
 namespace isoline::benchmarks {
 

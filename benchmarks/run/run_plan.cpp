@@ -11,7 +11,6 @@
 #include "benchmarks/run/sheets.h"
 #include "benchmarks/run/store.h"
 #include "core/clock.h"
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"

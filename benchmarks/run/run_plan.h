@@ -8,7 +8,7 @@
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/store.h"
-#include "core/records/plan.h"
+#include "core/records/request.h"
 
 namespace isoline::benchmarks {
 

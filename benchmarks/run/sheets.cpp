@@ -22,8 +22,8 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/plan.h"
 #include "core/records/provenance.h"
+#include "core/records/request.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 

@@ -8,7 +8,6 @@
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/run/progress.h"
 #include "benchmarks/run/store.h"
-#include "core/records/plan.h"
 #include "core/records/request.h"
 #include "core/records/sheet.h"
 

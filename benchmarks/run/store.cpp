@@ -14,7 +14,7 @@
 #include "benchmarks/plan/build_parts.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/plan.h"
+#include "core/records/request.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;

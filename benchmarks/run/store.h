@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/records/plan.h"
 #include "core/records/record.h"
+#include "core/records/request.h"
 #include "core/records/sheet.h"
 
 namespace isoline::benchmarks {

@@ -6,11 +6,11 @@
 #include "benchmarks/plan/build_parts.h"
 #include "benchmarks/plan/rates.h"
 #include "benchmarks/run/execute.h"
-#include "core/digest.h"
+#include "core/files.h"
 #include "core/frames.h"
-#include "core/ladder.h"
-#include "core/records/integrity.h"
 #include "core/records/provenance.h"
+#include "core/records/record.h"
+#include "core/status.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {

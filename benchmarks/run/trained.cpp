@@ -15,7 +15,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/text.h"
 
 namespace isoline::benchmarks {

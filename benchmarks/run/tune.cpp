@@ -10,8 +10,8 @@
 
 #include "benchmarks/run/isolate.h"
 #include "core/json.h"
-#include "core/ladder.h"
 #include "core/options.h"
+#include "core/status.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 

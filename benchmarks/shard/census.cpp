@@ -14,8 +14,8 @@
 #include "core/clock.h"
 #include "core/errors.h"
 #include "core/files.h"
-#include "core/records/field_frames.h"
-#include "core/records/plan.h"
+#include "core/records/record.h"
+#include "core/records/request.h"
 
 namespace isoline::benchmarks {
 namespace fs = std::filesystem;

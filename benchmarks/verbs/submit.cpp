@@ -12,7 +12,6 @@
 #include "benchmarks/run/progress.h"
 #include "benchmarks/shard/slurm.h"
 #include "benchmarks/shard/split.h"
-#include "core/digest.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text.h"

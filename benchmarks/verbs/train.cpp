@@ -15,7 +15,7 @@
 #include "benchmarks/run/isolate.h"
 #include "benchmarks/run/runner.h"
 #include "benchmarks/run/trained.h"
-#include "core/learning_options.h"
+#include "core/options.h"
 #include "core/text.h"
 #include "reports/sections/words.h"
 

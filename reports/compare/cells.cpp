@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
-#include "core/digest.h"
 #include "core/errors.h"
+#include "core/files.h"
 #include "core/json.h"
-#include "core/ladder.h"
+#include "core/status.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -11,11 +11,9 @@
 #include <vector>
 
 #include "core/options.h"
-#include "core/records/integrity.h"
 #include "core/records/record.h"
 #include "core/results/statistics.h"
 #include "core/results/study.h"
-#include "core/results/targets.h"
 #include "core/status.h"
 #include "core/threads.h"
 

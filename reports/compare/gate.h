@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/results/times.h"
+#include "core/results/statistics.h"
 #include "core/status.h"
 #include "core/threads.h"
 #include "reports/compare/differences.h"

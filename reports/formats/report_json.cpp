@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/digest.h"
+#include "core/files.h"
 #include "core/json.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/evidence.h"
@@ -159,7 +159,6 @@ Json decision_json(const Comparison& c, const std::optional<Decision>& decision)
           {"significant", decision->is_lead},
           {"settings", decision->settings},
           {"families", decision->families},
-          {"friedman_p", decision->friedman},
           {"least_p", decision->least_p},
           {"places", places},
           {"choices", choices}};

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "core/files.h"
-#include "core/records/audited.h"
+#include "core/records/sheet.h"
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"

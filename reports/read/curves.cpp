@@ -6,7 +6,7 @@
 #include <functional>
 #include <set>
 
-#include "core/results/targets.h"
+#include "core/results/study.h"
 
 namespace isoline::reports {
 namespace {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/errors.h"
-#include "core/learning_options.h"
+#include "core/options.h"
 #include "core/spec.h"
 
 namespace isoline::reports {

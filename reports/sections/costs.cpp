@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/results/statistics.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"

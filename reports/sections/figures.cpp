@@ -128,7 +128,7 @@ Figure path_figure(const Comparison& c, std::size_t p, const std::string& pair) 
 // take(y*, x*, x) for every number of every sample shown.
 template <class Take>
 void each_error(const Record& record, Take take) {
-  if (!record.exhibit || record.exhibit->is_picture() || record.exhibit->truth.is_empty()) return;
+  if (!record.exhibit || record.exhibit->truth.is_empty()) return;
   const Exhibit& shown = *record.exhibit;
   for (Index b = 0; b < shown.x.columns(); ++b)
     for (Index i = 0; i < shown.x.rows() && i < shown.target.rows(); ++i)

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/words.h"
 

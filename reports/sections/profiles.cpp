@@ -6,11 +6,11 @@
 #include <cmath>
 #include <map>
 
-#include "core/digest.h"
 #include "core/draws.h"
+#include "core/files.h"
 #include "core/results/ranking.h"
 #include "core/results/statistics.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"

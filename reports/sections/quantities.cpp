@@ -8,7 +8,6 @@
 
 #include "core/json.h"
 #include "core/results/statistics.h"
-#include "core/results/tests.h"
 #include "reports/sections/claim_terms.h"
 
 namespace isoline::reports {

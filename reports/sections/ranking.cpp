@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/results/tests.h"
+#include "core/results/statistics.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/sections.h"
@@ -448,12 +448,6 @@ std::vector<std::string> limits_of_evidence(const Comparison& c) {
   std::vector<std::string> all;
   if (c.decision && c.decision->places.size() > 1) {
     const Decision& decision = *c.decision;
-    all.push_back(fmt::format("Friedman’s test of {} over {}: p = {:.2g}, so {}.",
-                              counted(decision.places.size(), "method"),
-                              counted(decision.families, "problem"), decision.friedman,
-                              decision.friedman <= kSignificant
-                                  ? "the mean ranks differ"
-                                  : "equal mean ranks cannot be ruled out"));
     all.push_back(fmt::format("Over {} the least p that sign flips can give is {:.2g}.",
                               counted(decision.families, "problem"), decision.least_p));
     if (decision.detectable < kNever)

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/records/audited.h"
+#include "core/records/sheet.h"
 #include "core/results/ranking.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/figures.h"

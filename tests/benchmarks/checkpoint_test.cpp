@@ -11,7 +11,6 @@
 
 #include "benchmarks/plan/suite.h"
 #include "benchmarks/run/runner.h"
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "tests/benchmarks/builtin.h"

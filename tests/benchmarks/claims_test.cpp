@@ -9,7 +9,7 @@
 #include "benchmarks/plan/catalog.h"
 #include "benchmarks/plan/claim_cells.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 
 namespace isoline::benchmarks {
 namespace {

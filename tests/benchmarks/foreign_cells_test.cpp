@@ -10,7 +10,7 @@
 #include "benchmarks/run/process_group.h"
 #include "benchmarks/run/run_plan.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/clients/programs.h"
 #include "tests/temporary_folder.h"

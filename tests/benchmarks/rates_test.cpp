@@ -15,7 +15,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/options.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/spec.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"

@@ -5,7 +5,7 @@
 
 #include "benchmarks/plan/catalog.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "optimizers/optimizer.h"
 #include "problems/problem.h"
 #include "tests/benchmarks/builtin.h"

@@ -14,7 +14,7 @@
 #include "benchmarks/run/run_plan.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "optimizers/optimizer.h"
 #include "problems/dense_physics.h"
 #include "problems/problem.h"

@@ -9,7 +9,6 @@
 #include <map>
 #include <numeric>
 
-#include "core/digest.h"
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/random.h"

@@ -11,7 +11,7 @@
 #include "benchmarks/plan/catalog.h"
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "core/spec.h"
 #include "core/text.h"
 #include "tests/benchmarks/builtin.h"

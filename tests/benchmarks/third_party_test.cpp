@@ -7,7 +7,7 @@
 #include "benchmarks/run/preview.h"
 #include "benchmarks/run/sheets.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "optimizers/optimizer.h"
 #include "problems/dense_physics.h"
 #include "problems/problem.h"

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "core/ladder.h"
+#include "core/status.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/ladder.h"
+#include "core/status.h"
 #include "problems/dense_physics.h"
 #include "tests/problems/make.h"
 
@@ -116,12 +116,6 @@ TEST(Scales, TheDampedInverseOfHeatStaysAboveTheFloor) {
   Matrix x(problem.inputs(), 1);
   problem.local_inverse(problem.target(), x, at);
   EXPECT_LT(problem.x_floor(problem.batch()), (x - *problem.truth()).norm());
-}
-
-TEST(Scales, AGoalAboveATenthOfXIsBeyondRanking) {
-  EXPECT_FALSE(is_beyond_ranking(1, 0.0909));  // 1.1 times it is 0.09999
-  EXPECT_TRUE(is_beyond_ranking(1, 0.091));
-  EXPECT_FALSE(is_beyond_ranking(1, 0));
 }
 
 TEST(Scales, WhoSeeksXSaysSoAndKnowsIt) {

@@ -7,7 +7,7 @@
 
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "reports/formats/formats.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"

@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/json.h"
 #include "core/results/ranking.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/read/curves.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"

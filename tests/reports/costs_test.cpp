@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
 #include "tests/reports/fixture.h"
@@ -39,6 +39,7 @@ TEST(Costs, AreRawCountsAtMeasuredPrices) {
   EXPECT_EQ(prices.cost(counted()), 51 * 3.5);
   EXPECT_EQ(prices.hit_costs(counted())[30], 30 * 3.5);
   EXPECT_EQ(prices.curve_costs(counted())[10], 10 * 3.5);
+  EXPECT_EQ(counts_at(counted(), 60)[1], 30);
 }
 
 TEST(Costs, OfAnOracleThatWasNotMeasuredAreAtItsDeclaredPrice) {
@@ -66,18 +67,6 @@ TEST(Costs, InForwardSolvesBelowAMicrosecondAreDeclaredThroughout) {
   sheet.prices->forward_seconds = 0.5e-6;
   EXPECT_FALSE(Prices(&sheet).are_measured());
   EXPECT_EQ(Prices(&sheet).cost(counted()), Real(counted().summary.work));
-}
-
-// At work 2 j − 1 the curve stands half way between its points.
-TEST(Costs, OfOlderRecordsAreReadBetweenThePointsOfTheCurve) {
-  Record older = counted();
-  older.hits->counts.clear();
-  older.hits->work[30] = 59;
-  const Sheet sheet = priced("square", 2.5);
-  EXPECT_EQ(Prices(&sheet).hit_costs(older)[30], 29.5 * 3.5);
-  EXPECT_EQ(Prices(&sheet).hit_costs(older)[29], 29 * 3.5);
-  EXPECT_EQ(counts_at(older, 59)[1], 30) << "whole calls: the first kept point from there on";
-  EXPECT_EQ(counts_at(counted(), 60)[1], 30);
 }
 
 TEST(Costs, WithoutMeasuredPricesAreTheDeclaredWork) {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

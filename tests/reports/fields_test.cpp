@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/page/page.h"

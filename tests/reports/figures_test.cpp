@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "core/digest.h"
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/report.h"
@@ -93,7 +92,7 @@ TEST_F(Figures, CurveTakesOnlyTheProblemsThatItsPanelWants) {
 
 TEST_F(Figures, ScatterAndDecadesReadTheSamples) {
   Record record = learned({.optimizer = "sip"});
-  record.exhibit = Exhibit{.grid = 0, .target = {}, .x = {}, .truth = {}};
+  record.exhibit = Exhibit{.target = {}, .x = {}, .truth = {}};
   record.exhibit->target = Grid(1, 6, std::vector<Real>(6, 0.02));
   record.exhibit->truth = Grid(1, 6, {-5, -4, -3, -2, -1, 0});
   record.exhibit->x = Grid(1, 6, {-4.5, -3.5, -2.5, -1.5, -0.5, 0.5});

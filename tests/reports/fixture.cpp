@@ -11,8 +11,8 @@
 
 #include "core/files.h"
 #include "core/json.h"
-#include "core/ladder.h"
 #include "core/spec.h"
+#include "core/status.h"
 
 namespace isoline::reports {
 

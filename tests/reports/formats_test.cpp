@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "reports/formats/escape.h"
 #include "reports/report.h"
 #include "reports/sections/words.h"

@@ -9,7 +9,7 @@
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "tests/reports/gate_fixture.h"
 
 namespace isoline::reports {

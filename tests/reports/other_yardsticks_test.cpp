@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "reports/report.h"
 #include "reports/sections/evidence.h"
 #include "reports/sections/ranking.h"

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "core/results/labels.h"
 #include "core/results/ranking.h"
+#include "core/results/table.h"
 #include "reports/page/kinds.h"
 #include "reports/report.h"
 #include "reports/sections/ranking.h"

@@ -7,7 +7,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "core/oracle.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "reports/report.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"

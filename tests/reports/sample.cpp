@@ -7,10 +7,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/digest.h"
+#include "core/files.h"
 #include "core/json.h"
-#include "core/ladder.h"
 #include "core/spec.h"
+#include "core/status.h"
 #include "tests/reports/fixture.h"
 #include "tests/reports/sample_parts.h"
 
@@ -140,25 +140,22 @@ void fail_some(Record& r, const Kind& kind) {
 }
 
 Provenance provenance() {
-  Provenance all(Build{.version = "0.1.0",
-                       .commit = "2963533f00dbabe",
-                       .is_dirty = true,
-                       .compiler = "GNU 12.2.0",
-                       .build_type = "Release",
-                       .flags = "-O3 -DNDEBUG -march=native",
-                       .processor = "Intel(R) Xeon(R) Processor @ 2.70GHz",
-                       .cores = 2,
-                       .system = "Linux 6.1.0 x86_64",
-                       .libraries = {{"Eigen", "3.4.0"},
-                                     {"Ceres", "2.1.0"},
-                                     {"NLopt", "2.7.1"},
-                                     {"OpenBLAS", "0.3.21"}},
-                       .other = R"({"march": "native"})"});
+  Provenance all(Build{
+      .version = "0.1.0",
+      .commit = "2963533f00dbabe",
+      .is_dirty = true,
+      .compiler = "GNU 12.2.0",
+      .build_type = "Release",
+      .flags = "-O3 -DNDEBUG -march=native",
+      .processor = "Intel(R) Xeon(R) Processor @ 2.70GHz",
+      .cores = 2,
+      .system = "Linux 6.1.0 x86_64",
+      .libraries = {
+          {"Eigen", "3.4.0"}, {"Ceres", "2.1.0"}, {"NLopt", "2.7.1"}, {"OpenBLAS", "0.3.21"}}});
   all.run = {.started = "2026-11-21T06:45:42Z",
              .concurrent_jobs = 2,
              .is_exclusive = false,
-             .command = "./isoline run --suite inverse --seeds 5 --jobs 2",
-             .other = R"({"host_load": 1.25})"};
+             .command = "./isoline run --suite inverse --seeds 5 --jobs 2"};
   return all;
 }
 

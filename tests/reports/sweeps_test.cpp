@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/digest.h"
+#include "core/files.h"
 #include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/ladder.h"
 #include "core/random.h"
+#include "core/status.h"
 
 namespace isoline::reports {
 namespace {

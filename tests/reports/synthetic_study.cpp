@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "core/records/plan.h"
+#include "core/records/request.h"
 #include "core/records/sheet.h"
 #include "tests/reports/synthetic.h"
 

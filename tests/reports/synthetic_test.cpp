@@ -9,7 +9,7 @@
 
 #include "core/files.h"
 #include "core/json.h"
-#include "core/records/schema.h"
+#include "core/records/json_view.h"
 #include "reports/report.h"
 #include "tests/temporary_folder.h"
 

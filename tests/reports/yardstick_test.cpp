@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/results/ranking.h"
-#include "core/results/targets.h"
+#include "core/results/study.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -38,8 +38,8 @@ bool reads_the_mode(const std::string& line) {
 
 TEST(Specs, WhetherAComponentLearnsIsDecidedOnce) {
   const std::vector<std::string> allowed = {
-      "core/learning_options.h",    // the name
-      "core/records/request.cpp",   // the decision
+      "core/options.h",             // the name
+      "core/records/record.cpp",    // the decision
       "problems/",                  // the option
       "benchmarks/plan/rates.cpp",  // a row that names the mode, or does not
       "benchmarks/verbs/train",     // implied there

@@ -1,17 +1,20 @@
-// What comes over a line to another program is whole and lawful, or an error that says who broke
-// which law; and a program that is started ends with the line.
-#include "core/foreign/line.h"
-
+// Frames, handshakes and programs of others are whole and lawful, or an error says what is wrong; a
+// program that is started ends with its line.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
-#include "core/errors.h"
+#include "core/foreign/handshake.h"
+#include "core/foreign/line.h"
+#include "core/json.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace isoline {
@@ -54,12 +57,7 @@ std::string said_of(const std::string& answer, bool hangs_up = true, double seco
   ends.write(answer);
   if (hangs_up) ends.hang_up();
   std::array<double, 2> numbers{};
-  try {
-    ends.line->receive_answer(Verb::pullback, numbers, seconds);
-  } catch (const LineError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal<LineError>([&] { ends.line->receive_answer(Verb::pullback, numbers, seconds); });
 }
 
 void expect_said(const std::string& answer, const std::string& part) {
@@ -135,12 +133,8 @@ TEST(Line, AQuestionLongerThanItsRoomIsRefusedBeforeItIsRead) {
   BothEnds ends;
   ends.write(frame(17, 0, std::uint64_t{1} << 40, ""));
   std::array<double, 4> room{};
-  try {
-    ends.line->receive(room);
-    FAIL() << "it was taken";
-  } catch (const LineError& error) {
-    EXPECT_NE(std::string(error.what()).find("at most 32 are allowed here"), std::string::npos);
-  }
+  EXPECT_NE(refusal<LineError>([&] { ends.line->receive(room); }).find("at most 32 are allowed"),
+            std::string::npos);
 }
 
 // --- programs
@@ -152,12 +146,7 @@ ChildProgram::Start shell(const std::string& script) {
 std::string failure_of(const std::string& script, double seconds = 20) {
   Line line(shell(script));
   std::array<double, 1> numbers{};
-  try {
-    line.receive_answer(Verb::linearize, numbers, seconds);
-  } catch (const LineError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal<LineError>([&] { line.receive_answer(Verb::linearize, numbers, seconds); });
 }
 
 TEST(Programs, HowTheyEndAndWhatTheyPrintedLastIsSaid) {
@@ -184,14 +173,8 @@ TEST(Programs, FindTheirEndOfTheLineByItsNumber) {
 }
 
 TEST(Programs, ThatAreNotThereAreNamed) {
-  const auto start = [] { const Line line({.command = "a-program-that-nobody-has 'x y'"}); };
-  EXPECT_THROW(
-      try { start(); } catch (const UsageError& error) {
-        EXPECT_STREQ(error.what(),
-                     "cannot start 'a-program-that-nobody-has': No such file or directory");
-        throw;
-      },
-      UsageError);
+  EXPECT_EQ(refusal([] { const Line line({.command = "a-program-that-nobody-has 'x y'"}); }),
+            "cannot start 'a-program-that-nobody-has': No such file or directory");
 }
 
 // A process that has ended and that nobody has waited for has no command.
@@ -214,6 +197,115 @@ TEST(Programs, EndWithTheirLineAndSoDoesWhatTheyStarted) {
   }
   for (int i = 0; i < 2000 && runs(process); ++i) usleep(10'000);
   EXPECT_FALSE(runs(process));
+}
+
+Json a_problem() {
+  return {{"protocol", 1},
+          {"role", "problem"},
+          {"name", "spring"},
+          {"inputs", 2},
+          {"outputs", 3},
+          {"oracles", {"forward", "pullback"}},
+          {"start", {1, 2}},
+          {"target", {0, 0.5, "inf"}},
+          {"interpreter", "CPython 3.11.2"},
+          {"packages", {{"numpy", "1.24.2"}}}};
+}
+
+// The complaint about a problem that says something else in one member.
+std::string complaint(const std::string& member, const Json& value) {
+  Json json = a_problem();
+  json[member] = value;
+  return refusal([&] { problem_handshake(json_text(json), "`mine`"); });
+}
+
+TEST(Handshakes, OfAProblemSayWhatItIs) {
+  const ProblemHandshake said = problem_handshake(json_text(a_problem()), "`mine`");
+  EXPECT_EQ(said.inputs, 2);
+  EXPECT_EQ(said.outputs, 3);
+  EXPECT_TRUE(said.oracles.contains(Oracle::pullback));
+  EXPECT_FALSE(said.oracles.contains(Oracle::pushforward));
+  EXPECT_TRUE(std::isinf(said.target[2])) << "what is not finite is data";
+  EXPECT_EQ(said.foreign.label, "spring");
+  EXPECT_EQ(said.foreign.packages.at("numpy"), "1.24.2");
+  EXPECT_EQ(said.inverse, "");
+  EXPECT_FALSE(said.minimum);
+}
+
+TEST(Handshakes, ThatBreakTheLawAreQuoted) {
+  const std::string whole = "a whole number in [1, 134217728]";
+  const struct {
+    std::string member;
+    Json value;
+    std::string law;
+  } all[] = {{"inputs", -3, whole},
+             {"inputs", 18446744073709551615ULL, whole},
+             {"outputs", 2.5, whole},
+             {"start", {1, 2, 3}, "a list of 2 numbers"},
+             {"target", {1, 2, "three"}, "a list of 3 numbers"},
+             {"oracles",
+              {"forward", "gradient"},
+              "a list of forward pushforward pullback jacobian inverse"},
+             {"name", Json::array({1}), "text"},
+             {"packages", {{"numpy", 1}}, "an object of texts"},
+             {"inverse", "perfect", "one of exact damped estimate approximate"},
+             {"minimum", "small", "a number"}};
+  for (const auto& [member, value, law] : all)
+    EXPECT_EQ(complaint(member, value),
+              "`mine` says " + member + " = " + json_text(value) + ", which must be " + law);
+  EXPECT_EQ(complaint("target", nullptr), "`mine` lacks target, a list of 3 numbers");
+}
+
+TEST(Handshakes, OfAnotherProtocolOrRoleAreRefused) {
+  EXPECT_EQ(complaint("protocol", 2), "`mine` uses protocol 2, but this program needs 1");
+  EXPECT_EQ(complaint("role", "optimizer"), "`mine` is an optimizer, but is used as a problem");
+  for (const char* text : {"", "[]", "{", "nonsense", "3"})
+    EXPECT_THROW(problem_handshake(text, "`mine`"), UsageError) << text;
+  EXPECT_THROW(problem_handshake(std::string(100'000, '['), "`mine`"), UsageError);
+}
+
+TEST(Handshakes, BoundsLieOneBelowTheOtherAndHoldEveryPointThatIsSaid) {
+  const std::string law =
+      ", which must be two lists of 2 numbers, the lower bounds below the upper ones";
+  for (const Json& wrong : {Json{{0, 1}, {0, 1}}, Json{{0, 0}, {1, "nan"}}, Json{{0, 0}},
+                            Json{{0}, {1}}, Json("none"), Json{{0, 0}, {1, "one"}}})
+    EXPECT_EQ(complaint("bounds", wrong), "`mine` says bounds = " + json_text(wrong) + law);
+  Json json = a_problem();
+  json["start"] = {1, 2};
+  json["bounds"] = {{"-inf", 2}, {1, "inf"}};
+  const ProblemHandshake said = problem_handshake(json_text(json), "`mine`");
+  EXPECT_EQ(said.lower, (std::vector<Real>{-std::numeric_limits<Real>::infinity(), 2}));
+  EXPECT_EQ(said.upper, (std::vector<Real>{1, std::numeric_limits<Real>::infinity()}));
+  EXPECT_TRUE(said.foreign.note.ends_with("It has no value outside its bounds on x."));
+  json["truth"] = {2, 2};
+  EXPECT_EQ(refusal([&] { problem_handshake(json_text(json), "`mine`"); }),
+            "`mine` declares a truth outside its bounds");
+}
+
+TEST(Handshakes, AnInverseAndItsKindBelongTogether) {
+  EXPECT_NE(complaint("inverse", "exact"), "");
+  Json json = a_problem();
+  json["oracles"].push_back("inverse");
+  EXPECT_THROW(problem_handshake(json_text(json), "`mine`"), UsageError);
+  json["inverse"] = "damped";
+  EXPECT_EQ(problem_handshake(json_text(json), "`mine`").inverse, "damped");
+}
+
+TEST(Handshakes, WhoSeeksXSaysWhich) {
+  EXPECT_EQ(complaint("aim", "x"), "`mine` has the success criterion x, but truth is missing");
+}
+
+TEST(Handshakes, OfAnOptimizerSayWhatItAsks) {
+  const Json json{
+      {"protocol", 1}, {"role", "optimizer"}, {"needs", {"jacobian"}}, {"least_squares", true}};
+  const MethodHandshake said = method_handshake(json_text(json), "`mine`");
+  EXPECT_TRUE(said.needs.contains(Oracle::forward) && said.needs.contains(Oracle::jacobian));
+  EXPECT_FALSE(said.needs.contains(Oracle::pullback));
+  EXPECT_TRUE(said.is_least_squares);
+  EXPECT_FALSE(said.reports);
+  Json bad = json;
+  bad["needs"] = {"truth"};
+  EXPECT_THROW(method_handshake(json_text(bad), "`mine`"), UsageError) << "it is a privilege";
 }
 
 }  // namespace
