@@ -37,7 +37,7 @@ inline std::string_view name_of(Status status) {
   return kStatusNames[static_cast<std::size_t>(status)];
 }
 
-// Of those that `names` lists in order.
+// The choice of this name among those that `names` lists in order.
 template <class Choice>
 std::optional<Choice> choice_named(std::string_view name, const auto& names) {
   const auto at = std::ranges::find(names, name);

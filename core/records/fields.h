@@ -65,7 +65,7 @@ bool is_absent(const Value& value) {
 // it; the same holds of a `forgiven` one, which is written where it is empty, too.
 enum class Presence { always, forgiven, expected, optional };
 
-// What fields() calls; each use defines member().
+// The calls of fields(); each use defines member().
 template <class Use>
 class Fields {
  public:

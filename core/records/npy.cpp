@@ -48,9 +48,8 @@ Header header_from(const std::string& text) {
     }
     const std::size_t last = notation.find_last_not_of(' ');
     const bool closes = letter == ')' || letter == '}';
-    if (closes && last != notation.npos && last > 0 && notation[last] == ',' &&
-        notation[last - 1] != '[')
-      notation.erase(last);
+    const bool is_empty = std::string_view(notation).substr(0, last + 1).ends_with("[,");
+    if (closes && last != notation.npos && notation[last] == ',' && !is_empty) notation.erase(last);
     notation += letter == '\'' ? '"' : letter == '(' ? '[' : letter == ')' ? ']' : letter;
   }
   for (const auto& [python, json] : {std::pair("True", "true"), {"False", "false"}})
@@ -66,7 +65,7 @@ Header header_from(const std::string& text) {
     require(shape.size() <= kMostDimensions,
             [] { return fmt::format("its shape has more than {} indices", kMostDimensions); });
     const bool has_three = header.size() == 3 && std::ranges::count(text, ':') == 3;
-    if (has_three && text.find('[') == text.npos && shape.is_array() &&
+    if (has_three && std::ranges::count(text, '[') == 0 && shape.is_array() &&
         std::ranges::all_of(shape, is_size))
       return {.type = header.at("descr").get<std::string>(),
               .is_column_major = header.at("fortran_order").get<bool>(),

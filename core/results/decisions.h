@@ -93,9 +93,10 @@ struct Place {
   Real score = 0;
   Interval interval;  // of the score, 95 % over families; the range where is_range of the decision
   std::size_t solved = 0, wins = 0;  // settings; wins: least cost of all ranked, ties for each
-  Real share_first = 0;  // of the bootstrap's samples in which it has the greatest score; ties share
-  Real p = 1;            // of its difference from the first alone, two-sided
-  Real adjusted = 1;     // at which level it leaves the confidence set of the best
+  Real share_first =
+      0;              // of the bootstrap's samples in which it has the greatest score; ties share
+  Real p = 1;         // of its difference from the first alone, two-sided
+  Real adjusted = 1;  // at which level it leaves the confidence set of the best
   bool is_in_group = false;  // not significantly worse than the best
   WorkRatio ratio;           // its work over that of the first
 };

@@ -34,10 +34,14 @@ void fields(Like<TunedRate> auto& rate, auto& field) {
           "a grid of rates lacks the score of a value");
 }
 
+namespace {
+
 struct RatesFile {
   std::vector<TunedRate> rows;
 };
 void fields(Like<RatesFile> auto& file, auto& field) { field("rows", file.rows); }
+
+}  // namespace
 
 bool TunedRate::is_ever_solved() const {
   return std::ranges::any_of(work, [](Real each) { return each < kNever; });
@@ -269,7 +273,7 @@ std::vector<std::string> record_files(const std::vector<std::string>& folders,
   return all;
 }
 
-// What targets took: read off the hits of a record, or else off its curve, at its prices.
+// The effort to each target: read off the hits of a record, or else off its curve, at its prices.
 
 std::optional<Measure> measure_of(std::string_view name) {
   return choice_named<Measure>(name, kMeasureNames);

@@ -163,7 +163,7 @@ class Prices {
 
  private:
   Real price(const Record& record, std::size_t kind) const;
-  // Of counts by oracle in columns as long as `work`, which it is where nothing is measured.
+  // From counts by oracle in columns as long as `work`, which it is where nothing is measured.
   std::vector<Real> costs_of(const Record& record, const Columns& counts,
                              const std::vector<std::int64_t>& work) const;
 
