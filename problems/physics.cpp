@@ -1,6 +1,10 @@
 // The defaults of a physics.
 #include "problems/physics.h"
 
+#include <cmath>
+
+#include "problems/dense_physics.h"
+
 namespace isoline::problems {
 
 void Physics::jacobian(BatchOut J, Workspace& w) const {
@@ -22,10 +26,6 @@ void Physics::jacobian(BatchOut J, Workspace& w) const {
   }
 }
 
-void Physics::curvature(BatchRef, BatchOut, Workspace&) const {
-  throw NotApplicable("the physics offers no second derivatives");
-}
-
 void Physics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const {
   const Index k = inputs();
   w.dense.resize(k, k * u.cols());
@@ -34,19 +34,72 @@ void Physics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace&
     out.col(b).noalias() = w.dense.middleCols(b * k, k) * v.col(b);
 }
 
-Success Physics::local_inverse(BatchRef y, BatchRef, BatchRef, BatchOut) const {
-  return Success::Constant(y.cols(), false);
+const Matrix& ByJacobian::saved_jacobian(Workspace& w) const {
+  if (w.saved.size() < 2) w.saved.resize(2);
+  Matrix& J = w.saved[0];
+  if (w.saved_is_current) return J;
+  J.setZero(outputs(), inputs() * w.x.cols());
+  form_jacobian(J, w);
+  w.saved_is_current = true;
+  return J;
 }
 
-void multiply_samples(const Matrix& J, BatchRef v, BatchOut Jv) {
+void ByJacobian::pushforward(BatchRef v, BatchOut Jv, Workspace& w) const {
+  const Matrix& J = saved_jacobian(w);
   const Index k = v.rows();
   for (Index b = 0; b < v.cols(); ++b) Jv.col(b).noalias() = J.middleCols(b * k, k) * v.col(b);
 }
 
-void multiply_samples_transposed(const Matrix& J, BatchRef u, BatchOut JTu) {
+void ByJacobian::pullback(BatchRef u, BatchOut JTu, Workspace& w) const {
+  const Matrix& J = saved_jacobian(w);
   const Index k = JTu.rows();
   for (Index b = 0; b < u.cols(); ++b)
     JTu.col(b).noalias() = J.middleCols(b * k, k).transpose() * u.col(b);
+}
+
+// Small physics, one sample at a time, from value and derivative.
+
+void DensePhysics::forward(BatchRef x, BatchRef, BatchOut y, Workspace&) const {
+  for (Index b = 0; b < x.cols(); ++b) value(x.col(b), y.col(b));
+}
+
+void DensePhysics::curvature(BatchRef u, BatchOut out, Workspace& w) const {
+  out.setZero();
+  for (Index b = 0; b < u.cols(); ++b)
+    second(w.x.col(b), u.col(b), out.middleCols(b * inputs_, inputs_));
+}
+
+void DensePhysics::curvature_product(BatchRef u, BatchRef v, BatchOut out, Workspace& w) const {
+  if (w.saved.size() < 2) w.saved.resize(2);
+  Matrix& H = w.saved[1];  // (k, k), of one sample
+  for (Index b = 0; b < u.cols(); ++b) {
+    H.setZero(inputs_, inputs_);
+    second(w.x.col(b), u.col(b), H);
+    out.col(b).noalias() = H * v.col(b);
+  }
+}
+
+Success DensePhysics::local_inverse(BatchRef y, BatchRef x0, BatchRef, BatchOut x) const {
+  Success success(y.cols());
+  for (Index b = 0; b < y.cols(); ++b) success[b] = invert(y.col(b), x0.col(b), x.col(b));
+  return success;
+}
+
+Real distance_to_nearest(BatchRef x, const Matrix& minimizers) {
+  return std::sqrt((minimizers.colwise() - x.col(0)).colwise().squaredNorm().minCoeff());
+}
+
+ProblemParts classical(std::unique_ptr<Physics> f, const Vector& start, const Draw& draw,
+                       Real minimum, const Matrix& minimizers) {
+  const Vector target = Vector::Zero(f->outputs());
+  return {.physics = std::move(f),
+          .start = draw.start(start),
+          .target = target,
+          .minimum = minimum,
+          .truth = minimizers.leftCols(1),
+          .x_error = [minimizers](BatchRef x, const Batch&) {
+            return distance_to_nearest(x, minimizers);
+          }};
 }
 
 }  // namespace isoline::problems

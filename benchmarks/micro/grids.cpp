@@ -11,7 +11,7 @@
 #include "core/fourier.h"
 #include "core/random.h"
 #include "problems/physics/flow_physics.h"
-#include "problems/physics/simulation.h"
+#include "problems/physics/flow_step.h"
 
 namespace isoline::benchmarks::micro {
 

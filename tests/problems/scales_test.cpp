@@ -103,19 +103,14 @@ TEST(Scales, HeatHasTheFloorOfTheBestSpectralCutOff) {
     const Real floor = problem.x_floor(problem.batch()), other = floor_by_svd(problem);
     EXPECT_NEAR(floor, other, 1e-3 * other) << seed;
     EXPECT_LT(floor, (problem.start() - problem.truth()->col(0)).norm());
+    Point at;
+    problem.forward(Vector::Zero(problem.unknowns()), at);
+    Matrix x(problem.inputs(), 1);
+    problem.local_inverse(problem.target(), x, at);
+    EXPECT_LT(floor, (x - *problem.truth()).norm()) << "the damped inverse cannot move it";
   }
   const Problem poisson = make("poisson[N=8]");
   EXPECT_EQ(poisson.x_floor(poisson.batch()), 0);
-}
-
-// A method cannot move the floor, which was its own result once: the damped inverse stays above it.
-TEST(Scales, TheDampedInverseOfHeatStaysAboveTheFloor) {
-  const Problem problem = make("heat[N=8]");
-  Point at;
-  problem.forward(Vector::Zero(problem.unknowns()), at);
-  Matrix x(problem.inputs(), 1);
-  problem.local_inverse(problem.target(), x, at);
-  EXPECT_LT(problem.x_floor(problem.batch()), (x - *problem.truth()).norm());
 }
 
 TEST(Scales, AGoalAboveATenthOfXIsBeyondRanking) {
@@ -132,10 +127,8 @@ TEST(Scales, WhoSeeksXSaysSoAndKnowsIt) {
       EXPECT_GT(x_scale(problem), 0) << name;
     }
   }
-  for (const char* name : {"scaling", "square", "exponential", "poisson", "heat"})
-    EXPECT_EQ(all_problems().at(name).aim, Aim::x) << name;
-  for (const char* name : {"sine", "rosenbrock", "brown-dennis", "hig-toy"})
-    EXPECT_EQ(all_problems().at(name).aim, Aim::loss) << name;
+  EXPECT_EQ(all_problems().at("heat").aim, Aim::x);
+  EXPECT_EQ(all_problems().at("rosenbrock").aim, Aim::loss);
 }
 
 }  // namespace
