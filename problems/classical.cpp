@@ -83,6 +83,13 @@ constexpr Formula kBeale{.inputs = 2,
 // (ρ, 2πθ) are the polar coordinates of (x1, x2), θ in (−¼, ¾). The paper leaves x1 = 0 undefined:
 // here θ = ±¼ there, with the sign of x2.
 constexpr Real kTurn = 2 * std::numbers::pi;
+void curve_helical_valley(VectorRef x, VectorRef u, BatchOut H) {
+  const Real rho = std::hypot(x[0], x[1]), c = x[0] / rho, s = x[1] / rho;
+  const Real turn = -100 * u[0] / (kTurn * rho * rho), stretch = 10 * u[1] / rho;
+  H(0, 0) = 2 * turn * c * s + stretch * s * s;
+  H(0, 1) = H(1, 0) = turn * (s * s - c * c) - stretch * c * s;
+  H(1, 1) = -2 * turn * c * s + stretch * c * c;
+}
 constexpr Formula kHelicalValley{
     .inputs = 3,
     .outputs = 3,
@@ -100,14 +107,7 @@ constexpr Formula kHelicalValley{
               10 * c, 10 * s, 0,         //
               0, 0, 1;
         },
-    .second =
-        [](VectorRef x, VectorRef u, BatchOut H) {
-          const Real rho = std::hypot(x[0], x[1]), c = x[0] / rho, s = x[1] / rho;
-          const Real turn = -100 * u[0] / (kTurn * rho * rho), stretch = 10 * u[1] / rho;
-          H(0, 0) = 2 * turn * c * s + stretch * s * s;
-          H(0, 1) = H(1, 0) = turn * (s * s - c * c) - stretch * c * s;
-          H(1, 1) = -2 * turn * c * s + stretch * c * c;
-        },
+    .second = curve_helical_valley,
     .invert =
         [](VectorRef y, VectorRef x0, VectorOut x) {
           const Real rho = 1 + y[1] / 10, theta = (y[2] - y[0] / 10) / 10;
