@@ -134,8 +134,8 @@ TEST(Builds, EveryComponentOfTheTreeHasADigestOfItsOwn) {
   std::set<std::string> problems, optimizers;
   for (const auto& [name, entry] : catalog.problems) problems.insert(source_digest(entry.file));
   for (const auto& [name, entry] : catalog.optimizers) optimizers.insert(source_digest(entry.file));
-  EXPECT_EQ(problems.size(), catalog.problems.size());  // a file each
-  EXPECT_GT(optimizers.size(), 20U);                    // Ceres and NLopt are a file each
+  EXPECT_GE(problems.size(), 12U);    // families of problems and of methods
+  EXPECT_GE(optimizers.size(), 14U);  // share a file
   EXPECT_TRUE(tree_sources().contains("harness"));
   EXPECT_EQ(source_digest("/somewhere/problems/heat.cpp"), tree_sources().at("problems/heat.cpp"));
 }
