@@ -1,14 +1,14 @@
 // The report of a study: one page for people, and the same figures as Markdown, LaTeX, CSV, JSON.
 // Folders from the ground up, above core/results; each may include those above it in this list.
 //
-// - read/: the table of runs to curves, sweeps and fields.
-// - sections/: cells to sections of sentences, tables and plots, one file a topic; `Document`.
+// - sections/: the table of runs to sections of sentences, tables and plots, one file a topic, with
+//   the sentences of words/; `Document`.
 // - formats/: a document to text, one file a format.
 // - page/: a document to the page, its charts' data, its style and its scripts.
 // - compare/: the gate: what changed from one set of results to another; baselines.
 //
-// A new statistic is a function in a file of sections/ and its name in sections/evidence.h; a new
-// format is a file of formats/ and its name in `kFormats` below.
+// A new statistic is a function in a file of sections/ and its name in a list of
+// sections/statistics.cpp; a new format is a file of formats/ and its name in `kFormats` below.
 #pragma once
 
 #include <filesystem>

@@ -8,8 +8,6 @@
 #include "core/digest.h"
 #include "core/json.h"
 #include "reports/formats/formats.h"
-#include "reports/sections/evidence.h"
-#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

@@ -8,7 +8,6 @@
 
 #include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
-#include "reports/sections/claim_terms.h"
 #include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 

@@ -12,8 +12,6 @@
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

@@ -10,7 +10,7 @@
 #include "reports/page/contour.h"
 #include "reports/page/page.h"
 #include "reports/page/svg.h"
-#include "reports/read/curves.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -12,7 +12,6 @@
 #include "core/results/ranking.h"
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
-#include "reports/sections/claim_terms.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

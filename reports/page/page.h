@@ -8,8 +8,7 @@
 
 #include "core/results/ranking.h"
 #include "reports/page/svg.h"
-#include "reports/read/found_fields.h"
-#include "reports/sections/ranking.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
 
 namespace isoline::reports {

@@ -13,8 +13,6 @@
 #include "core/threads.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/origins.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {

@@ -10,8 +10,6 @@
 #include "reports/formats/escape.h"
 #include "reports/page/kinds.h"
 #include "reports/page/page.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 

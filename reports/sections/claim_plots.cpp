@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/sections/sections.h"
+#include "reports/sections/claims.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -34,10 +34,8 @@ std::vector<PlotSeries> goals_of(const Evidence& evidence) {
 
 // One line a term; terms that are the same runs read at several places have one.
 Plot curves(const Evidence& evidence) {
-  Plot plot{.kind = Plot::Kind::lines,
-            .title = evidence.is_over_time ? "Over processor time" : "Over iterations",
-            .x_label = evidence.is_over_time ? "seconds of processor time" : "iterations",
-            .y_label = column_words(evidence.curve)};
+  Plot plot = worded_plot(evidence.is_over_time ? "curves-over-time" : "curves");
+  plot.y_label = column_words(evidence.curve);
   const std::vector<std::string> names = term_names(evidence);
   for (std::size_t i = 0; i < evidence.terms.size(); ++i) {
     const EvidenceTerm& term = evidence.terms[i];
@@ -49,17 +47,10 @@ Plot curves(const Evidence& evidence) {
     if (!is_known) plot.series.push_back({{}, names[i], term.x, term.y, term.low, term.high});
   }
   constexpr Real kLong = 100;
-  const Real end = plot.series.at(0).x.back();
-  plot.is_log_x = end > kLong || evidence.is_over_time;
+  plot.is_log_x = plot.series.at(0).x.back() > kLong || evidence.is_over_time;
   plot.published = goals_of(evidence);
-  plot.caption =
-      "Medians over seeds with the range as a band; a run that has ended keeps its "
-      "last figure.";
   if (!plot.published.empty())
-    plot.caption +=
-        std::string(" The bar marks where the quantity is read: ") +
-        (evidence.kind == "ratio" ? "the published place of the first line, relative to the second."
-                                  : "the published value with its error.");
+    plot.caption += " " + words(evidence.kind == "ratio" ? "curves.ratio" : "curves.value");
   return plot;
 }
 
@@ -124,29 +115,22 @@ PlotSeries ratios_over_abscissa(const Evidence& evidence) {
   return line;
 }
 
-std::string abscissa_words(const Evidence& evidence) {
+Plot figures_over_abscissa(const Evidence& evidence) {
   const auto is_iteration = [](const EvidenceTerm& term) {
     return term.iteration && static_cast<Real>(*term.iteration) == term.at;
   };
-  if (!evidence.abscissa.empty()) return evidence.abscissa;
-  return std::ranges::all_of(evidence.terms, is_iteration) ? "iterations" : "abscissa";
-}
-
-Plot figures_over_abscissa(const Evidence& evidence) {
-  Plot plot{.kind = Plot::Kind::lines,
-            .title = "Over " + abscissa_words(evidence),
-            .x_label = abscissa_words(evidence),
-            .y_label = column_words(evidence.column),
-            .is_log_x = true};
+  std::string abscissa = evidence.abscissa;
+  if (abscissa.empty())
+    abscissa = std::ranges::all_of(evidence.terms, is_iteration) ? "iterations" : "abscissa";
+  Plot plot = worded_plot("over-abscissa", abscissa, column_words(evidence.column));
+  plot.is_log_x = true;
   const std::size_t n = evidence.terms.size();
-  plot.caption = "Medians over seeds with the range as a band.";
   if (evidence.kind != "crossing") {
     const bool is_of_ratios = evidence.kind == "ratio_slope";
     plot.series = {is_of_ratios ? ratios_over_abscissa(evidence) : over_abscissa(evidence, 0, n)};
     if (is_of_ratios) plot.y_label += ", ratio";
     plot.published = {published_slope(evidence, plot.series[0])};
-    plot.caption +=
-        " Broken line: the published slope through the centre of the values, with its error.";
+    plot.caption += " " + words("over-abscissa.slope");
     return plot;
   }
   plot.series = {over_abscissa(evidence, 0, n / 2), over_abscissa(evidence, n / 2, n)};
@@ -157,7 +141,7 @@ Plot figures_over_abscissa(const Evidence& evidence) {
                      .y = {},
                      .low = std::vector<Real>(3, 0),
                      .high = std::vector<Real>(3, kNever)}};
-  plot.caption += " The vertical band is the published crossing of the lines.";
+  plot.caption += " " + words("over-abscissa.crossing");
   return plot;
 }
 
@@ -204,6 +188,7 @@ std::vector<Plot> claim_plots(const Evidence& evidence, const std::string& id) {
       std::ranges::none_of(evidence.terms, [](const EvidenceTerm& term) { return term.x.empty(); });
   if (!has_abscissa(evidence) && (!has_curves || !evidence.printed.empty())) return {};
   Plot plot = has_abscissa(evidence) ? figures_over_abscissa(evidence) : curves(evidence);
+  plot.kind = Plot::Kind::lines;
   plot.id = "plot-" + id;
   plot.is_log_y = is_logarithmic(plot);
   return {plot};

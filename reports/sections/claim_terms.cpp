@@ -1,21 +1,18 @@
-// Reads figures off records, columns of their curves and what their paths come to, and says what
-// they are.
-#include "reports/sections/claim_terms.h"
+// Reads figures off records, columns of their curves and what their paths come to; finds the runs
+// of a claim's terms; says what both are.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <ranges>
 
 #include "core/json.h"
-#include "core/results/ranking.h"
-#include "core/results/statistics.h"
-#include "reports/read/curves.h"
+#include "reports/sections/claims.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -186,133 +183,18 @@ Real figure_of(const Record& record, const Place& place) {
 }
 
 std::string column_words(const std::string& column) {
-  static const std::map<std::string, std::string> words = {
-      {"x_error", "error in x on the validation samples"},
-      {"loss", "loss on the validation samples"},
-      {"batch_x_error_64", "error in x, running mean over 64 steps"},
-      {"batch_x_error_256", "error in x, running mean over 256 steps"},
-      {"batch_loss_64", "loss, running mean over 64 steps"},
-      {"batch_loss_256", "loss, running mean over 256 steps"},
-      {"loss_peak", "greatest loss on the validation samples"},
-      {"loss_drop", "fall of the loss since the start"},
-      {"slowdown", "slowing of the error in x, first third over last third"},
-      {"gradient_norm", "length of the gradient"},
-      {"step_norm", "length of the step"},
-      {"step_2", "length of the step in the second coordinate"},
-      {"relative_step_2", "step in the second coordinate as a share of it"},
-      {"least_coordinate", "least coordinate of the path"},
-      {"deviation", "largest distance of x from the printed figures"},
-      {"output_deviation", "largest distance of y from the printed figures"},
-      {"mean_deviation", "mean distance of x from the printed figures"},
-      {"turn", "angle of the first step in y with the straight way, in degrees,"},
-      {"bend", "largest relative change of y2 / y1"},
-      {"alignment", "first update's component along the diagonal"},
-      {"distance", "distance to the origin"},
-      {"milliseconds", "milliseconds per iteration"}};
   if (column.starts_with(kSeries)) return column.substr(kSeries.size());
   if (column.starts_with(kUntil)) {
     const auto& [name, bound] = bound_of(column);
-    return fmt::format("the cost until the {} was {}", column_words(name), figure(bound));
+    return words("column.until", column_words(name), bound);
   }
-  const auto found = words.find(column);
-  return found == words.end() ? column : found->second;
-}
-
-// Words for the yardstick.
-
-std::string tau_name(const Comparison& c) { return std::string(c.yardstick.tightest().name); }
-
-std::string_view counted_name(Measure by) {
-  constexpr std::array<std::string_view, kMeasures.size()> kNames = {"work", "measured cost",
-                                                                     "iterations", "wall time"};
-  return kNames[static_cast<std::size_t>(by)];
-}
-std::string_view counted_name(const Comparison& c) { return counted_name(c.yardstick.by); }
-
-std::string_view unit_name(Measure by) {
-  constexpr std::array<std::string_view, kMeasures.size()> kNames = {
-      "forward solves", "equivalent forward solves", "iterations", "ms"};
-  return kNames[static_cast<std::size_t>(by)];
-}
-std::string_view unit_name(const Comparison& c) { return unit_name(c.yardstick.by); }
-
-std::string counted_to_tau(const Comparison& c) {
-  const std::string text = fmt::format("{} to {}", counted_name(c), tau_name(c));
-  return counted_name(c) == unit_name(c) ? text : fmt::format("{}, in {}", text, unit_name(c));
-}
-
-std::string amount(Measure by, Real value) {
-  return by == Measure::time ? milliseconds(value) : reached_figure(value);
-}
-std::string amount(const Comparison& c, Real value) { return amount(c.yardstick.by, value); }
-
-std::string_view time_mark(const Comparison& c, const Cell& cell) {
-  return c.yardstick.by == Measure::time && !cell.is_timed_alone ? "≈" : "";
-}
-
-std::string_view setting_noun(const Comparison& c) {
-  return c.problems.size() > c.names ? "setting" : "problem";
-}
-
-std::string_view common_noun(const Comparison& c) {
-  return names_of(c, c.order) == c.order.settings.size() ? "problem" : "setting";
-}
-
-std::string n_column(const Comparison& c) { return fmt::format("n {}s", setting_noun(c)); }
-
-std::string counted_settings(const Comparison& c, std::size_t count) {
-  return counted(count, setting_noun(c));
-}
-
-std::string success_text(const Comparison& c) {
-  const std::string tau = tau_name(c);
-  const auto aims_at_x = static_cast<std::size_t>(std::ranges::count_if(
-      c.problems, [](const ProblemAxis& problem) { return problem.aim == Aim::x; }));
-  const std::string loss = fmt::format("the relative loss gap is at most {}", tau);
-  const std::string x = fmt::format("the error in x is at most {} of the solution’s norm", tau);
-  if (aims_at_x == 0) return fmt::format("Solved to {}: {}.", tau, loss);
-  if (aims_at_x == c.problems.size()) return fmt::format("Solved to {}: {}.", tau, x);
-  return fmt::format("Solved to {}: {}; on the {} with the success criterion x, {} instead.", tau,
-                     loss, counted_settings(c, aims_at_x), x);
+  const std::string key = "column." + column;
+  return all_sentences().contains(key) ? words(key) : column;
 }
 
 // Finds the runs of a claim's terms and reads their figures.
 
 using Json = nlohmann::json;
-namespace {
-
-// visit(alternative) for every way to fill a term, of the claim and of its contrasts.
-template <class Visit>
-void each_alternative(const Json& set, Visit visit) {
-  const auto visit_all = [&](const Json& terms) {
-    for (const Json& term : terms)
-      for (const Json& alternative : term) visit(alternative);
-  };
-  visit_all(set.at("terms"));
-  for (const Json& terms : set.value("contrast_terms", Json::array())) visit_all(terms);
-}
-
-}  // namespace
-
-std::vector<std::string> cells_of(const Json& set) {
-  std::vector<std::string> cells;
-  each_alternative(set, [&](const Json& alternative) {
-    for (const Json& cell : alternative.at("cells")) cells.push_back(cell);
-  });
-  return cells;
-}
-
-std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
-  std::vector<std::string> missing;
-  each_alternative(set, [&](const Json& alternative) {
-    const auto title = alternative.at("title").get<std::string>();
-    const bool is_whole = std::ranges::all_of(alternative.at("cells"), [&](const Json& cell) {
-      return runs.contains(cell.get<std::string>());
-    });
-    if (!is_whole && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
-  });
-  return missing;
-}
 
 Place place_of(const Json& claim, const Json& term) {
   const Json& quantity = claim.at("quantity");
@@ -415,20 +297,13 @@ namespace {
 
 std::string tolerance_text(const Json& tolerance) {
   const std::string from = tolerance.at("from");
-  if (from == "none") return "no error stated";
-  if (from == "digits")
-    return fmt::format("±{} in its digits", figure(real_of(tolerance["absolute"])));
-  if (from == "order") return "to half an order of magnitude";
+  if (from == "none" || from == "order") return words("tolerance." + from);
+  if (from == "digits") return words("tolerance.digits", real_of(tolerance["absolute"]));
   const Real t = real_of(tolerance["relative"]);
-  if (from == "about") return fmt::format("±{:.0f} %, which “about” leaves open", 100 * t);
-  const std::string of_one = fmt::format("±{:.0f} % {}", 100 * t,
-                                         from == "text"        ? "from text"
-                                         : from == "digitized" ? "off a digitized curve"
-                                                               : "off a figure");
-  if (tolerance.value("values", 1) != 2) return of_one;
-  // The law of quantities.cpp for a ratio of two readings.
-  return fmt::format("{}, each value: {:+.0f} to {:+.0f} %", of_one, 100 * ((1 - t) / (1 + t) - 1),
-                     100 * ((1 + t) / (1 - t) - 1));
+  const std::string text = words("tolerance." + from, 100 * t);
+  if (from == "about" || tolerance.value("values", 1) != 2) return text;
+  // The band of quantities.cpp for a ratio of two readings.
+  return words("tolerance.two", text, 100 * ((1 - t) / (1 + t) - 1), 100 * ((1 + t) / (1 - t) - 1));
 }
 
 std::string iteration_text(const Json& from, const char* otherwise) {
@@ -468,32 +343,18 @@ std::string published_text(const Json& claim) {
   return fmt::format("{}{} ({})", relation, figure(published_value(published)), error);
 }
 
-std::string source_text(const Json& source) {
-  std::string text = source.at("paper");
-  for (const char* part : {"section", "figure"})
-    if (source.contains(part)) text += fmt::format(", {}", source[part].get<std::string>());
-  return text;
-}
-
 std::string reading_text(const Json& claim) {
   const std::string from = claim.at("tolerance").at("from");
+  if (from != "figure" && from != "digitized") return "";
   const Json& source = claim.at("source");
-  const std::string where = source.value("figure", source.value("section", "a figure"));
-  if (from == "figure")
-    return fmt::format("Read by eye off the plot ({}): no table of its points is published.",
-                       where);
-  return from == "digitized"
-             ? fmt::format("Digitized from the plot ({}), on its logarithmic axis.", where)
-             : "";
+  return words("reading." + from, source.value("figure", source.value("section", "a figure")));
 }
 
 std::string quantity_text(const Json& claim) {
   const Json& quantity = claim.at("quantity");
   const std::string kind = quantity.at("kind");
   std::vector<std::string> terms;
-  for (const Json& term : quantity.at("terms")) {
-    terms.push_back(term_text(term));
-  }
+  for (const Json& term : quantity.at("terms")) terms.push_back(term_text(term));
   return fmt::format("{} of the {}, {}: {}", kind, column_words(quantity.at("column")),
                      iteration_text(quantity, quantity.contains("clock") ? "at equal processor time"
                                                                          : "at the end"),

@@ -1,6 +1,5 @@
-// Gathers the statistics, and what their tables and plots share.
-#include "reports/sections/evidence.h"
-
+// Collects what decides a claim, figures run by run and curves that are read as the figures are,
+// and judges it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,171 +10,11 @@
 #include <set>
 
 #include "core/json.h"
-#include "core/threads.h"
-#include "reports/read/curves.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/sections.h"
+#include "reports/sections/claims.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
-
-std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
-  return std::min(c.order.methods.size(), most);
-}
-std::size_t listed_optimizers(const Comparison& c, std::size_t most) {
-  return std::min(c.optimizers.size(), most);
-}
-
-void rows_are_optimizers(Table& table) {
-  for (std::size_t s = 0; s < table.rows.size(); ++s) table.row_topics.push_back({.optimizer = s});
-}
-
-void columns_are_problems(Table& table, std::size_t count) {
-  table.column_topics.emplace_back();
-  for (std::size_t p = 0; p < count; ++p) table.column_topics.push_back({.problem = p});
-}
-
-TableCell failed_cell(const Comparison& c, std::size_t s) {
-  const OptimizerAxis& optimizer = c.optimizers[s];
-  return {fmt::format("{}/{}", optimizer.failed, optimizer.runs),
-          {{"failed", Real(optimizer.failed)}, {"runs", Real(optimizer.runs)}}};
-}
-
-TableCell count_cell(std::size_t count) {
-  return {std::to_string(count), {{"count", Real(count)}}};
-}
-
-TableCell share_cell(std::size_t part, std::size_t whole) {
-  if (whole == 0) return "";
-  const Real share = Real(part) / Real(whole);
-  return {percent(share), {{"share", share}, {"count", Real(part)}}};
-}
-
-Measure cost_measure(const Comparison& c) {
-  return c.yardstick.by == Measure::work ? Measure::cost : c.yardstick.by;
-}
-
-Real in_units(Measure by, Real value) { return by == Measure::time ? 1e3 * value : value; }
-
-std::string cost_unit(const Comparison& c) {
-  const Measure by = cost_measure(c);
-  if (by == Measure::iterations) return "iterations";
-  if (by == Measure::time)
-    return c.is_any_timed_together ? "ms of wall time (≈: some runs shared the machine)"
-                                   : "ms of wall time";
-  return priced_unit(c);
-}
-
-std::string priced_unit(const Comparison& c) {
-  const auto measured = static_cast<std::size_t>(std::ranges::count_if(
-      c.problems, [](const ProblemAxis& problem) { return problem.prices.are_measured(); }));
-  const std::size_t all = c.problems.size();
-  if (measured == all) return "equivalent forward solves at measured cost";
-  if (measured == 0) return "forward solves at nominal cost (no measured ones are used)";
-  return fmt::format(
-      "equivalent forward solves, at nominal cost on the {} of {} where none was measured or a "
-      "call is too short to be",
-      all - measured, counted_settings(c, all));
-}
-
-std::string denominators(const Comparison& c, std::size_t shown) {
-  std::size_t runs = 0, failed = 0;
-  for (std::size_t s = 0; s < shown; ++s) {
-    runs += c.optimizers[s].runs;
-    failed += c.optimizers[s].failed;
-  }
-  return fmt::format(
-      "the first {} of {} ranked methods; n = {}, common to all of them; {} of {} of their runs "
-      "failed",
-      shown, c.order.methods.size(), counted_settings(c, c.order.settings.size()), failed, runs);
-}
-
-std::vector<Real> cost_grid(Measure by, Real most) {
-  constexpr int kPerDecade = 8;
-  const int first = by == Measure::time ? -3 * kPerDecade : 0;
-  std::vector<Real> grid;
-  const Real last = std::ceil(kPerDecade * std::log10(std::max(most, 10.0)));
-  for (int i = first; i <= last; ++i) grid.push_back(std::pow(10.0, Real(i) / kPerDecade));
-  return grid;
-}
-
-void Leading::offer(Real mine, const std::string& label) {
-  if (mine > value) {
-    value = mine;
-    count = 0;
-    name = label;
-  }
-  count += mine == value && mine > 0;
-}
-
-std::string Leading::names() const {
-  if (count == 0) return "no method";
-  return count == 1 ? name : fmt::format("{} and {} more", name, count - 1);
-}
-
-std::string highest_at(const Plot& plot, Real x) {
-  Real best = 0;
-  std::vector<std::string> names;
-  for (const PlotSeries& line : plot.series) {
-    Real y = 0;
-    for (std::size_t i = 0; i < line.x.size() && line.x[i] <= x * (1 + 1e-9); ++i) y = line.y[i];
-    if (y > best) {
-      best = y;
-      names.clear();
-    }
-    if (y == best && y > 0) names.push_back(line.name);
-  }
-  if (names.empty()) return "no method";
-  return fmt::format("{}{} ({})", names[0],
-                     names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "",
-                     percent(best));
-}
-
-Column column_of(const Costs& costs, std::size_t s) {
-  Column column;
-  for (const auto& row : costs) column.push_back(row[s]);
-  return column;
-}
-
-PlotSeries share_series(const Comparison& c, std::size_t s, const Column& measure,
-                        const std::vector<Real>& grid) {
-  Band band = band_over_names(c, measure, "problems", [&](Real value) {
-    std::vector<Real> within;
-    for (const Real most : grid) within.push_back(value <= most);
-    return within;
-  });
-  band.value.resize(grid.size(), 0);  // where nothing was asked
-  band.low.resize(grid.size(), 0);
-  band.high.resize(grid.size(), 0);
-  return {s, optimizer_text(c, s), grid, band.value, band.low, band.high};
-}
-
-Section statistics_section(const Comparison& c) {
-  Section section{.id = "statistics", .title = "Statistics"};
-  for (std::string& sentence : limits_of_evidence(c))
-    section.readings.push_back({"What cannot be concluded", std::move(sentence)});
-  if (c.runs.empty()) return section;
-  section.lead = fmt::format(
-      "Rankings and tests use {}{}. Costs are in {}; the raw counts are in Oracle calls and "
-      "Prices.",
-      counted_name(c), c.yardstick.by == Measure::work ? ", which is equal on every machine" : "",
-      cost_unit(c));
-  constexpr std::size_t kTables = std::size(kStatisticTables), kPlots = std::size(kStatisticPlots);
-  section.tables.resize(kTables);
-  std::array<Plots, kPlots> plots;
-  share(kTables + kPlots, [&](std::size_t i) {
-    if (i < kPlots)
-      plots[i] = kStatisticPlots[i](c);
-    else
-      section.tables[i - kPlots] = kStatisticTables[i - kPlots](c);
-  });
-  for (Table& table : section.tables) table.is_folded = true;
-  for (Plots& some : plots)
-    for (Plot& plot : some) section.plots.push_back(std::move(plot));
-  return section;
-}
-
-// Collects what decides a claim: figures run by run, and curves that are read as the figures are.
 
 using Json = nlohmann::json;
 namespace {
@@ -264,8 +103,7 @@ EvidenceTerm evidence_of_term(const Term& term, const Chosen& chosen, const Runs
   return out;
 }
 
-}  // namespace
-
+// For a claim, or for its contrast. `cells` and `iterations` are those of the set that decides it.
 Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
                      std::int64_t iterations) {
   const Json& quantity = claim.at("quantity");
@@ -297,6 +135,39 @@ Evidence evidence_of(const Json& claim, const Json& cells, const ByCell& runs,
   return out;
 }
 
+// visit(alternative) for every way to fill a term, of the claim and of its contrasts.
+template <class Visit>
+void each_alternative(const Json& set, Visit visit) {
+  const auto visit_all = [&](const Json& terms) {
+    for (const Json& term : terms)
+      for (const Json& alternative : term) visit(alternative);
+  };
+  visit_all(set.at("terms"));
+  for (const Json& terms : set.value("contrast_terms", Json::array())) visit_all(terms);
+}
+
+// Digests.
+std::vector<std::string> cells_of(const Json& set) {
+  std::vector<std::string> cells;
+  each_alternative(set, [&](const Json& alternative) {
+    for (const Json& cell : alternative.at("cells")) cells.push_back(cell);
+  });
+  return cells;
+}
+
+// Cells of a set that have no record, in words.
+std::vector<std::string> missing_cells(const Json& set, const ByCell& runs) {
+  std::vector<std::string> missing;
+  each_alternative(set, [&](const Json& alternative) {
+    const auto title = alternative.at("title").get<std::string>();
+    const bool is_whole = std::ranges::all_of(alternative.at("cells"), [&](const Json& cell) {
+      return runs.contains(cell.get<std::string>());
+    });
+    if (!is_whole && std::ranges::find(missing, title) == missing.end()) missing.push_back(title);
+  });
+  return missing;
+}
+
 std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
   std::vector<CellSet> sets;
   bool is_decided = false;
@@ -313,19 +184,6 @@ std::vector<CellSet> cell_sets(const Json& claim, const ByCell& runs) {
   }
   return sets;
 }
-
-std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
-  if (sets.empty()) return "";
-  const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
-  const bool is_long =
-      deciding != sets.end() ? deciding->is_long : std::ranges::all_of(sets, &CellSet::is_long);
-  return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
-}
-
-// Finds the runs of each claim, measures what it speaks of, and compares with what was published.
-
-using Json = nlohmann::json;
-namespace {
 
 // A claim by one set of its cells.
 struct Measured {
@@ -436,8 +294,10 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
   claim.at("id").get_to(out.id);
   claim.at("sentence").get_to(out.sentence);
   out.fact = claim.value("fact", out.id);
-  out.source = source_text(claim.at("source"));
-  out.paper = claim["source"].at("paper");
+  out.paper = out.source = claim.at("source").at("paper");
+  for (const char* part : {"section", "figure"})
+    if (claim["source"].contains(part))
+      out.source += ", " + claim["source"][part].get<std::string>();
   out.place = claim["source"].value("figure", claim["source"].value("section", ""));
   out.caveat = claim.value("caveat", "");
   out.published = published_text(claim);
@@ -469,6 +329,14 @@ Judgement judge_one(const Json& claim, const ByCell& runs) {
 }
 
 }  // namespace
+
+std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets) {
+  if (sets.empty()) return "";
+  const auto deciding = std::ranges::find_if(sets, &CellSet::is_deciding);
+  const bool is_long =
+      deciding != sets.end() ? deciding->is_long : std::ranges::all_of(sets, &CellSet::is_long);
+  return fmt::format("./isoline claims {0} --out results/{0}{1}", id, is_long ? " --long" : "");
+}
 
 std::vector<Judgement> judge(const Json& claims, const std::vector<Record>& runs) {
   ByCell by_cell;

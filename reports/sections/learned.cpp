@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/sections/evidence.h"
-#include "reports/sections/origins.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
@@ -20,31 +18,18 @@ Real median_per_run(const Comparison& c, const Cell& cell, Real (*value)(const S
   return c.aggregate(rows, [&](const Run& run) { return value(run.record->summary); }).median;
 }
 
-// Methods in order of their error in x.
-std::string reading_of(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
-  const auto least =
-      std::ranges::min_element(order, {}, [&](std::size_t s) { return c.cell(p, s).loss.median; });
-  const Cell &lowest = c.cell(p, *least), &nearest = c.cell(p, order[0]);
-  const std::string first = setting_text(c, p, order[0]);
-  if (*least == order[0])
-    return fmt::format("{} has both the least error in x, {}, and the least loss, {}.", first,
-                       figure(nearest.x_error.median), figure(nearest.loss.median));
-  return fmt::format(
-      "Loss and error rank methods differently here: {} has the least loss, {}, at an error in x "
-      "of {}; {} has the least error in x, {}, at a loss of {}.",
-      setting_text(c, p, *least), figure(lowest.loss.median), figure(lowest.x_error.median), first,
-      figure(nearest.x_error.median), figure(nearest.loss.median));
-}
-
 Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
   const Sheet* sheet = c.problems[p].sheet;
-  Table table{.id = fmt::format("learned-{}", p),
-              .title = problem_name(c.problems[p]),
-              .reading = reading_of(c, p, order),
-              .caption = sheet == nullptr ? "" : sheet->note,
-              .columns = {"optimizer", "error in x", "loss in y", "iterations", "ms each", "runs",
-                          "failed"},
-              .topic = {.problem = p}};
+  Table table = worded_table("learned-table", problem_name(c.problems[p]));
+  table.id = fmt::format("learned-{}", p);
+  table.caption = sheet == nullptr ? "" : sheet->note;
+  table.topic = {.problem = p};
+  const std::size_t least =
+      *std::ranges::min_element(order, {}, [&](std::size_t s) { return c.cell(p, s).loss.median; });
+  const Cell &lowest = c.cell(p, least), &nearest = c.cell(p, order[0]);
+  table.reading = words(least == order[0] ? "learned-table.both" : "learned-table.differ",
+                        setting_text(c, p, least), lowest.loss.median, lowest.x_error.median,
+                        setting_text(c, p, order[0]), nearest.x_error.median, nearest.loss.median);
   for (const std::size_t s : order) {
     const Cell& cell = c.cell(p, s);
     const Real iterations =
@@ -65,9 +50,7 @@ Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::s
 }  // namespace
 
 Section learned_section(const Comparison& c) {
-  Section section{.id = "learned",
-                  .title = "Learned problems",
-                  .otherwise = "This report has no learned problems."};
+  Section section = worded_section("learned");
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
     std::vector<std::size_t> order;
@@ -76,8 +59,7 @@ Section learned_section(const Comparison& c) {
     std::ranges::stable_sort(order, {}, [&](std::size_t s) { return c.cell(p, s).x_error.median; });
     if (!order.empty()) section.tables.push_back(learned_table(c, p, order));
   }
-  if (!section.tables.empty())
-    section.lead = "On the validation samples: medians over seeds and their range.";
+  if (section.is_empty()) section.lead.clear();
   return section;
 }
 
@@ -86,8 +68,6 @@ Section learned_section(const Comparison& c) {
 // and from how many instances on training has paid. Holl, Koltun, Thuerey (2022), Table 1.
 
 namespace {
-
-constexpr Real kUnknown = std::numeric_limits<Real>::quiet_NaN();
 
 // One method that trained, or one that solved single instances, over its runs.
 struct Side {
@@ -191,13 +171,6 @@ std::string named(const Comparison& c, const Side& side) {
          marks_text({.has_extra_information = !cell_of(c, side).privileges.empty()});
 }
 
-TableCell pays_cell(const Trained& network, const Side& single) {
-  const Real from = pays_from(network, single);
-  if (std::isnan(from)) return "";
-  if (!single.seconds.is_solved()) return "the solver has not reached it";
-  return {from == kNever ? "never" : figure(from), {{"pays_from", from}}};
-}
-
 // Three digits, as milliseconds have them.
 std::string in_seconds(Real seconds) { return milliseconds(1e-3 * seconds); }
 
@@ -210,58 +183,42 @@ TableCell time_cell(const Comparison& c, const Side& side, std::string (*written
 std::vector<TableCell> amortized_row(const Comparison& c, const Trained& network,
                                      const Side& single) {
   const Spread& times = single.seconds;
-  const TableCell inference =
-      std::isnan(network.inference)
-          ? TableCell("")
-          : TableCell(milliseconds(network.inference), {{"seconds", network.inference}});
+  const Real from = pays_from(network, single);
+  TableCell pays = "", inference = "";
+  if (!std::isnan(network.inference))
+    inference = {milliseconds(network.inference), {{"seconds", network.inference}}};
+  if (!std::isnan(from) && !times.is_solved()) pays = words("amortized-table.open");
+  if (!std::isnan(from) && times.is_solved())
+    pays = {from == kNever ? "never" : figure(from), {{"pays_from", from}}};
   return {named(c, network),
           named(c, single),
-          {figure(network.x_error), {{"x_error", network.x_error}}},
+          number_cell("x_error", network.x_error),
           time_cell(c, network, in_seconds),
           inference,
           time_cell(c, single, milliseconds),
           fmt::format("{}/{}", times.n - times.unsolved, times.n),
           fmt::format("{}, {}", cell_of(c, network).failed, cell_of(c, single).failed),
-          pays_cell(network, single)};
+          pays};
 }
 
 std::string reading_of(const Comparison& c, const Trained& network, const Side& single) {
-  if (!single.seconds.is_solved())
-    return fmt::format(
-        "No solver in this report reaches the error of the network of {}, {}, on half of its "
-        "instances.",
-        named(c, network), figure(network.x_error));
-  if (single.seconds.median == 0)
-    return fmt::format(
-        "The network of {} has the error {}, and {} starts with an error that small: the training "
-        "has not paid off yet.",
-        named(c, network), figure(network.x_error), named(c, single));
-  const std::string each = fmt::format(
-      "{} takes {} ms per instance to the error {} of the network of {}, whose training took {} s",
-      named(c, single), milliseconds(single.seconds.median), figure(network.x_error),
-      named(c, network), in_seconds(network.seconds.median));
   const Real from = pays_from(network, single);
-  if (std::isnan(from)) return each + "; the time of the network was not measured.";
-  if (from == kNever) return each + ": training never pays off.";
-  return fmt::format("{} and which takes {} ms: training pays off from {} instances on.", each,
-                     milliseconds(network.inference), figure(from));
+  const char* key = !single.seconds.is_solved()  ? "amortized-table.unreached"
+                    : single.seconds.median == 0 ? "amortized-table.start"
+                    : std::isnan(from)           ? "amortized-table.untimed"
+                    : from == kNever             ? "amortized-table.never"
+                                                 : "amortized-table.pays";
+  return words(key, named(c, single), milliseconds(single.seconds.median), network.x_error,
+               named(c, network), in_seconds(network.seconds.median),
+               milliseconds(network.inference), from);
 }
 
-Table table_of(const Comparison& c, std::size_t p, const std::vector<Trained>& networks,
-               const std::vector<std::size_t>& instances) {
-  Table table{
-      .id = fmt::format("amortized-{}", p),
-      .title = shown_spec(c.problems[p].spec),
-      .reading = "",
-      .caption =
-          "Medians over seeds in processor time; each seed of a solver is another instance. "
-          "Errors of solvers are read at stored iterations, so their times are upper bounds, and "
-          "0 if the start has that error. The network is timed on a batch, divided by its size.",
-      .columns = {"network of", "solver", "error in x", "training, s", "per example, ms",
-                  "solver to that error, ms", "there", "failed", "pays off from"},
-      .topic = {.problem = p},
-      .align = "llrrrrrrr",
-      .names = 2};
+Table amortized_table(const Comparison& c, std::size_t p, const std::vector<Trained>& networks,
+                      const std::vector<std::size_t>& instances) {
+  Table table = worded_table("amortized-table", shown_spec(c.problems[p].spec));
+  table.id = fmt::format("amortized-{}", p);
+  table.topic = {.problem = p};
+  table.names = 2;
   for (const Trained& network : networks) {
     const std::vector<Side> singles = singles_to(c, instances, network.x_error);
     if (table.reading.empty()) table.reading = reading_of(c, network, singles.front());
@@ -276,24 +233,16 @@ Table table_of(const Comparison& c, std::size_t p, const std::vector<Trained>& n
 }  // namespace
 
 Section amortized_section(const Comparison& c) {
-  Section section{.id = "amortized",
-                  .title = "Training once, or solving each",
-                  .otherwise =
-                      "No problem in this report was both learned and solved instance by "
-                      "instance."};
+  Section section = worded_section("amortized");
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
     const std::vector<Trained> networks = trained_on(c, p);
     const std::vector<std::size_t> instances = instances_of(c, p);
     if (networks.empty() || instances.empty()) continue;
     if (singles_to(c, instances, kNever).empty()) continue;
-    section.tables.push_back(table_of(c, p, networks, instances));
+    section.tables.push_back(amortized_table(c, p, networks, instances));
   }
-  if (!section.tables.empty())
-    section.lead =
-        "A network is trained once and then solves each instance in one pass; a solver begins "
-        "again with each. The table gives the number of instances from which training pays off, "
-        "at the error of the network.";
+  if (section.is_empty()) section.lead.clear();
   return section;
 }
 

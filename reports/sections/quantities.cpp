@@ -1,15 +1,12 @@
 // Combines medians of figures, and resamples seeds.
-#include "reports/sections/quantities.h"
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "core/json.h"
-#include "core/results/statistics.h"
 #include "core/results/tests.h"
-#include "reports/sections/claim_terms.h"
+#include "reports/sections/claims.h"
 
 namespace isoline::reports {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "core/random.h"
 #include "reports/report.h"
-#include "reports/sections/claim_terms.h"
+#include "reports/sections/claims.h"
 #include "tests/benchmarks/builtin.h"
 #include "tests/benchmarks/matrix.h"
 #include "tests/benchmarks/shortened.h"

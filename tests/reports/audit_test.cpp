@@ -75,7 +75,6 @@ TEST(AuditTable, IsInEveryFormatAndForeignTextIsHarmless) {
     EXPECT_TRUE(has(latex, part)) << part;
   EXPECT_FALSE(has(html, "<b>|x|"));
   EXPECT_FALSE(has(markdown, "<b>|x|"));
-  EXPECT_TRUE(has(html, "<svg"));
 }
 
 TEST(AuditTable, SaysWhatDoesNotApplyToWhatTeachesANetwork) {
@@ -93,7 +92,7 @@ TEST(AuditTable, TellsThePageWhichMethodARowIsAbout) {
   AuditedOptimizer sip = sample();
   sip.name = "sip";
   const std::string html = section_html(properties_section({sample(), sip}));
-  for (const char* row : {"<tr data-method=\"gd\">", "<g data-method=\"sip\">"})
+  for (const char* row : {"<tr data-method=\"gd\">", "<tr data-method=\"sip\">"})
     EXPECT_TRUE(has(html, row)) << row;
 }
 

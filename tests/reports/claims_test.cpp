@@ -6,7 +6,7 @@
 
 #include "reports/page/page.h"
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/asked_claim.h"
 #include "tests/reports/fixture.h"
 

@@ -8,7 +8,7 @@
 #include "core/json.h"
 #include "core/results/ranking.h"
 #include "core/results/targets.h"
-#include "reports/read/curves.h"
+#include "reports/sections/figures.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"

@@ -6,7 +6,7 @@
 #include "core/json.h"
 #include "core/results/targets.h"
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -7,7 +7,7 @@
 #include "core/files.h"
 #include "core/json.h"
 #include "reports/page/page.h"
-#include "reports/read/found_fields.h"
+#include "reports/sections/figures.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
-#include "reports/sections/origins.h"
+#include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
 

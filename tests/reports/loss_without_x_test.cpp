@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -63,16 +63,6 @@ TEST(LossWithoutX, IsCountedByMethodWithTheConditionNumberBeside) {
   EXPECT_EQ(at(table, "newton", "loss, not x, on"), "q (singular)");
   EXPECT_NE(table.reading.find("3 reach the loss to 1e-6 and 1 find x"), std::string::npos)
       << table.reading;
-}
-
-TEST(LossWithoutX, IsCountedBySettingInTheOrderOfTheConditionNumbers) {
-  const Study study = both_kinds();
-  const Table table = condition_table(compare_optimizers(study));
-  ASSERT_EQ(table.rows.size(), 2U);
-  EXPECT_EQ(table.rows[0][0].text, "q");
-  EXPECT_EQ(at(table, "p", "loss, not x"), "1");
-  EXPECT_EQ(at(table, "q", "loss, not x"), "1");
-  EXPECT_EQ(at(table, "p", "n methods"), "2");
 }
 
 TEST(LossWithoutX, SaysWhereNeitherCanBeTold) {

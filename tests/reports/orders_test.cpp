@@ -5,8 +5,6 @@
 #include <map>
 
 #include "core/results/ranking.h"
-#include "reports/sections/evidence.h"
-#include "reports/sections/ranking.h"
 #include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 

@@ -10,7 +10,7 @@
 #include "core/results/ranking.h"
 #include "reports/page/kinds.h"
 #include "reports/report.h"
-#include "reports/sections/ranking.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

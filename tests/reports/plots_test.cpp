@@ -9,7 +9,7 @@
 #include "reports/page/page.h"
 #include "reports/page/svg.h"
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {
@@ -61,19 +61,6 @@ TEST(Plots, BandsAreThoseOfProblemsDrawnAnew) {
   const Plot plot = profile_plot(compare_optimizers(four_problems())).at(0);
   EXPECT_EQ(plot.series[0].low[0], 0.25);
   EXPECT_EQ(plot.series[0].high[0], 1);
-}
-
-// log2 of 1/16, 1/4, 1/2 and, where a never gets there, the end of the scale.
-TEST(Plots, RatiosAreSortedDoublings) {
-  const Plots plots = log_ratio_plot(compare_optimizers(four_problems()));
-  ASSERT_EQ(plots.size(), 1U);
-  const Plot* plot = &plots[0];
-  const std::vector<Real> doublings = {-4, -2, -1, 6};
-  ASSERT_EQ(plot->series[0].y.size(), doublings.size());
-  for (std::size_t i = 0; i < doublings.size(); ++i)
-    EXPECT_NEAR(plot->series[0].y[i], doublings[i], 1e-12);  // rounding of log2
-  EXPECT_EQ(plot->rows[0].name, "r");
-  EXPECT_EQ(plot->rows[3].name, "s");
 }
 
 // Work 30, 30, 30 of a: nothing within 10 forward solves, three of four within 100.

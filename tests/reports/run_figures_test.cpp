@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/results/statistics.h"
-#include "reports/sections/claim_terms.h"
-#include "reports/sections/quantities.h"
+#include "reports/sections/claims.h"
 
 namespace isoline::reports {
 namespace {

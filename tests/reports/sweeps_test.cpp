@@ -1,6 +1,4 @@
 // Heat maps of two options, and spectra, from records made by hand.
-#include "reports/read/sweeps.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -97,8 +95,7 @@ TEST_F(Sweeps, OfFewCellsOrOfOneOptionAreNoGrid) {
   std::vector<Record> records;
   for (const Real rate : {0.1, 1.0, 10.0, 100.0}) records.push_back(swept({.rate = rate}));
   records.push_back(swept({.kappa = 1, .rate = 1}));  // 5 of 8 cells
-  EXPECT_TRUE(sweep_grids(compared(records)).empty());
-  EXPECT_TRUE(sweeps_section(comparison).is_empty());
+  EXPECT_TRUE(sweeps_section(compared(records)).is_empty());
 }
 
 TEST_F(Sweeps, OfBatchesCompareEqualNumbersOfSamples) {
@@ -106,12 +103,10 @@ TEST_F(Sweeps, OfBatchesCompareEqualNumbersOfSamples) {
   for (const Index batch : {4, 8})
     for (const Real rate : {0.1, 1.0, 10.0})
       records.push_back(swept({.rate = rate, .batch = batch, .iterations = 1024 / batch}));
-  const std::vector<SweepGrid> grids = sweep_grids(compared(records));
-  ASSERT_EQ(grids.size(), 1U);
-  EXPECT_EQ(grids[0].samples, 1024);
-  EXPECT_EQ(grids[0].row, "batch");
-  EXPECT_NE(sweeps_section(comparison).tables[0].caption.find("1024 samples each"),
-            std::string::npos);
+  const Section section = sweeps_section(compared(records));
+  ASSERT_EQ(section.tables.size(), 1U);
+  EXPECT_EQ(section.tables[0].columns[0], "batch / rate");
+  EXPECT_NE(section.tables[0].caption.find("1024 samples each"), std::string::npos);
 }
 
 TEST_F(Sweeps, SeeOptionsOfWhatStandsInside) {
@@ -119,10 +114,10 @@ TEST_F(Sweeps, SeeOptionsOfWhatStandsInside) {
   for (const Real kappa : {0.5, 1.0})
     for (const char* inner : {"adam[rate=1e-4]", "adam[rate=1e-3]", "adam[rate=1e-2]"})
       records.push_back(swept({.kappa = kappa, .inner = inner}));
-  const std::vector<SweepGrid> grids = sweep_grids(compared(records));
-  ASSERT_EQ(grids.size(), 1U);
-  EXPECT_EQ(grids[0].column, "network-optimizer.rate");
-  EXPECT_EQ(grids[0].columns, (std::vector<Real>{1e-4, 1e-3, 1e-2}));
+  const Section section = sweeps_section(compared(records));
+  ASSERT_EQ(section.tables.size(), 1U);
+  EXPECT_EQ(section.tables[0].columns,
+            (std::vector<std::string>{"kappa / network-optimizer.rate", "1e-4", "0.001", "0.01"}));
 }
 
 // --- spectra

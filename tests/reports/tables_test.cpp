@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "reports/report.h"
-#include "reports/sections/evidence.h"
+#include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
 
 namespace isoline::reports {

@@ -33,20 +33,14 @@ const std::map<std::string, Set> kAllowed = {
     {"benchmarks/merge", {"core", "core/records"}},
     {"benchmarks/shard",
      {"core", "core/records", "problems", "optimizers", "benchmarks/plan", "benchmarks/run"}},
-    {"reports/read", {"core", "core/records", "core/results"}},
-    {"reports/sections", {"core", "core/records", "reports/read", "core/results"}},
+    {"reports/sections", {"core", "core/records", "core/results"}},
     {"reports/formats", {"core", "core/records", "core/results", "reports/sections"}},
-    {"reports/exports",
-     {"core", "core/records", "core/results", "reports/read", "reports/sections"}},
+    {"reports/exports", {"core", "core/records", "core/results", "reports/sections"}},
     {"reports/page",
-     {"core", "core/records", "core/results", "reports/read", "reports/sections",
-      "reports/formats"}},
+     {"core", "core/records", "core/results", "reports/sections", "reports/formats"}},
     {"reports/compare",
-     {"core", "core/records", "reports/read", "core/results", "reports/sections",
-      "reports/formats"}},
-    {"reports",
-     {"core", "core/results", "reports/read", "reports/sections", "reports/formats",
-      "reports/page"}}};
+     {"core", "core/records", "core/results", "reports/sections", "reports/formats"}},
+    {"reports", {"core", "core/results", "reports/sections", "reports/formats", "reports/page"}}};
 
 // These see every room.
 bool is_free(const std::string& folder) {

@@ -1,71 +1,16 @@
-// Finds the rows of tables of rates by the records that used them.
-#include "reports/sections/origins.h"
-
+// Where the results come from: builds, machines, commands; runs that failed, and unreadable files.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <ranges>
 #include <set>
 
-#include "core/spec.h"
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
-namespace {
-
-const Request* request_of(const Comparison& c, std::size_t p, std::size_t s) {
-  const Cell& cell = c.cell(p, s);
-  return cell.runs.empty() ? nullptr : &c.runs[cell.runs.front()].record->request;
-}
-
-// "3.8e-5" of gd[rate=3.8e-5], "rate=1, momentum=0.9" where there are several, "default" of gd.
-std::string values_text(const Request& request) {
-  const Spec spec = parse_spec(request.optimizer.spec);
-  std::vector<std::string> shown;  // long numbers cut
-  for (const auto& [name, value] : spec.options)
-    shown.push_back(shown_spec(fmt::format("{}={}", name, value)));
-  if (shown.empty()) return "default";
-  return shown.size() > 1 ? joined(shown) : shown[0].substr(spec.options[0].first.size() + 1);
-}
-
-}  // namespace
-
-const TunedRate* rate_of(const Comparison& c, std::size_t p, std::size_t s) {
-  const Request* request = request_of(c, p, s);
-  if (request == nullptr || request->rates.empty()) return nullptr;
-  for (const TunedRate& rate : c.study->rates)
-    if (rate.problem == request->problem.spec && rate.optimizer == request->optimizer.name &&
-        rate.file == request->rates)
-      return &rate;
-  return nullptr;
-}
-
-Origin origin_of(const Comparison& c, std::size_t p, std::size_t s) {
-  const Request* request = request_of(c, p, s);
-  if (request == nullptr) return Origin::defaults;
-  if (request->rates.empty())
-    return request->optimizer.spec == request->optimizer.name ? Origin::defaults : Origin::given;
-  const TunedRate* rate = rate_of(c, p, s);
-  if (rate == nullptr) return Origin::table;
-  return rate->is_tuned() ? Origin::tuned : Origin::published;
-}
-
-std::string origin_text(const Comparison& c, std::size_t p, std::size_t s) {
-  const Origin origin = origin_of(c, p, s);
-  if (origin == Origin::defaults || origin == Origin::given) return "";
-  return fmt::format("{}, {}", values_text(*request_of(c, p, s)), name_of(origin));
-}
-
-std::string setting_text(const Comparison& c, std::size_t p, std::size_t s) {
-  const std::string origin = origin_text(c, p, s);
-  if (origin.empty()) return shown_spec(c.optimizers[s].label);
-  return fmt::format("{} ({})", c.optimizers[s].method, origin);
-}
-
-// Where the results come from: builds, machines, commands.
-
 namespace {
 
 // The reported parts of a build, in order; equal ones once.
@@ -106,7 +51,7 @@ Table builds_table(const std::set<Lines>& builds) {
 
 Section builds_section(const Comparison& c) {
   constexpr std::size_t kMost = 8;  // builds, and commands
-  Section section{.id = "provenance", .title = "Provenance"};
+  Section section = worded_section("provenance");
   if (c.runs.empty()) return section;
   std::set<Lines> builds;
   std::set<std::string> commands;
@@ -121,26 +66,18 @@ Section builds_section(const Comparison& c) {
   section.tables.push_back(builds_table(builds));
   for (const std::string& command : commands) section.readings.push_back({"Asked for by", command});
   section.readings.push_back({"One cell again", rerun_command(c.runs[0].record->request)});
-  section.readings.push_back(
-      {"The command of every other cell",
-       "All cells of the page, button copy, or column command of report.csv"});
+  section.readings.push_back({"The command of every other cell", words("provenance.commands")});
   return section;
 }
 
-// Runs that went wrong, and files that are no records: nothing vanishes in silence.
-
+// Nothing vanishes in silence.
 Section failures_section(const Comparison& c) {
   const auto& unreadable = c.study->unreadable;
-  Section section{.id = "failures",
-                  .title = "Failures",
-                  .otherwise = "None: every run ended by a verdict of its own."};
+  Section section = worded_section("failures");
   if (c.failures.empty() && unreadable.empty()) return section;
-  section.title = fmt::format("Failures: {}, {}", counted(c.failures.size(), "run"),
-                              counted(unreadable.size(), "unreadable file"));
-  Table table{.id = "failures-table",
-              .columns = {"problem", "optimizer", "seed", "status", "message", "rerun"},
-              .align = "llrlpc",
-              .names = 2};
+  section.title = words("failures.counted", c.failures.size(), unreadable.size());
+  Table table = worded_table("failures-table");
+  table.names = 2;
   for (const std::size_t index : c.failures) {
     const Run& run = c.runs[index];
     const Record& record = *run.record;
