@@ -7,14 +7,15 @@
 // - page/: a document to the page, its charts' data, its style and its scripts.
 // - compare/: the gate: what changed from one set of results to another; baselines.
 //
-// A new statistic is a function in a file of sections/ and its name in a list of
-// sections/statistics.cpp; a new format is a file of formats/ and its name in `kFormats` below.
+// A new format is a file of formats/ and its name in `kFormats` below.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
-#include "core/results/study.h"
+#include "core/files.h"
+#include "core/text.h"
+#include "core/threads.h"
 #include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/sections.h"
@@ -33,7 +34,14 @@ inline constexpr Format kFormats[] = {
     {"report.json", json_report}, {"report.md", markdown_report},
     {"report.tex", latex_report}, {"statistics.csv", statistics_csv}};
 
-// Writes every format into the folder, which it makes.
-void write_report(const Document& document, const std::filesystem::path& out);
+// Writes every format into the folder, which it makes, several at a time.
+inline void write_report(const Document& document, const std::filesystem::path& out) {
+  std::filesystem::create_directories(out);
+  share(std::size(kFormats), [&](std::size_t i) {
+    const std::string file = kFormats[i].file, text = kFormats[i].text(document);
+    // Formats for terminals and editors; a page shows no control characters, and has scripts.
+    write_text(out / file, file.ends_with(".html") ? text : printable(text));
+  });
+}
 
 }  // namespace isoline::reports

@@ -108,23 +108,18 @@ void show(Section& section, const Evidence& evidence, const std::string& id,
     plot.title = (prefix.empty() ? "" : prefix + ": ") + plot.title;
     section.plots.push_back(std::move(plot));
   }
-  std::vector<Table> tables;
-  if (!evidence.printed.empty()) tables.push_back(printed_table(evidence, id));
-  tables.push_back(terms_table(evidence, id));
-  tables.push_back(runs_table(evidence, id));
-  for (Table& table : tables) {
+  for (const auto table_of : {printed_table, terms_table, runs_table}) {
+    Table table = table_of(evidence, id);
     table.title = (prefix.empty() ? "" : prefix + ". ") + table.title;
-    section.tables.push_back(std::move(table));
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   }
 }
 
 }  // namespace
 
 Section claim_section(const Judgement& judgement) {
-  Section section{.id = "claim-" + judgement.id,
-                  .title = judgement.sentence,
-                  .lead = {},
-                  .readings = readings_of(judgement)};
+  Section section{.id = "claim-" + judgement.id, .title = judgement.sentence};
+  section.readings = readings_of(judgement);
   show(section, judgement.evidence, judgement.id, "");
   for (std::size_t i = 0; i < judgement.contrasts.size(); ++i) {
     const std::string number = i == 0 ? "" : fmt::format("-{}", i + 1);
@@ -233,10 +228,7 @@ std::string claims_reading(const std::vector<Judgement>& judgements) {
 
 Section claims_section(const std::vector<Judgement>& judgements) {
   Section section = worded_section("claims");
-  if (judgements.empty()) {
-    section.lead.clear();
-    return section;
-  }
+  if (judgements.empty()) return section;
   section.readings = {{"", claims_reading(judgements)}};
   Table& table = section.tables.emplace_back(worded_table("claims-table"));
   for (const Judgement& judgement : judgements) {
@@ -254,17 +246,6 @@ Section claims_section(const std::vector<Judgement>& judgements) {
   return section;
 }
 
-namespace {
-
-std::string rough_time(Real seconds) {
-  constexpr Real kMinute = 60;
-  if (seconds < 1) return "< 1 s";
-  return seconds < 2 * kMinute ? fmt::format("{:.0f} s", seconds)
-                               : fmt::format("{:.0f} min", seconds / kMinute);
-}
-
-}  // namespace
-
 Section papers_section(const std::vector<Judgement>& judgements) {
   Section section = worded_section("papers");
   section.readings = {{"", claims_reading(judgements)}};
@@ -275,6 +256,12 @@ Section papers_section(const std::vector<Judgement>& judgements) {
       table->id.clear();
       table->title = judgement.paper;
     }
+    constexpr Real kMinute = 60;
+    const auto rough_time = [](Real seconds) {
+      return seconds < 1             ? "< 1 s"
+             : seconds < 2 * kMinute ? fmt::format("{:.0f} s", seconds)
+                                     : fmt::format("{:.0f} min", seconds / kMinute);
+    };
     const bool has_runs = judgement.measured.has_value();
     const bool is_long = !judgement.sets.empty() && judgement.sets.back().is_long;
     const bool is_not_run = !has_runs && !judgement.sets.empty();
@@ -331,40 +318,29 @@ std::optional<Real> place_in(const Figure& figure, const EvidenceTerm& term) {
   return term.read_at;
 }
 
-void add_mark(Figure& figure, const Comparison& c, const Judgement& claim) {
-  const Evidence& evidence = claim.evidence;
-  const bool is_level = evidence.kind == "value" && evidence.terms.size() == 1 && claim.band &&
-                        evidence.column.find("x_error") != std::string::npos;
-  if (!is_level) return;
-  const EvidenceTerm& term = evidence.terms[0];
-  const auto x = place_in(figure, term);
-  const std::vector<std::size_t> optimizers = optimizers_of(c, figure, term.method);
-  if (x && !optimizers.empty())
-    figure.published.push_back(
-        {.optimizer = optimizers[0],
-         .name = fmt::format("{}, published: {}", term.method, column_words(evidence.column)),
-         .x = *x,
-         .y = evidence.published,
-         .low = claim.band->low,
-         .high = claim.band->high});
-}
-
-void add_methods(Figure& figure, const Comparison& c, const Judgement& claim) {
-  for (const EvidenceTerm& term : claim.evidence.terms)
-    if (place_in(figure, term) || shown_spec(term.problem) == figure.problem)
-      for (const std::size_t optimizer : optimizers_of(c, figure, term.method))
-        figure.of_the_paper.insert(optimizer);
-}
-
 }  // namespace
 
 void add_published(std::vector<Figure>& all, const Comparison& c,
                    const std::vector<Judgement>& claims) {
   for (Figure& figure : all)
-    for (const Judgement& claim : claims) {
-      add_mark(figure, c, claim);
-      add_methods(figure, c, claim);
-    }
+    for (const Judgement& claim : claims)
+      for (const EvidenceTerm& term : claim.evidence.terms) {
+        const Evidence& evidence = claim.evidence;
+        const auto x = place_in(figure, term);
+        if (!x && shown_spec(term.problem) != figure.problem) continue;
+        const std::vector<std::size_t> optimizers = optimizers_of(c, figure, term.method);
+        figure.of_the_paper.insert(optimizers.begin(), optimizers.end());
+        const bool is_level = evidence.kind == "value" && evidence.terms.size() == 1 &&
+                              claim.band && evidence.column.find("x_error") != std::string::npos;
+        if (!x || !is_level || optimizers.empty()) continue;
+        figure.published.push_back(
+            {.optimizer = optimizers[0],
+             .name = fmt::format("{}, published: {}", term.method, column_words(evidence.column)),
+             .x = *x,
+             .y = evidence.published,
+             .low = claim.band->low,
+             .high = claim.band->high});
+      }
 }
 
 }  // namespace isoline::reports

@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -40,8 +39,7 @@ struct PrintedRow {
   std::int64_t iteration = 0;
   std::vector<Real> printed, reached;
 };
-// A table at iterations 1, 2, …; a single row is compared at the place's iteration. Nothing if
-// the path is shorter.
+// At iterations 1, 2, …; a single row at the place's iteration. Nothing if the path is shorter.
 std::vector<PrintedRow> printed_rows(const Record& record, const Place& place);
 
 std::size_t index_at(const Curve& curve, const Place& place);  // the last kept point until there
@@ -60,19 +58,17 @@ Real quantity_of(const std::string& kind, const std::vector<Real>& medians,
 // The value of a quantity that indicates no direction; nothing if it has no such value.
 std::optional<Real> neutral_of(const std::string& kind);
 
-// One term of a quantity: figures [alternative][seed], of which the alternative of the least median
-// counts, or that of the greatest.
+// One term of a quantity: of its alternatives that of the least median counts, or of the greatest.
 struct Term {
-  std::vector<std::vector<Real>> figures;
-  Real at = 1, scale = 1;  // its abscissa, and a factor of its figures
+  std::vector<std::vector<Real>> figures;  // [alternative][seed]
+  Real at = 1, scale = 1;                  // its abscissa, and a factor of its figures
   bool is_worst = false;
 };
-// Which alternative of a term counts over all seeds, and the scaled median of its figures.
 struct Chosen {
   std::size_t alternative = 0;
-  Real level = 0;
+  Real level = 0;  // the scaled median of its figures
 };
-Chosen chosen_of(const Term& term);
+Chosen chosen_of(const Term& term);  // over all seeds
 
 struct Measurement {
   Real value = 0;
@@ -80,8 +76,7 @@ struct Measurement {
   std::size_t n = 0;       // seeds
   std::optional<Interval> predicted = {};  // 95 % of one further run, where logarithms tell
 };
-// All terms are resampled by the same seeds: a ratio stays one between runs of equal start and
-// data.
+// All terms are resampled by the same seeds: a ratio stays between runs of equal start and data.
 Measurement measure(const std::string& kind, const std::vector<Term>& terms,
                     const std::string& stream);
 
@@ -133,43 +128,11 @@ Agreement agreement_of(const nlohmann::json& claim);  // or of a contrast
 // logarithms, of a ratio). Of fewer than six runs that were drawn it is consistent or at odds.
 Verdict verdict_of(const Measurement& measured, const nlohmann::json& claim, bool is_drawn);
 
-using ByCell = std::unordered_map<std::string, const Record*>;
-
-Place place_of(const nlohmann::json& claim, const nlohmann::json& term);  // where a term is read
-
-// The comparisons that must refute a claim, besides permuted names of optimizers.
-enum class Null {
-  none,
-  untrained,  // nothing was learned: each figure is that of iteration 0
-  twins       // one method under several names: all terms of a problem are the same run
-};
-// Where a claim is read, and where else because its verdict must not hang on that: a time is that
-// of a machine, and the published runs of the sine had a time, in which SIP made a third of the
-// iterations of others.
-enum class ReadAt { asked, equal_work, third_of_sip };
-
-// The figures of a claim's terms, or of a contrast's. `cells` is a list of terms, each a list of
-// alternatives. Where the claim asks for equal time, all are read at the time at which the fastest
-// has made `iterations`.
-std::vector<Term> terms_of(const nlohmann::json& claim, const nlohmann::json& cells,
-                           const ByCell& runs, std::int64_t iterations, Null null = Null::none,
-                           ReadAt at = ReadAt::asked);
-// The processor time of each seed, or its counted work, at which the cheapest run of it has made so
-// many iterations: a run is charged at its own price, also where it stopped before.
-std::vector<Real> equal_spending(const nlohmann::json& cells, const ByCell& runs,
-                                 std::int64_t iterations, bool is_work);
-// Whether terms of one problem are of several optimizers, in the claim or in what it is held
-// against: else none can be taken for another.
+// Whether terms of one problem are of several optimizers, in the claim or in its contrasts.
 bool has_rivals(const nlohmann::json& claim);
-
-// For a claim, or for its contrast, in words.
-std::string quantity_text(const nlohmann::json& claim);   // "ratio of the loss, at the end: a / b"
-std::string published_text(const nlohmann::json& claim);  // "≥ 3 (±5 % from text)"
 Real published_value(const nlohmann::json& published);
-std::string reading_text(const nlohmann::json& claim);  // how it was read off a figure, else empty
 
-// The evidence of a claim: each term of its quantity as it was read, run by run, with
-// the curve it was read off.
+// Each term of the quantity of a claim as it was read, run by run, with the curve it was read off.
 struct EvidenceRun {
   std::string cell, file;  // the digest of what was asked; the name of the record
   std::uint64_t seed = 0;
@@ -212,8 +175,7 @@ struct CellSet {
 // The command that runs the claim again, in a folder of its own.
 std::string repeat_command(const std::string& id, const std::vector<CellSet>& sets);
 
-// The comparison that can refute a claim: a bound that every method satisfies says
-// nothing of the one that is named.
+// The comparison that can refute a claim: a bound that every method satisfies says nothing of one.
 struct Contrast {
   std::string quantity, published;
   std::optional<Measurement> measured;
@@ -252,8 +214,8 @@ struct Judgement {
 
 // In the order of the claims. The first set of cells that is complete counts: the longest.
 std::vector<Judgement> judge(const nlohmann::json& claims, const std::vector<Record>& runs);
-// The verdict on each fact: the weakest of the claims that restate it, of those that are decided.
-// For verifications, or for all others.
+// The verdict on each fact, the weakest of the decided claims that restate it: of verifications, or
+// of all others.
 std::vector<Verdict> verdicts_on_facts(const std::vector<Judgement>& judgements,
                                        bool is_verification);
 

@@ -12,10 +12,6 @@
 namespace isoline::reports {
 namespace {
 
-std::size_t listed_optimizers(const Comparison& c) {
-  return std::min(c.optimizers.size(), kMostTableRows);
-}
-
 // The calls of all runs of an optimizer that reached the tightest tolerance, until then.
 struct Calls {
   std::array<Real, kOracles> counts{};
@@ -64,39 +60,6 @@ TableCell price_cell(const MeasuredPrices& prices, std::string_view oracle) {
   return cell;
 }
 
-// A summary of the costs that are used.
-struct PriceSummary {
-  std::vector<Real> pullbacks;
-  std::size_t measured = 0, untold = 0;
-  Real distance = 0;  // of the one farthest from the declared price, by its logarithm
-  std::string farthest = "none";
-
-  void add(const MeasuredPrices& prices, const std::string& problem) {
-    for (const MeasuredPrice& price : prices.oracles) {
-      if (price.oracle == kInference) continue;  // no run asks it: it counts in no cost
-      ++measured;
-      untold += !is_told(prices, price);
-      if (!is_told(prices, price)) continue;
-      if (price.oracle == "pullback") pullbacks.push_back(price.price);
-      if (price.declared == 0) continue;
-      const Real away = std::abs(std::log(price.price / Real(price.declared)));
-      if (away <= distance) continue;
-      distance = away;
-      farthest = words("prices.farthest", price.oracle, problem, price.declared, price.price);
-    }
-  }
-  std::string reading() const {
-    if (measured == 0) return words("prices.none");
-    std::string text;
-    if (!pullbacks.empty()) {
-      const Spread spread = spread_of(pullbacks);
-      text = words("prices.pullbacks", spread.median, spread.n, spread.low, spread.high, farthest) +
-             " ";
-    }
-    return text + (untold == 0 ? words("prices.all") : words("prices.some", measured, untold));
-  }
-};
-
 }  // namespace
 
 Table calls_table(const Comparison& c) {
@@ -104,7 +67,7 @@ Table calls_table(const Comparison& c) {
   std::vector<Calls> all;
   std::array<bool, kOracles> is_asked{};
   Real work = 0, cost = 0;
-  for (std::size_t s = 0; s < listed_optimizers(c); ++s) {
+  for (std::size_t s = 0; s < std::min(c.optimizers.size(), kMostTableRows); ++s) {
     const Calls& calls = all.emplace_back(calls_of(c, s));
     for (std::size_t kind = 0; kind < kOracles; ++kind)
       is_asked[kind] = is_asked[kind] || calls.counts[kind] > 0;
@@ -138,18 +101,25 @@ Table prices_table(const Comparison& c) {
         }))
       oracles.push_back(oracle);
   table.columns.insert(table.columns.end(), oracles.begin(), oracles.end());
-  PriceSummary summary;
+  std::size_t measured = 0, untold = 0;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const MeasuredPrices* prices = prices_of(c.problems[p]);
     if (prices == nullptr) continue;
     table.row_topics.push_back({.problem = p});
-    const std::string name = problem_name(c.problems[p]);
-    std::vector<TableCell> row = {name, number_cell("microseconds", 1e6 * prices->forward_seconds)};
+    std::vector<TableCell> row = {problem_name(c.problems[p]),
+                                  number_cell("microseconds", 1e6 * prices->forward_seconds)};
     for (const std::string_view oracle : oracles) row.push_back(price_cell(*prices, oracle));
-    summary.add(*prices, name);
+    for (const MeasuredPrice& price : prices->oracles) {
+      if (price.oracle == kInference) continue;  // no run asks it: it counts in no cost
+      ++measured;
+      untold += !is_told(*prices, price);
+    }
     table.rows.push_back(std::move(row));
   }
-  table.reading = summary.reading();
+  table.reading = words(measured == 0 ? "prices.none"
+                        : untold == 0 ? "prices.all"
+                                      : "prices.some",
+                        measured, untold);
   return table;
 }
 
@@ -184,7 +154,10 @@ Section problems_section(const Comparison& c) {
 
 namespace {
 
-std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
+// The cost of restarts on one cell; `rescued` counts cells that only restarts solve.
+TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::size_t& rescued) {
+  const Cell& cell = c.cell(p, s);
+  if (!cell.is_measured()) return cell.planned == 0 ? "" : cell.runs.empty() ? "missing" : "n/a";
   const Measure by = cost_measure(c);
   std::vector<Attempt> attempts;
   for (const std::size_t index : cell.runs) {
@@ -193,30 +166,6 @@ std::vector<Attempt> attempts_of(const Comparison& c, const Cell& cell) {
     const bool is_success = taken < kNever;
     attempts.push_back({in_units(by, is_success ? taken : run.spent_by(by)), is_success});
   }
-  return attempts;
-}
-
-// The raw counts of the median successful run, as a tooltip of its cost.
-std::string calls_note(const Comparison& c, const Cell& cell) {
-  std::vector<std::pair<Real, std::size_t>> reached;
-  for (const std::size_t index : cell.runs)
-    if (const Real work = c.taken(c.runs[index], Measure::work, kTightest); work < kNever)
-      reached.emplace_back(work, index);
-  if (reached.empty()) return "";
-  std::ranges::sort(reached);
-  const auto [work, middle] = reached[(reached.size() - 1) / 2];
-  const OracleCounts counts = counts_at(*c.runs[middle].record, work);
-  std::vector<std::string> parts;
-  for (std::size_t kind = 0; kind < kOracles; ++kind)
-    if (counts[kind] > 0) parts.push_back(fmt::format("{} {}", counts[kind], kOracleNames[kind]));
-  return joined(parts);
-}
-
-// The cost of restarts on one cell; `rescued` counts cells that only restarts solve.
-TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::size_t& rescued) {
-  const Cell& cell = c.cell(p, s);
-  if (!cell.is_measured()) return cell.planned == 0 ? "" : cell.runs.empty() ? "missing" : "n/a";
-  const std::vector<Attempt> attempts = attempts_of(c, cell);
   const auto successes = std::ranges::count_if(attempts, &Attempt::is_success);
   const Real expected = expected_running_time(attempts);
   TableCell shown{
@@ -234,7 +183,6 @@ TableCell restart_cell(const Comparison& c, std::size_t p, std::size_t s, std::s
     }
   }
   shown.text += fmt::format(" ({}/{})", successes, attempts.size());
-  shown.note = calls_note(c, cell);
   return shown;
 }
 
@@ -251,7 +199,7 @@ Table restart_table(const Comparison& c) {
   }
   table.columns.push_back("failed");
   std::size_t rescued = 0;
-  for (std::size_t s = 0; s < listed_optimizers(c); ++s) {
+  for (std::size_t s = 0; s < std::min(c.optimizers.size(), kMostTableRows); ++s) {
     std::vector<TableCell> row;
     for (std::size_t p = 0; p < problems; ++p) row.push_back(restart_cell(c, p, s, rescued));
     row.push_back(failed_cell(c, s));

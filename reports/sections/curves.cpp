@@ -11,20 +11,13 @@
 namespace isoline::reports {
 namespace {
 
-// A run's curve, with what it cost and what is left of its loss at each of its points.
+// A run's curve, with what it cost and what is left of its loss at each of its points: for a direct
+// problem the best so far, which holds until a better one is evaluated; for a learned one, the
+// value of the network at that iteration.
 struct Traced {
   const Curve* curve;
   std::vector<Real> cost, gap;
 };
-
-// For a direct problem, the best so far, which holds until a better one is evaluated; for a learned
-// one, the value of the network at that iteration.
-std::vector<Real> gaps_of(const Run& run, bool is_learned) {
-  std::vector<Real> gaps = losses_left(run);
-  for (std::size_t i = 1; i < gaps.size() && !is_learned; ++i)
-    if (!(gaps[i] <= gaps[i - 1])) gaps[i] = gaps[i - 1];
-  return gaps;
-}
 
 std::vector<Traced> curves_of(const Comparison& c, const Cell& cell) {
   std::vector<Traced> curves;
@@ -32,8 +25,10 @@ std::vector<Traced> curves_of(const Comparison& c, const Cell& cell) {
     const Run& run = c.runs[index];
     if (run.record->curve.iteration.empty()) continue;
     const ProblemAxis& problem = c.problems[run.problem];
-    curves.push_back({&run.record->curve, problem.prices.curve_costs(*run.record),
-                      gaps_of(run, problem.is_learned)});
+    std::vector<Real> gaps = losses_left(run);
+    for (std::size_t i = 1; i < gaps.size() && !problem.is_learned; ++i)
+      if (!(gaps[i] <= gaps[i - 1])) gaps[i] = gaps[i - 1];
+    curves.push_back({&run.record->curve, problem.prices.curve_costs(*run.record), gaps});
   }
   return curves;
 }
@@ -152,11 +147,6 @@ std::vector<Real> distances(const FieldFrames& frames, bool is_history) {
   return apart;
 }
 
-// The same cells, with a known x* in both or neither.
-bool is_alike(const FieldFrames& a, const FieldFrames& b) {
-  return a.shape[1] == b.shape[1] && a.shape[2] == b.shape[2] && a.has_truth() == b.has_truth();
-}
-
 // From the least seed that keeps them, or from this seed if requested.
 std::optional<FoundField> field_of(const Comparison& c, std::size_t p, std::size_t s,
                                    std::optional<std::uint64_t>& seed) {
@@ -184,7 +174,12 @@ std::optional<FoundFields> found_fields(const Comparison& c, std::size_t p) {
     const std::string kind = c.optimizers[s].mathematics();
     if (kinds.contains(kind)) continue;
     std::optional<FoundField> found = field_of(c, p, s, seed);
-    if (!found || (!out.found.empty() && !is_alike(found->frames, out.frames()))) continue;
+    if (!found) continue;
+    // The same cells, with a known x* in all or none.
+    const auto form = [](const FieldFrames& frames) {
+      return std::tuple(frames.shape[1], frames.shape[2], frames.has_truth());
+    };
+    if (!out.found.empty() && form(found->frames) != form(out.frames())) continue;
     kinds.insert(kind);
     out.found.push_back(std::move(*found));
   }
@@ -221,12 +216,18 @@ struct Extent {
   }
 };
 
+// visit(line) for every line that is drawn.
+void each_line(const Plot& plot, const auto& visit) {
+  std::ranges::for_each(plot.series, visit);
+  std::ranges::for_each(plot.published, visit);
+}
+
 Extent extent_of(const Plot& plot, std::vector<Real> PlotSeries::*values, bool is_logarithmic) {
   Extent extent;
-  for (const auto* all : {&plot.series, &plot.published})
-    for (const PlotSeries& line : *all)
-      for (const Real value : line.*values)
-        if (value > 0 || !is_logarithmic) extent.take(value);
+  each_line(plot, [&](const PlotSeries& line) {
+    for (const Real value : line.*values)
+      if (value > 0 || !is_logarithmic) extent.take(value);
+  });
   return extent;
 }
 
@@ -240,12 +241,10 @@ Extent extent_of_y(const Plot& plot) {
     extent.take(plot.is_log_y ? std::clamp(y, medians.low / kFurther, kFurther * medians.high)
                               : std::clamp(y, medians.low - span, medians.high + span));
   };
-  for (const auto* all : {&plot.series, &plot.published})
-    for (const PlotSeries& line : *all) {
-      if (line.y.empty()) continue;
-      for (const Real y : line.low) take_edge(y);
-      for (const Real y : line.high) take_edge(y);
-    }
+  each_line(plot, [&](const PlotSeries& line) {
+    for (const auto* edge : {&line.low, &line.high})
+      if (!line.y.empty()) std::ranges::for_each(*edge, take_edge);
+  });
   if (extent.low > extent.high) return {0.1, 1};
   if (plot.is_log_y) return {extent.low / 1.15, 1.15 * extent.high};  // some air
   // Figures that differ by rounding alone are drawn as one.

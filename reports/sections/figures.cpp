@@ -192,15 +192,6 @@ Figure picture_figure(const Comparison& c, std::size_t p) {
   return out;
 }
 
-// A figure of one problem; empty if no run has the requested data.
-Figure problem_figure(const Comparison& c, std::size_t p, const Panel& panel) {
-  if (panel.kind == "curve" || panel.kind == "series") return curve_figure(c, p, panel.quantity);
-  if (panel.kind == "scatter") return scatter_figure(c, p);
-  if (panel.kind == "decades") return decades_figure(c, p);
-  if (panel.kind == "path") return path_figure(c, p, panel.quantity);
-  return picture_figure(c, p);
-}
-
 using Sweep = std::vector<std::pair<Real, std::size_t>>;  // value of the option, problem
 
 Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel) {
@@ -232,9 +223,9 @@ Figure sweep_figure(const Comparison& c, const Sweep& sweep, const Panel& panel)
 
 const Component& component_of(const Comparison& c, std::size_t problem) {
   static const Component none;
-  for (const Cell& cell : c.cells[problem])
-    if (!cell.runs.empty()) return c.runs[cell.runs[0]].record->request.problem;
-  return none;
+  const auto run =
+      std::ranges::find_if(c.cells[problem], [](const Cell& cell) { return !cell.runs.empty(); });
+  return run == c.cells[problem].end() ? none : c.runs[run->runs[0]].record->request.problem;
 }
 
 // The problems of one name whose options a panel wants.
@@ -243,10 +234,10 @@ std::vector<std::size_t> wanted_problems(const Comparison& c, const std::string&
   std::vector<std::size_t> problems;
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     const Component& problem = component_of(c, p);
-    if (c.problems[p].name == name && problem.is_learned &&
-        std::ranges::all_of(panel.where, [&](const auto& wanted) {
-          return problem.options.number(wanted.first, std::nan("")) == wanted.second;
-        }))
+    const auto has = [&](const auto& wanted) {
+      return problem.options.number(wanted.first, std::nan("")) == wanted.second;
+    };
+    if (c.problems[p].name == name && problem.is_learned && std::ranges::all_of(panel.where, has))
       problems.push_back(p);
   }
   return problems;
@@ -294,7 +285,12 @@ std::vector<Figure> figures(const Comparison& c) {
           add(sweep_figure(c, sweep, panel), problem.name, panel);
       else
         for (const std::size_t p : wanted)
-          add(problem_figure(c, p, panel), problem_name(c.problems[p]), panel);
+          add(panel.kind == "scatter"    ? scatter_figure(c, p)
+              : panel.kind == "decades"  ? decades_figure(c, p)
+              : panel.kind == "path"     ? path_figure(c, p, panel.quantity)
+              : panel.kind == "pictures" ? picture_figure(c, p)
+                                         : curve_figure(c, p, panel.quantity),
+              problem_name(c.problems[p]), panel);
     }
   }
   return all;

@@ -37,20 +37,17 @@ std::size_t point_at(const std::vector<Value>& axis, Value place) {
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, passed) - 1);
 }
 
-// The path of the lowest seed that has one; empty where none has.
+// The path of each optimizer, of the lowest seed that has one.
 struct Path {
   std::string optimizer;
   std::size_t index = 0;  // of the optimizer
   std::vector<std::vector<Real>> x, y;
 };
 std::vector<Path> paths(const Comparison& comparison, std::size_t problem);
-
-// How far a path strays: its length over the distance between its ends, infinite where that says
-// nothing.
+// The length of a path over the distance between its ends, infinite where that says nothing.
 Real detour(const std::vector<std::vector<Real>>& path);
 
-// The results of one method of each kind for a problem on a grid, from the fields beside its
-// records.
+// The results of one method of each kind for a problem on a grid, from the fields of its records.
 struct FoundField {
   std::size_t optimizer = 0;
   FieldFrames frames;       // with their numbers

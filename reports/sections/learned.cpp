@@ -4,19 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "reports/sections/sections.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
 namespace {
-
-// Medians over seeds of the runs that made a step.
-Real median_per_run(const Comparison& c, const Cell& cell, Real (*value)(const Summary&)) {
-  const Rows rows =
-      c.where(cell.runs, [](const Run& run) { return run.record->summary.iterations > 0; });
-  return c.aggregate(rows, [&](const Run& run) { return value(run.record->summary); }).median;
-}
 
 Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::size_t>& order) {
   const Sheet* sheet = c.problems[p].sheet;
@@ -32,10 +26,13 @@ Table learned_table(const Comparison& c, std::size_t p, const std::vector<std::s
                         setting_text(c, p, order[0]), nearest.x_error.median, nearest.loss.median);
   for (const std::size_t s : order) {
     const Cell& cell = c.cell(p, s);
-    const Real iterations =
-        median_per_run(c, cell, [](const Summary& end) { return Real(end.iterations); });
-    const Real milliseconds_each = median_per_run(
-        c, cell, [](const Summary& end) { return 1e3 * end.wall_seconds / Real(end.iterations); });
+    const Rows steppers =
+        c.where(cell.runs, [](const Run& run) { return run.record->summary.iterations > 0; });
+    const auto count = [](const Run& run) { return Real(run.record->summary.iterations); };
+    const Real iterations = c.aggregate(steppers, count).median,
+               milliseconds_each = c.aggregate(steppers, [&](const Run&run) {
+                                      return 1e3 * run.record->summary.wall_seconds / count(run);
+                                    }).median;
     const Marks marks{.has_extra_information = !cell.privileges.empty(),
                       .is_imported = c.optimizers[s].is_imported};
     table.rows.push_back({setting_text(c, p, s) + marks_text(marks), figure(cell.x_error),
@@ -59,7 +56,6 @@ Section learned_section(const Comparison& c) {
     std::ranges::stable_sort(order, {}, [&](std::size_t s) { return c.cell(p, s).x_error.median; });
     if (!order.empty()) section.tables.push_back(learned_table(c, p, order));
   }
-  if (section.is_empty()) section.lead.clear();
   return section;
 }
 
@@ -71,13 +67,10 @@ namespace {
 
 // One method that trained, or one that solved single instances, over its runs.
 struct Side {
-  std::size_t problem = 0, optimizer = 0;
+  std::size_t optimizer = 0;
+  const Cell* cell = nullptr;
+  std::string name;
   Spread seconds;  // of the processor: to the end, or to the error that is asked
-};
-
-struct Trained : Side {
-  Real x_error = kNever;      // the median over seeds, on the validation
-  Real inference = kUnknown;  // seconds an example
 };
 
 // Nothing where no run tells the options.
@@ -98,8 +91,10 @@ std::vector<std::size_t> instances_of(const Comparison& c, std::size_t learned) 
   return found;
 }
 
-Real inference_seconds(const Sheet* sheet, const std::string& spec) {
-  if (sheet == nullptr || sheet->spec != spec || !sheet->prices) return kUnknown;
+// Of an example; not-a-number where it was not measured.
+Real inference_seconds(const ProblemAxis& problem) {
+  const Sheet* sheet = problem.sheet;
+  if (sheet == nullptr || sheet->spec != problem.spec || !sheet->prices) return kUnknown;
   const auto& rows = sheet->prices->oracles;
   const auto row = std::ranges::find(rows, kInference, &MeasuredPrice::oracle);
   return row == rows.end() ? kUnknown : row->price * sheet->prices->forward_seconds;
@@ -112,40 +107,38 @@ Side side_of(const Comparison& c, std::size_t problem, std::size_t optimizer, Se
   const auto seconds = [&](const Run& run) {
     return is_failure(run.record->status) ? kNever : seconds_of(*run.record);
   };
-  return {problem, optimizer, c.aggregate(cell.runs, seconds, cell.missing())};
+  return {optimizer, &cell,
+          setting_text(c, problem, optimizer) +
+              marks_text({.has_extra_information = !cell.privileges.empty()}),
+          c.aggregate(cell.runs, seconds, cell.missing())};
 }
 
 // The nearest to x first.
-std::vector<Trained> trained_on(const Comparison& c, std::size_t p) {
-  std::vector<Trained> all;
-  const Real inference = inference_seconds(c.problems[p].sheet, c.problems[p].spec);
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
-    const Cell& cell = c.cell(p, s);
-    if (!cell.is_measured() || !cell.x_error.is_solved()) continue;
-    const auto whole = [](const Record& record) { return record.summary.processor_seconds; };
-    all.push_back({side_of(c, p, s, whole), cell.x_error.median, inference});
-  }
-  std::ranges::stable_sort(all, {}, &Trained::x_error);
+std::vector<Side> trained_on(const Comparison& c, std::size_t p) {
+  std::vector<Side> all;
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
+    if (c.cell(p, s).is_measured() && c.cell(p, s).x_error.is_solved())
+      all.push_back(
+          side_of(c, p, s, [](const Record& record) { return record.summary.processor_seconds; }));
+  std::ranges::stable_sort(all, {}, [](const Side& side) { return side.cell->x_error.median; });
   return all;
 }
 
-// When the run had that error, at its kept points; 0 where its start has it.
-Real seconds_to(const Record& record, Real x_error) {
-  const Curve& curve = record.curve;
-  for (std::size_t i = 0; i < curve.x_error.size(); ++i)
-    if (curve.x_error[i] <= x_error) return i == 0 ? 0 : curve.processor_seconds[i];
-  return kNever;
-}
-
-// The fastest first.
+// The fastest to that error first.
 std::vector<Side> singles_to(const Comparison& c, const std::vector<std::size_t>& instances,
                              Real x_error) {
+  // At the kept points of a run; 0 where its start has that error.
+  const auto seconds_to = [=](const Record& record) {
+    const Curve& curve = record.curve;
+    const auto at = std::ranges::find_if(curve.x_error, [=](Real x) { return x <= x_error; });
+    if (at == curve.x_error.end()) return kNever;
+    const auto i = static_cast<std::size_t>(at - curve.x_error.begin());
+    return i == 0 ? 0 : curve.processor_seconds[i];
+  };
   std::vector<Side> all;
   for (const std::size_t p : instances)
     for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).is_measured())
-        all.push_back(
-            side_of(c, p, s, [&](const Record& record) { return seconds_to(record, x_error); }));
+      if (c.cell(p, s).is_measured()) all.push_back(side_of(c, p, s, seconds_to));
   std::ranges::stable_sort(all, {}, [](const Side& side) {
     return std::pair(side.seconds.median, side.seconds.unsolved);
   });
@@ -154,80 +147,51 @@ std::vector<Side> singles_to(const Comparison& c, const std::vector<std::size_t>
 
 // From how many instances on training has cost less; infinite where it never does, nothing known
 // where a time is.
-Real pays_from(const Trained& network, const Side& single) {
+Real pays_from(const Side& network, const Side& single, Real inference) {
   const Real training = network.seconds.median, each = single.seconds.median;
-  if (std::isnan(network.inference) || !network.seconds.is_solved()) return kUnknown;
+  if (std::isnan(inference) || !network.seconds.is_solved()) return kUnknown;
   if (each == kNever) return 1;
-  const Real saved = each - network.inference;
+  const Real saved = each - inference;
   return saved > 0 ? std::max(1.0, std::ceil(training / saved)) : kNever;
-}
-
-const Cell& cell_of(const Comparison& c, const Side& side) {
-  return c.cell(side.problem, side.optimizer);
-}
-
-std::string named(const Comparison& c, const Side& side) {
-  return setting_text(c, side.problem, side.optimizer) +
-         marks_text({.has_extra_information = !cell_of(c, side).privileges.empty()});
 }
 
 // Three digits, as milliseconds have them.
 std::string in_seconds(Real seconds) { return milliseconds(1e-3 * seconds); }
 
-TableCell time_cell(const Comparison& c, const Side& side, std::string (*written)(Real)) {
+TableCell time_cell(const Side& side, std::string (*written)(Real)) {
   const Real seconds = side.seconds.median;
-  return {(cell_of(c, side).is_timed_alone || seconds == kNever ? "" : "≈ ") + written(seconds),
+  return {(side.cell->is_timed_alone || seconds == kNever ? "" : "≈ ") + written(seconds),
           {{"seconds", seconds}}};
 }
 
-std::vector<TableCell> amortized_row(const Comparison& c, const Trained& network,
-                                     const Side& single) {
+std::vector<TableCell> amortized_row(const Side& network, const Side& single, Real inference) {
   const Spread& times = single.seconds;
-  const Real from = pays_from(network, single);
-  TableCell pays = "", inference = "";
-  if (!std::isnan(network.inference))
-    inference = {milliseconds(network.inference), {{"seconds", network.inference}}};
+  const Real from = pays_from(network, single, inference);
+  TableCell pays = "", example = "";
+  if (!std::isnan(inference)) example = {milliseconds(inference), {{"seconds", inference}}};
   if (!std::isnan(from) && !times.is_solved()) pays = words("amortized-table.open");
   if (!std::isnan(from) && times.is_solved())
     pays = {from == kNever ? "never" : figure(from), {{"pays_from", from}}};
-  return {named(c, network),
-          named(c, single),
-          number_cell("x_error", network.x_error),
-          time_cell(c, network, in_seconds),
-          inference,
-          time_cell(c, single, milliseconds),
+  return {network.name,
+          single.name,
+          number_cell("x_error", network.cell->x_error.median),
+          time_cell(network, in_seconds),
+          example,
+          time_cell(single, milliseconds),
           fmt::format("{}/{}", times.n - times.unsolved, times.n),
-          fmt::format("{}, {}", cell_of(c, network).failed, cell_of(c, single).failed),
+          fmt::format("{}, {}", network.cell->failed, single.cell->failed),
           pays};
 }
 
-std::string reading_of(const Comparison& c, const Trained& network, const Side& single) {
-  const Real from = pays_from(network, single);
+std::string reading_of(const Side& network, const Side& single, Real inference) {
+  const Real from = pays_from(network, single, inference);
   const char* key = !single.seconds.is_solved()  ? "amortized-table.unreached"
                     : single.seconds.median == 0 ? "amortized-table.start"
                     : std::isnan(from)           ? "amortized-table.untimed"
                     : from == kNever             ? "amortized-table.never"
                                                  : "amortized-table.pays";
-  return words(key, named(c, single), milliseconds(single.seconds.median), network.x_error,
-               named(c, network), in_seconds(network.seconds.median),
-               milliseconds(network.inference), from);
-}
-
-Table amortized_table(const Comparison& c, std::size_t p, const std::vector<Trained>& networks,
-                      const std::vector<std::size_t>& instances) {
-  Table table = worded_table("amortized-table", shown_spec(c.problems[p].spec));
-  table.id = fmt::format("amortized-{}", p);
-  table.topic = {.problem = p};
-  table.names = 2;
-  for (const Trained& network : networks) {
-    const std::vector<Side> singles = singles_to(c, instances, network.x_error);
-    if (table.reading.empty()) table.reading = reading_of(c, network, singles.front());
-    for (std::size_t i = 0; i < std::min(singles.size(), kMostLines); ++i) {
-      table.rows.push_back(amortized_row(c, network, singles[i]));
-      table.row_topics.push_back({.optimizer = singles[i].optimizer});
-    }
-  }
-  return table;
+  return words(key, single.name, milliseconds(single.seconds.median), network.cell->x_error.median,
+               network.name, in_seconds(network.seconds.median), milliseconds(inference), from);
 }
 
 }  // namespace
@@ -236,13 +200,22 @@ Section amortized_section(const Comparison& c) {
   Section section = worded_section("amortized");
   for (std::size_t p = 0; p < c.problems.size(); ++p) {
     if (!c.problems[p].is_learned) continue;
-    const std::vector<Trained> networks = trained_on(c, p);
+    const Real inference = inference_seconds(c.problems[p]);
     const std::vector<std::size_t> instances = instances_of(c, p);
-    if (networks.empty() || instances.empty()) continue;
-    if (singles_to(c, instances, kNever).empty()) continue;
-    section.tables.push_back(amortized_table(c, p, networks, instances));
+    Table table = worded_table("amortized-table", shown_spec(c.problems[p].spec));
+    table.id = fmt::format("amortized-{}", p);
+    table.topic = {.problem = p};
+    table.names = 2;
+    for (const Side& network : trained_on(c, p)) {
+      const std::vector<Side> singles = singles_to(c, instances, network.cell->x_error.median);
+      for (const Side& single : std::span(singles).first(std::min(singles.size(), kMostLines))) {
+        if (table.reading.empty()) table.reading = reading_of(network, single, inference);
+        table.rows.push_back(amortized_row(network, single, inference));
+        table.row_topics.push_back({.optimizer = single.optimizer});
+      }
+    }
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   }
-  if (section.is_empty()) section.lead.clear();
   return section;
 }
 

@@ -49,37 +49,11 @@ std::size_t methods_of(const Comparison& c, std::optional<std::size_t> problem =
   return names.size();
 }
 
-// "heat: 17, heat[N=16]: 12" where some problems were not asked of every optimizer; else empty.
-std::string partial_rows(const Comparison& c) {
-  constexpr std::size_t kNamed = 8;
-  std::vector<std::string> rows;
-  for (std::size_t p = 0; p < c.problems.size(); ++p) {
-    const std::size_t planned = methods_of(c, p);
-    if (planned < methods_of(c))
-      rows.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), planned));
-  }
-  return first_of(std::move(rows), kNamed);
-}
-
-// The solvers with the greatest share within a factor; many are counted, not named.
-struct Leaders {
-  std::vector<std::string> names;
-  Real share = 0;
-
-  std::string text() const {
-    constexpr std::size_t kNamed = 3;
-    return names.size() > kNamed ? fmt::format("{} methods", names.size()) : joined(names, " and ");
-  }
-};
-
-Leaders leaders(const Comparison& c, const Profile& profile, Real factor) {
-  Leaders first;
-  for (const std::size_t s : c.order.methods) {
-    const Real mine = profile.share(s, factor);
-    if (mine > first.share) first.names.clear();
-    first.share = std::max(first.share, mine);
-    if (mine == first.share) first.names.push_back(shown_spec(c.optimizers[s].label));
-  }
+// The solvers with the greatest share within a factor.
+Leading leaders(const Comparison& c, const Profile& profile, Real factor) {
+  Leading first;
+  for (const std::size_t s : c.order.methods)
+    first.offer(profile.share(s, factor), shown_spec(c.optimizers[s].label));
   return first;
 }
 
@@ -92,41 +66,18 @@ std::string least_loss_reading(const Comparison& c, std::size_t problem,
                shown_spec(c.optimizers[best].label), loss);
 }
 
-// "more on 2 of 3 seeds": of the seeds that both ran, those where the first took less.
-std::string seeds_text(const Comparison& c, const Cell& first, const Cell& second) {
+// "; next adam, 1.3× as much", and on how many of the seeds that both ran the first took less.
+std::string runner_up(const Comparison& c, const Cell& first, const Cell& second,
+                      const std::string& name) {
+  const Real best = first.headline[kTightest].median, next = second.headline[kTightest].median;
+  if (next <= best) return fmt::format(", tied with {}", name);
   const auto pairs = c.join(first.runs, second.runs, [](const Run& run) { return run.seed; });
-  const auto is_less = [&](const auto& pair) {
+  const auto less = std::ranges::count_if(pairs, [&](const auto& pair) {
     return c.taken(c.runs[pair.first], c.yardstick.by, kTightest) <
            c.taken(c.runs[pair.second], c.yardstick.by, kTightest);
-  };
-  return pairs.size() < 2 ? ""
-                          : fmt::format(", more on {} of {} seeds",
-                                        std::ranges::count_if(pairs, is_less), pairs.size());
-}
-
-// "; next adam, 1.3× as much", and on how many seeds that is so.
-std::string runner_up(const Comparison& c, std::size_t problem, std::size_t first,
-                      std::size_t second) {
-  const Spread& best = c.cell(problem, first).headline[kTightest];
-  const Spread& next = c.cell(problem, second).headline[kTightest];
-  const std::string name = shown_spec(c.optimizers[second].label);
-  if (next.median <= best.median) return fmt::format(", tied with {}", name);
-  const Real unit = least_unit(c.yardstick.by);
-  return fmt::format("; next {}, {} as much{}", name,
-                     multiple(next.median / std::max(best.median, unit)),
-                     seeds_text(c, c.cell(problem, first), c.cell(problem, second)));
-}
-
-// Whose claims stand among the runs: "Imported, marked §: theirs (Table 2 of …). …".
-std::string imported_text(const Comparison& c) {
-  std::map<std::string, std::set<std::string>> sources;  // by method
-  for (const Run& run : c.runs)
-    if (run.record->imported)
-      sources[run.record->request.optimizer.name].insert(run.record->imported->source);
-  std::vector<std::string> named;
-  for (const auto& [method, those] : sources)
-    named.push_back(fmt::format("{} ({})", method, joined({those.begin(), those.end()}, "; ")));
-  return named.empty() ? "" : words("remarks.imported", joined(named));
+  });
+  return words("curve.next", name, multiple(next / std::max(best, least_unit(c.yardstick.by))),
+               pairs.size() < 2 ? "" : words("curve.seeds", less, pairs.size()));
 }
 
 }  // namespace
@@ -154,14 +105,26 @@ std::string headline(const Comparison& c) {
 std::vector<std::string> remarks(const Comparison& c) {
   const Study& study = *c.study;
   std::vector<std::string> all;
-  if (const std::string rows = partial_rows(c); !rows.empty())
+  constexpr std::size_t kNamed = 8;
+  std::vector<std::string> partial;  // problems that were not asked of every optimizer
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    if (const std::size_t planned = methods_of(c, p); planned < methods_of(c))
+      partial.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), planned));
+  if (!partial.empty())
     all.push_back(words("remarks.partial", counted_settings(c, c.order.settings.size()),
-                        methods_of(c), rows));
+                        methods_of(c), first_of(partial, kNamed)));
   if (study.superseded > 0) all.push_back(words("remarks.superseded", study.superseded));
   if (!study.unreadable.empty())
     all.push_back(words("remarks.unreadable", study.unreadable.size()));
   if (c.is_any_timed_together) all.push_back(words("remarks.shared-time"));
-  if (const std::string imported = imported_text(c); !imported.empty()) all.push_back(imported);
+  std::map<std::string, std::set<std::string>> sources;  // of imported runs, by method
+  for (const Run& run : c.runs)
+    if (run.record->imported)
+      sources[run.record->request.optimizer.name].insert(run.record->imported->source);
+  std::vector<std::string> named;
+  for (const auto& [method, those] : sources)
+    named.push_back(fmt::format("{} ({})", method, joined({those.begin(), those.end()}, "; ")));
+  if (!named.empty()) all.push_back(words("remarks.imported", joined(named)));
   for (const ProblemAxis& problem : c.problems)
     if (!problem.is_minimum_declared)
       all.push_back(words("remarks.no-minimum", problem_name(problem)));
@@ -170,11 +133,16 @@ std::vector<std::string> remarks(const Comparison& c) {
 
 std::string profile_reading(const Comparison& c, std::size_t tolerance) {
   const Profile& profile = c.profiles[tolerance];
-  const Leaders fast = leaders(c, profile, 2), robust = leaders(c, profile, kNever);
+  const Leading fast = leaders(c, profile, 2), robust = leaders(c, profile, kNever);
   const std::string_view tau = c.yardstick.tolerances[tolerance].name;
-  if (robust.share == 0) return words("profile.none", tau);
-  return words("profile.reading", fast.text(), fast.text().find(' ') == std::string::npos,
-               percent(fast.share), tau, counted_name(c), percent(robust.share), robust.text());
+  if (robust.value == 0) return words("profile.none", tau);
+  const auto text = [](const Leading& first) {  // many are counted, not named
+    constexpr std::size_t kNamed = 3;
+    const std::size_t count = first.names.size();
+    return count > kNamed ? fmt::format("{} methods", count) : joined(first.names, " and ");
+  };
+  return words("profile.reading", text(fast), text(fast).find(' ') == std::string::npos,
+               percent(fast.value), tau, counted_name(c), percent(robust.value), text(robust));
 }
 
 std::string curve_reading(const Comparison& c, std::size_t problem) {
@@ -192,7 +160,9 @@ std::string curve_reading(const Comparison& c, std::size_t problem) {
                shown_spec(c.optimizers[order[0]].label),
                c.cell(problem, order[0]).is_bound[kTightest] ? "≤ " : "", amount(c, first.median),
                unit_name(c), range.empty() ? "" : fmt::format(" ({} over seeds)", range),
-               solved > 1 ? runner_up(c, problem, order[0], order[1]) : "",
+               solved < 2 ? ""
+                          : runner_up(c, c.cell(problem, order[0]), c.cell(problem, order[1]),
+                                      shown_spec(c.optimizers[order[1]].label)),
                words(unsolved == 0 ? "curve.all" : "curve.unsolved", unsolved, order.size()));
 }
 

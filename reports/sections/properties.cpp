@@ -25,29 +25,9 @@ std::string exponent_text(const PowerLaw& law) {
   return law.holds() ? decimal(law.exponent) : kNoLaw;
 }
 
-std::string law_cell(const ScalingLaw& law) {
-  const std::string step = exponent_text(law.step), change = exponent_text(law.loss_change);
-  return step == change ? step : step + " / " + change;
-}
-
-template <Scaled scaled>
-std::string law_of(const AuditedOptimizer& audited) {
-  const ScalingLaw& law = audited.law(scaled);
-  if (!audited.network.empty() && law.scales.empty()) return kNoSense;
-  return law_cell(law);
-}
-
 std::string deviation_text(Real deviation) {
   if (std::isnan(deviation)) return kNoStep;
   return deviation <= kInvariantDeviation ? "kept" : fmt::format("{:.2g}", deviation);
-}
-
-template <std::size_t first>
-std::string invariance_cell(const AuditedOptimizer& audited) {
-  const auto& d = audited.deviations;
-  if (!audited.network.empty() && std::isnan(d[first])) return kNoSense;
-  return fmt::format("{}, {}, {}", deviation_text(d[first]), deviation_text(d[first + 1]),
-                     deviation_text(d[first + 2]));
 }
 
 std::string approach_text(const AuditedOptimizer& audited, const Approach& approach) {
@@ -64,39 +44,43 @@ std::string angle_text(Real angle) {
   return std::isnan(angle) ? kNoStep : fmt::format("{:.1f}°", angle);
 }
 
-using Audited = const AuditedOptimizer&;
-
 // In the order of the columns.
-constexpr std::string (*kCells[])(Audited) = {
-    law_of<Scaled::loss>,
-    law_of<Scaled::output>,
-    law_of<Scaled::input>,
-    law_of<Scaled::slope>,
-    invariance_cell<0>,
-    invariance_cell<3>,
-    [](Audited audited) { return approach_text(audited, audited.regular); },
-    [](Audited audited) { return approach_text(audited, audited.singular); },
-    [](Audited audited) {
-      if (!audited.network.empty()) return std::string(kNoSense);
-      return angle_text(audited.linear_angle) + ", " + angle_text(audited.curved_angle);
-    },
-    [](Audited audited) {
-      std::vector<std::string> calls;
-      for (const auto& [oracle, count] : audited.counted)
-        calls.push_back(fmt::format("{} {}", oracle, count));
-      return fmt::format("{} in {}", joined(calls), audited.iterations);
-    },
-    [](Audited audited) { return joined(audited.flags, "; "); }};
+std::vector<TableCell> properties_row(const AuditedOptimizer& audited) {
+  const bool is_teacher = !audited.network.empty();
+  std::vector<TableCell> row = {shown_spec(audited.spec)};
+  for (const Scaled scaled : {Scaled::loss, Scaled::output, Scaled::input, Scaled::slope}) {
+    const ScalingLaw& law = audited.law(scaled);
+    const std::string step = exponent_text(law.step), change = exponent_text(law.loss_change);
+    row.push_back(is_teacher && law.scales.empty() ? kNoSense
+                  : step == change                 ? step
+                                                   : step + " / " + change);
+  }
+  for (const std::size_t first : {0, 3}) {
+    const auto& d = audited.deviations;
+    std::vector<std::string> parts;
+    for (std::size_t i = first; i < first + 3; ++i) parts.push_back(deviation_text(d[i]));
+    row.push_back(is_teacher && std::isnan(d[first]) ? kNoSense : joined(parts));
+  }
+  row.push_back(approach_text(audited, audited.regular));
+  row.push_back(approach_text(audited, audited.singular));
+  row.push_back(is_teacher
+                    ? kNoSense
+                    : angle_text(audited.linear_angle) + ", " + angle_text(audited.curved_angle));
+  std::vector<std::string> calls;
+  for (const auto& [oracle, count] : audited.counted)
+    calls.push_back(fmt::format("{} {}", oracle, count));
+  row.push_back(fmt::format("{} in {}", joined(calls), audited.iterations));
+  row.push_back(joined(audited.flags, "; "));
+  return row;
+}
 
 Table properties_table(const Audits& all) {
   Table table = worded_table("audit-table");
   table.parts = {4, 2, 3, 2};
   for (const AuditedOptimizer& audited : all) {
-    std::vector<TableCell>& row = table.rows.emplace_back();
-    row.push_back(shown_spec(audited.spec));
-    if (!audited.reason.empty()) row.push_back(audited.reason);
-    if (audited.reason.empty())
-      for (const auto& cell : kCells) row.push_back(cell(audited));
+    table.rows.push_back(audited.reason.empty()
+                             ? properties_row(audited)
+                             : std::vector<TableCell>{shown_spec(audited.spec), audited.reason});
     table.row_topics.push_back({.method = audited.name});
   }
   return table;
@@ -106,10 +90,7 @@ Table properties_table(const Audits& all) {
 
 Section properties_section(const Audits& all) {
   Section section = worded_section("audit");
-  if (all.empty()) {
-    section.lead.clear();
-    return section;
-  }
+  if (all.empty()) return section;
   section.readings = property_readings(all);
   section.tables = {properties_table(all)};
   return section;
@@ -119,7 +100,7 @@ Section properties_section(const Audits& all) {
 
 namespace {
 
-constexpr Real kSame = 0.02;  // how near to a whole exponent is that exponent
+using Audited = const AuditedOptimizer&;
 
 template <class Test>
 std::vector<std::string> names_where(const Audits& all, Test test) {
@@ -137,7 +118,8 @@ std::string listed_where(const Audits& all, Test test) {
 
 // Whose first step goes with this exponent of what is scaled.
 std::string listed_with(const Audits& all, Scaled scaled, Real exponent) {
-  return listed_where(all, [=](const AuditedOptimizer& audited) {
+  constexpr Real kSame = 0.02;  // how near to a whole exponent is that exponent
+  return listed_where(all, [=](Audited audited) {
     const PowerLaw& law = audited.law(scaled).step;
     return law.holds() && std::abs(law.exponent - exponent) <= kSame;
   });
@@ -157,29 +139,25 @@ std::string hessian_sentence(const Audits& all) {
   return " " + words("audit.hessian", newton, gradient, newton - gradient);
 }
 
-// The chapter's L = αx, where the figures and the chapter need not say the same.
-std::string slope_sentence(const Audits& all) {
-  return words("audit.slope", listed_with(all, Scaled::slope, 1),
-               listed_with(all, Scaled::slope, 0), listed_with(all, Scaled::slope, -1),
-               hessian_sentence(all));
-}
-
+// The chapter's L = αx stands beside, where the figures and the chapter need not say the same.
 std::string scaling_sentence(const Audits& all) {
-  const auto has_none = [](const AuditedOptimizer& audited) {
+  const auto has_none = [](Audited audited) {
     const PowerLaw& law = audited.law(Scaled::input).step;
     return law.has_values() && !law.holds();
   };
+  const std::string slope =
+      words("audit.slope", listed_with(all, Scaled::slope, 1), listed_with(all, Scaled::slope, 0),
+            listed_with(all, Scaled::slope, -1), hessian_sentence(all));
   return words("audit.scaling", listed_with(all, Scaled::input, -1),
-               listed_with(all, Scaled::input, 1), listed_where(all, has_none),
-               slope_sentence(all));
+               listed_with(all, Scaled::input, 1), listed_where(all, has_none), slope);
 }
 
 std::string invariance_sentence(const Audits& all) {
   const auto kept = [&](std::size_t first, std::size_t last) {
-    return listed_where(all, [=](const AuditedOptimizer& audited) {
-      for (std::size_t i = first; i < last; ++i)
-        if (!(audited.deviations[i] <= kInvariantDeviation)) return false;
-      return true;
+    return listed_where(all, [=](Audited audited) {
+      return std::all_of(audited.deviations.begin() + std::ptrdiff_t(first),
+                         audited.deviations.begin() + std::ptrdiff_t(last),
+                         [](Real deviation) { return deviation <= kInvariantDeviation; });
     });
   };
   return words("audit.invariance", kept(0, 1), kept(0, 3), kept(3, 6));
@@ -187,36 +165,35 @@ std::string invariance_sentence(const Audits& all) {
 
 std::string convergence_sentence(const Audits& all) {
   constexpr Real kQuadratic = 1.7;  // rounding leaves few points to fit
-  const auto is_at_once = [](const AuditedOptimizer& audited) {
-    return audited.regular.is_exact && audited.regular.steps == 1;
-  };
-  const auto is_quadratic = [](const AuditedOptimizer& audited) {
+  const auto is_quadratic = [](Audited audited) {
     return audited.regular.residual <= kMostOrderResidual && audited.regular.order >= kQuadratic;
   };
-  const auto arrives = [](const AuditedOptimizer& audited) { return audited.singular.is_exact; };
+  const auto is_at_once = [](Audited audited) {
+    return audited.regular.is_exact && audited.regular.steps == 1;
+  };
+  const auto arrives = [](Audited audited) { return audited.singular.is_exact; };
   return words("audit.convergence", listed_where(all, is_quadratic), listed_where(all, is_at_once),
                listed_where(all, arrives));
 }
 
 std::string composition_sentence(const Audits& all) {
   constexpr Real kSmallest = 0.05;  // degrees: what prints as 0.0
+  const auto is_equal = [](Audited one) { return one.linear_angle < kSmallest; };
   const AuditedOptimizer* worst = nullptr;
   for (const AuditedOptimizer& audited : all)
     if (audited.reason.empty() && audited.linear_angle >= kSmallest &&
         (worst == nullptr || audited.linear_angle > worst->linear_angle))
       worst = &audited;
   return words(
-      "audit.composition",
-      listed_where(all, [](const AuditedOptimizer& one) { return one.linear_angle < kSmallest; }),
+      "audit.composition", listed_where(all, is_equal),
       worst == nullptr ? "none" : fmt::format("{}, {:.0f}°", worst->name, worst->linear_angle));
 }
 
 std::string oracle_sentence(const Audits& all) {
   const auto asks = [&](const char* oracle) {
-    return listed_where(
-        all, [=](const AuditedOptimizer& audited) { return audited.counted.contains(oracle); });
+    return listed_where(all, [=](Audited audited) { return audited.counted.contains(oracle); });
   };
-  const auto needs_loss_alone = [](const AuditedOptimizer& audited) {
+  const auto needs_loss_alone = [](Audited audited) {
     return audited.counted.size() == 1 && audited.counted.contains("forward");
   };
   return words("audit.oracles", listed_where(all, needs_loss_alone), asks("jacobian"),

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <ranges>
 #include <set>
 
 #include "reports/sections/sections.h"
@@ -32,21 +31,6 @@ Lines lines_of(const Build& build) {
           joined(libraries)};
 }
 
-// A column a build, so that what differs stands side by side.
-Table builds_table(const std::set<Lines>& builds) {
-  Table table{.id = "builds", .columns = {""}, .align = "l" + std::string(builds.size(), 'p')};
-  for (std::size_t i = 0; i < builds.size(); ++i)
-    table.columns.push_back(builds.size() == 1 ? "build" : fmt::format("build {}", i + 1));
-  for (std::size_t term = 0; term < kTerms.size(); ++term) {
-    std::vector<TableCell> row = {kTerms[term]};
-    for (const Lines& build : builds) row.emplace_back(build[term]);
-    const auto is_known = [](const TableCell& cell) { return !cell.text.empty(); };
-    if (std::ranges::any_of(row | std::views::drop(1), is_known))
-      table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
 }  // namespace
 
 Section builds_section(const Comparison& c) {
@@ -63,7 +47,17 @@ Section builds_section(const Comparison& c) {
     if (commands.size() < kMost) commands.insert(provenance.run.command);
   }
   commands.erase("");
-  section.tables.push_back(builds_table(builds));
+  // A column a build, so that what differs stands side by side.
+  Table& table = section.tables.emplace_back(
+      Table{.id = "builds", .columns = {""}, .align = "l" + std::string(builds.size(), 'p')});
+  for (std::size_t i = 0; i < builds.size(); ++i)
+    table.columns.push_back(builds.size() == 1 ? "build" : fmt::format("build {}", i + 1));
+  for (std::size_t term = 0; term < kTerms.size(); ++term) {
+    std::vector<TableCell> row = {kTerms[term]};
+    for (const Lines& build : builds) row.emplace_back(build[term]);
+    const auto is_known = [&](const Lines& build) { return !build[term].empty(); };
+    if (std::ranges::any_of(builds, is_known)) table.rows.push_back(std::move(row));
+  }
   for (const std::string& command : commands) section.readings.push_back({"Asked for by", command});
   section.readings.push_back({"One cell again", rerun_command(c.runs[0].record->request)});
   section.readings.push_back({"The command of every other cell", words("provenance.commands")});

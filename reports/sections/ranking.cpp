@@ -48,14 +48,6 @@ std::string settings_text(const Comparison& c) {
   return text + (about.empty() ? "" : " (" + about + ")");
 }
 
-// The best of those whose difference from the first is not significant by itself; else the second.
-const results::Place& nearest_rival(const Decision& decision) {
-  const auto open =
-      std::ranges::find_if(decision.places.begin() + 1, decision.places.end(),
-                           [](const results::Place& place) { return place.p > kSignificant; });
-  return open == decision.places.end() ? decision.places[1] : *open;
-}
-
 std::string decision_sentence(const Comparison& c, const Decision& decision) {
   const auto score_text = [&](const results::Place& place, const std::string& more) {
     return words("ranking.score", optimizer_text(c, place.method), place.score, place.solved, more);
@@ -70,7 +62,11 @@ std::string decision_sentence(const Comparison& c, const Decision& decision) {
     for (std::size_t i = 0; i < decision.tied; ++i) tied.push_back(decision.places[i].method);
     text = words("ranking.tied", on, names_text(c, tied, 3), measure, tau, first.score);
   } else {
-    const results::Place& rival = nearest_rival(decision);
+    // The best of those whose difference from the first is not significant by itself.
+    const auto open =
+        std::find_if(decision.places.begin() + 1, decision.places.end(),
+                     [](const results::Place& place) { return place.p > kSignificant; });
+    const results::Place& rival = open == decision.places.end() ? decision.places[1] : *open;
     text = words(decision.is_lead ? "ranking.lead" : "ranking.open", on, score_text(first, ""),
                  measure, tau, score_text(rival, words("ranking.test", rival.p)));
   }
@@ -122,32 +118,6 @@ std::string not_run(const Comparison& c) {
   if (never == 0 && inapplicable == 0 && missing == 0) return words("ranking.all-ran", pairs);
   return words("ranking.not-run", pairs, never, inapplicable,
                missing == 0 ? "" : words("ranking.missing", missing));
-}
-
-// With few problems no ranking over them is reported, but one on each.
-std::vector<std::string> problem_sentences(const Comparison& c) {
-  constexpr std::size_t kFew = 4;
-  std::vector<std::string> all;
-  for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
-    all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
-  return all;
-}
-
-// The settings common to all ranked methods that this one was run on.
-std::vector<std::size_t> shared_with(const Comparison& c, std::size_t optimizer) {
-  std::vector<std::size_t> settings;
-  for (const std::size_t p : c.order.settings)
-    if (c.cell(p, optimizer).planned > 0) settings.push_back(p);
-  return settings;
-}
-
-std::vector<std::size_t> unranked(const Comparison& c) {
-  std::vector<std::size_t> all;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    if (const std::size_t shared = shared_with(c, s).size();
-        c.optimizers[s].applicable > 0 && shared > 0 && shared < c.order.settings.size())
-      all.push_back(s);
-  return all;
 }
 
 std::string common_settings(const Comparison& c) {
@@ -213,11 +183,16 @@ std::vector<std::string> verdict(const Comparison& c) {
         row, [](const Cell& cell) { return cell.headline[kTightest].is_solved(); });
   });
   if (!is_any_solved) return {words("ranking.none-solved", tau_name(c))};
-  if (!has_order(c) || !c.decision) return problem_sentences(c);
-  std::vector<std::string> all = {
-      decision_sentence(c, *c.decision),
-      "Not significantly worse than the best: " + group_text(c, *c.decision),
-      robustness_text(c, *c.decision)};
+  std::vector<std::string> all;
+  if (!has_order(c) || !c.decision) {  // with few problems: a sentence on each
+    constexpr std::size_t kFew = 4;
+    for (std::size_t p = 0; p < c.problems.size() && p < kFew; ++p)
+      all.push_back(fmt::format("{}: {}", problem_name(c.problems[p]), curve_reading(c, p)));
+    return all;
+  }
+  all = {decision_sentence(c, *c.decision),
+         "Not significantly worse than the best: " + group_text(c, *c.decision),
+         robustness_text(c, *c.decision)};
   if (c.open_decision && c.open_decision->places[0].method != c.decision->places[0].method)
     all.push_back("Among the methods without extra information: " +
                   decision_sentence(c, *c.open_decision));
@@ -247,9 +222,12 @@ std::vector<Reading> ranking_facts(const Comparison& c) {
 
 std::string unranked_sentence(const Comparison& c) {
   std::vector<std::string> names;
-  for (const std::size_t s : unranked(c))
-    names.push_back(
-        fmt::format("{} ({})", shown_spec(c.optimizers[s].label), shared_with(c, s).size()));
+  for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+    const auto shared = static_cast<std::size_t>(std::ranges::count_if(
+        c.order.settings, [&](std::size_t p) { return c.cell(p, s).planned > 0; }));
+    if (c.optimizers[s].applicable > 0 && shared > 0 && shared < c.order.settings.size())
+      names.push_back(fmt::format("{} ({})", shown_spec(c.optimizers[s].label), shared));
+  }
   return names.empty() ? "" : words("ranking.unranked", common_settings(c), joined(names));
 }
 
@@ -291,25 +269,12 @@ Table ranking_table(const Comparison& c) {
   return table;
 }
 
-Table unranked_table(const Comparison& c) {
-  Table table = worded_table("apart-table", common_settings(c), n_column(c));
-  for (const std::size_t s : unranked(c)) {
-    const std::vector<std::size_t> settings = shared_with(c, s);
-    const auto solved = std::ranges::count_if(
-        settings, [&](std::size_t p) { return c.cell(p, s).headline[kTightest].is_solved(); });
-    add_row(table, c, s,
-            {count_cell(settings.size()), count_cell(static_cast<std::size_t>(solved))});
-  }
-  return table;
-}
-
 }  // namespace
 
 Section standings_section(const Comparison& c) {
   Section section = worded_section("standings", tau_name(c));
   for (std::string& sentence : verdict(c)) section.readings.push_back({"", std::move(sentence)});
   if (!c.order.settings.empty()) section.tables.push_back(ranking_table(c));
-  if (!unranked(c).empty()) section.tables.push_back(unranked_table(c));
   return section;
 }
 

@@ -1,6 +1,4 @@
-// The sections of a report, one file a topic; overview.cpp puts them in order. Rankings use the
-// measure of the report: work, by default, which is equal on every machine. Costs of runs are then
-// in equivalent forward solves, with raw counts beside.
+// The sections of a report, one file a topic; overview.cpp puts them in order.
 #pragma once
 
 #include <array>
@@ -84,8 +82,6 @@ Table prices_table(const Comparison& comparison);
 Plots profile_plot(const Comparison& comparison);
 Plots data_profile_plot(const Comparison& comparison);
 Plots runtime_plot(const Comparison& comparison);
-// Of the section on rates; without rows if no method ran both ways.
-Table tuned_and_defaults_table(const Comparison& comparison);
 
 // What their tables share.
 inline constexpr std::size_t kMostTableRows = 40;  // the best optimizers
@@ -96,8 +92,15 @@ void add_row(Table& table, const Comparison& comparison, std::size_t optimizer,
 TableCell failed_cell(const Comparison& comparison, std::size_t optimizer);  // "2/80"
 TableCell count_cell(std::size_t count);
 TableCell number_cell(const char* name, Real value);  // as figure() writes it
-// The unit of costs of single runs: measured cost if rankings use nominal cost, else the same
-// measure.
+// The line with the greatest value above 0, with all ties.
+struct Leading {
+  Real value = 0;
+  std::vector<std::string> names = {};
+
+  void offer(Real mine, const std::string& name);
+  std::string text() const;  // "sip † and 2 more", "no method"
+};
+// The unit of costs of single runs: measured cost if rankings use work, else the same measure.
 Measure cost_measure(const Comparison& comparison);
 std::string cost_unit(const Comparison& comparison);
 // "equivalent forward solves at measured cost", …

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/digest.h"
 #include "core/draws.h"
@@ -59,6 +60,14 @@ TableCell failed_cell(const Comparison& c, std::size_t s) {
           {{"failed", Real(optimizer.failed)}, {"runs", Real(optimizer.runs)}}};
 }
 
+void Leading::offer(Real mine, const std::string& name) {
+  if (mine > value) names.clear();
+  value = std::max(value, mine);
+  if (mine == value && mine > 0) names.push_back(name);
+}
+
+std::string Leading::text() const { return names.empty() ? "no method" : first_of(names, 1); }
+
 TableCell count_cell(std::size_t count) { return number_cell("count", Real(count)); }
 
 TableCell number_cell(const char* name, Real value) { return {figure(value), {{name, value}}}; }
@@ -93,41 +102,21 @@ std::size_t shown_optimizers(const Comparison& c, std::size_t most) {
   return std::min(c.order.methods.size(), most);
 }
 
-// The line with the greatest value above 0, with all ties.
-struct Leading {
-  Real value = 0;
-  std::vector<std::string> names = {};
-
-  void offer(Real mine, const std::string& name) {
-    if (mine > value) names.clear();
-    value = std::max(value, mine);
-    if (mine == value && mine > 0) names.push_back(name);
-  }
-  std::string text() const { return names.empty() ? "no method" : first_of(names, 1); }
-};
-
 // A row a method of the common order: the shares of its n settings, of which count(method, step)
-// lie within each step of a grid; then n, and its failed runs. Returns who leads at `place`.
+// lie within each step of a grid; then n, and its failed runs.
 template <class Count>
-Leading add_shares(Table& table, const Comparison& c, const std::vector<Real>& steps,
-                   std::size_t place, Count count) {
-  Leading first;
+void add_shares(Table& table, const Comparison& c, const std::vector<Real>& steps, Count count) {
   const std::size_t n = c.order.settings.size();
-  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows); ++s) {
+  for (std::size_t s = 0; s < shown_optimizers(c, kMostTableRows) && n > 0; ++s) {
     std::vector<TableCell> row;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      const std::size_t within = count(s, steps[i]);
-      const Real share = n == 0 ? 0 : Real(within) / Real(n);
-      row.push_back(n == 0
-                        ? TableCell("")
-                        : TableCell(percent(share), {{"share", share}, {"count", Real(within)}}));
-      if (i == place) first.offer(share, optimizer_text(c, s));
+    for (const Real step : steps) {
+      const Real within = static_cast<Real>(count(s, step)), share = within / Real(n);
+      row.emplace_back(percent(share), TableCell::Numbers{{"share", share}, {"count", within}});
     }
     row.push_back(count_cell(n));
     row.push_back(failed_cell(c, s));
     add_row(table, c, s, std::move(row));
   }
-  return first;
 }
 
 constexpr Real kAtAll = std::numeric_limits<Real>::max();
@@ -138,12 +127,14 @@ Table data_profile_table(const Comparison& c) {
   Table table =
       worded_table("data-profile", setting_noun(c), tau_name(c), cost_unit(c), n_column(c));
   const Measure by = cost_measure(c);
-  const Leading first = add_shares(
-      table, c, {10, 100, 1000, 10'000, 100'000, kAtAll}, 2, [&](std::size_t s, Real work) {
-        return static_cast<std::size_t>(std::ranges::count_if(c.order.settings, [&](std::size_t p) {
-          return in_units(by, c.cell(p, s).taken[by][kTightest].median) <= work;
-        }));
-      });
+  add_shares(table, c, {10, 100, 1000, 10'000, 100'000, kAtAll}, [&](std::size_t s, Real work) {
+    return std::ranges::count_if(c.order.settings, [&](std::size_t p) {
+      return in_units(by, c.cell(p, s).taken[by][kTightest].median) <= work;
+    });
+  });
+  Leading first;
+  constexpr std::size_t kThousand = 3;  // its column
+  for (const auto& row : table.rows) first.offer(row[kThousand].numbers[0].second, row[0].text);
   table.reading = words("data-profile.reading", unit_name(by), first.text(), percent(first.value));
   return table;
 }
@@ -152,13 +143,12 @@ Table profile_table(const Comparison& c) {
   Table table = worded_table("performance-profile", setting_noun(c), tau_name(c), counted_name(c),
                              n_column(c));
   const Profile& profile = c.profiles[kTightest];
-  const Real n = Real(c.order.settings.size());
-  add_shares(table, c, {1, 2, 4, 16, kAtAll}, 0, [&](std::size_t s, Real factor) {
-    return static_cast<std::size_t>(std::llround(profile.share(s, factor) * n));
+  add_shares(table, c, {1, 2, 4, 16, kAtAll}, [&](std::size_t s, Real factor) {
+    return std::llround(profile.share(s, factor) * Real(c.order.settings.size()));
   });
   Leading first;
   for (std::size_t s = 0; s < table.rows.size(); ++s)
-    first.offer(c.optimizers[s].tightest().score, optimizer_text(c, s));
+    first.offer(c.optimizers[s].tightest().score, table.rows[s][0].text);
   table.reading = first.names.empty()
                       ? words("performance-profile.none", setting_noun(c), tau_name(c))
                       : words("performance-profile.reading", first.value, first.text());
@@ -266,54 +256,28 @@ Plots data_profile_plot(const Comparison& c) {
 
 namespace {
 
-// Counts of hits by the first point of the grid that is no less, over simulated restarts.
-class RestartedHits {
- public:
-  explicit RestartedHits(const std::vector<Real>& grid) : grid_(grid), hits_(grid.size(), 0) {}
-
-  void add(const std::vector<std::vector<Real>>& targets, const std::vector<Real>& spent,
-           const std::string& key) {
-    const bool is_certain = targets.size() == 1;  // every draw is the same
-    for (std::size_t draw = 0; draw < (is_certain ? 1 : kDraws); ++draw) {
-      Draws random(fnv1a(key), "report", "restarted targets", draw);
-      follow(targets, spent, random, is_certain ? Real(kDraws) : 1);
+// Attempts drawn one after the other, what each spent added up, until the most targets that any of
+// them meets are met: adds the weight to the hits at the first point of the grid that is no less.
+void add_restarts(const std::vector<std::vector<Real>>& targets, const std::vector<Real>& spent,
+                  Draws& random, Real weight, const std::vector<Real>& grid,
+                  std::vector<Real>& hits) {
+  std::ptrdiff_t most = 0, met = 0;
+  for (const auto& costs : targets)
+    most = std::max(most, std::ranges::find(costs, kNever) - costs.begin());
+  for (Real before = 0; met < most;) {
+    const auto i = static_cast<std::size_t>(random.uniform() * static_cast<Real>(targets.size()));
+    for (auto cost = targets[i].begin() + met; met < most && *cost < kNever; ++met, ++cost) {
+      const auto at = std::ranges::lower_bound(grid, before + *cost);
+      if (at != grid.end()) hits[static_cast<std::size_t>(at - grid.begin())] += weight;
     }
+    before += spent[i];
   }
-  // The share met by each point of the grid; `pairs`: of problems, targets and draws.
-  std::vector<Real> shares(Real pairs) const {
-    std::vector<Real> shares;
-    Real sum = 0;
-    for (const Real hits : hits_) shares.push_back((sum += hits) / pairs);
-    return shares;
-  }
+}
 
- private:
-  // Attempts drawn one after the other, what each spent added up, until the most that any of them
-  // meets is met.
-  void follow(const std::vector<std::vector<Real>>& targets, const std::vector<Real>& spent,
-              Draws& random, Real weight) {
-    std::size_t most = 0, met = 0;
-    for (const auto& costs : targets)
-      most = std::max(most,
-                      static_cast<std::size_t>(std::ranges::find(costs, kNever) - costs.begin()));
-    for (Real before = 0; met < most;) {
-      const auto i = static_cast<std::size_t>(random.uniform() * static_cast<Real>(targets.size()));
-      for (; met < most && targets[i][met] < kNever; ++met) {
-        const auto at = std::ranges::lower_bound(grid_, before + targets[i][met]);
-        if (at != grid_.end()) hits_[static_cast<std::size_t>(at - grid_.begin())] += weight;
-      }
-      before += spent[i];
-    }
-  }
-
-  const std::vector<Real>& grid_;
-  std::vector<Real> hits_;
-};
-
+// The share of pairs of a problem and a target that are met by each point of the grid.
 PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<Real>& grid) {
   const Measure by = cost_measure(c);
-  RestartedHits hits(grid);
-  const Real pairs = Real(c.order.settings.size() * kTargets * kDraws);
+  std::vector<Real> hits(grid.size(), 0);
   for (const std::size_t p : c.order.settings) {
     const Cell& cell = c.cell(p, s);
     if (!cell.is_measured()) continue;
@@ -325,9 +289,17 @@ PlotSeries runtime_series(const Comparison& c, std::size_t s, const std::vector<
       for (std::size_t j = 0; j < kTargets; ++j) targets.back()[j] = in_units(by, run.taken(by, j));
       spent.push_back(std::max(in_units(by, run.spent_by(by)), 1e-9));  // of nothing is no end
     }
-    hits.add(targets, spent, c.problems[p].spec + " " + c.optimizers[s].label);
+    const std::uint64_t key = fnv1a(c.problems[p].spec + " " + c.optimizers[s].label);
+    const bool is_certain = targets.size() == 1;  // every draw is the same
+    for (std::size_t draw = 0; draw < (is_certain ? 1 : kDraws); ++draw) {
+      Draws random(key, "report", "restarted targets", draw);
+      add_restarts(targets, spent, random, is_certain ? Real(kDraws) : 1, grid, hits);
+    }
   }
-  return {s, optimizer_text(c, s), grid, hits.shares(std::max(pairs, 1.0)), {}, {}};
+  const Real pairs = std::max(Real(c.order.settings.size() * kTargets * kDraws), 1.0);
+  std::partial_sum(hits.begin(), hits.end(), hits.begin());
+  for (Real& share : hits) share /= pairs;
+  return {s, optimizer_text(c, s), grid, hits, {}, {}};
 }
 
 }  // namespace

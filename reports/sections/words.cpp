@@ -50,11 +50,11 @@ std::string written(const Value& value, const std::string& form) {
       [&](const auto& one) { return fmt::format(fmt::runtime("{" + form + "}"), one); }, value);
 }
 
-// The parts of a key that may be absent.
-std::string filled_or_empty(const std::string& key, const std::vector<Value>& values) {
-  const auto found = all_sentences().find(key);
+// The part of a key, which may be absent.
+std::string part_of(std::string_view key, const char* part, const std::vector<Value>& values) {
+  const auto found = all_sentences().find(fmt::format("{}.{}", key, part));
   if (found == all_sentences().end()) return "";
-  return filled(key, found->second.names.empty() ? std::vector<Value>() : values);
+  return filled(found->first, found->second.names.empty() ? std::vector<Value>() : values);
 }
 
 }  // namespace
@@ -109,36 +109,27 @@ std::string filled(std::string_view key, const std::vector<Value>& values) {
 }
 
 Table table_filled(std::string_view key, const std::vector<Value>& values) {
-  const auto part = [&](const char* name) {
-    return filled_or_empty(fmt::format("{}.{}", key, name), values);
-  };
   return {.id = std::string(key),
-          .title = part("title"),
-          .caption = part("caption"),
-          .columns = trimmed_parts(part("columns"), '|'),
-          .meanings = trimmed_parts(part("meanings"), '|'),
-          .align = part("align")};
+          .title = part_of(key, "title", values),
+          .caption = part_of(key, "caption", values),
+          .columns = trimmed_parts(part_of(key, "columns", values), '|'),
+          .meanings = trimmed_parts(part_of(key, "meanings", values), '|'),
+          .align = part_of(key, "align", values)};
 }
 
 Plot plot_filled(std::string_view key, const std::vector<Value>& values) {
-  const auto part = [&](const char* name) {
-    return filled_or_empty(fmt::format("{}.{}", key, name), values);
-  };
   return {.id = std::string(key),
-          .title = part("title"),
-          .caption = part("caption"),
-          .x_label = part("x"),
-          .y_label = part("y")};
+          .title = part_of(key, "title", values),
+          .caption = part_of(key, "caption", values),
+          .x_label = part_of(key, "x", values),
+          .y_label = part_of(key, "y", values)};
 }
 
 Section section_filled(std::string_view key, const std::vector<Value>& values) {
-  const auto part = [&](const char* name) {
-    return filled_or_empty(fmt::format("{}.{}", key, name), values);
-  };
   return {.id = std::string(key),
-          .title = part("title"),
-          .lead = part("lead"),
-          .otherwise = part("otherwise")};
+          .title = part_of(key, "title", values),
+          .lead = part_of(key, "lead", values),
+          .otherwise = part_of(key, "otherwise", values)};
 }
 
 namespace {
@@ -155,14 +146,9 @@ std::string without_idle_zeros(std::string text) {
 
 // Four significant digits, "1.200e-04" without the zeros that say nothing: "1.2e-04".
 std::string scientific(Real value) {
-  std::string text = fmt::format("{:.3e}", value);
-  std::size_t end = text.find('e');
-  while (text[end - 1] == '0' || text[end - 1] == '.') {
-    const bool was_point = text[end - 1] == '.';
-    text.erase(--end, 1);
-    if (was_point) break;
-  }
-  return text;
+  const std::string text = fmt::format("{:.3e}", value);
+  const std::size_t e = text.find('e'), last = text.find_last_not_of('0', e - 1);
+  return text.substr(0, last + (text[last] == '.' ? 0 : 1)) + text.substr(e);
 }
 
 }  // namespace

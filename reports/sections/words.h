@@ -36,8 +36,7 @@ Value value_of(const T& value) {
 }
 // An unknown key, name or number of values is a std::logic_error.
 std::string filled(std::string_view key, const std::vector<Value>& values);
-template <class... Values>
-std::string words(std::string_view key, const Values&... values) {
+std::string words(std::string_view key, const auto&... values) {
   return filled(key, {value_of(values)...});
 }
 
@@ -46,16 +45,13 @@ std::string words(std::string_view key, const Values&... values) {
 Table table_filled(std::string_view key, const std::vector<Value>& values);
 Plot plot_filled(std::string_view key, const std::vector<Value>& values);
 Section section_filled(std::string_view key, const std::vector<Value>& values);
-template <class... Values>
-Table worded_table(std::string_view key, const Values&... values) {
+Table worded_table(std::string_view key, const auto&... values) {
   return table_filled(key, {value_of(values)...});
 }
-template <class... Values>
-Plot worded_plot(std::string_view key, const Values&... values) {
+Plot worded_plot(std::string_view key, const auto&... values) {
   return plot_filled(key, {value_of(values)...});
 }
-template <class... Values>
-Section worded_section(std::string_view key, const Values&... values) {
+Section worded_section(std::string_view key, const auto&... values) {
   return section_filled(key, {value_of(values)...});
 }
 
@@ -70,8 +66,7 @@ std::string figure(const Spread& spread);  // "120 (90–300)", with ✗ for wha
 std::string range_figure(const Spread& spread, std::string (*written)(Real));
 std::string percent(Real share);
 std::string multiple(Real ratio);  // "1.3×"
-// The shade of a heat map: 0 the least, then one step for each factor of two of value / least, to
-// 7. Both are above 0.
+// The shade of a heat map: 0 the least, a step for each factor of two above it, to 7.
 inline constexpr std::array<Real, 7> kShades = {1, 2, 4, 8, 16, 32, 64};
 int shade_of(Real value, Real least);
 
@@ -96,12 +91,10 @@ std::string marks_of(const OptimizerAxis& optimizer);
 std::string status_meaning(Status status);  // "used up their work or iterations"
 std::string status_text(const std::map<Status, std::size_t>& statuses);  // "target 3, budget 2"
 
-// "4/5, 1 failed": runs that reached the tolerance of all runs; is_complete says that nothing is
-// lacking, so that small tables may leave it out.
+// "4/5, 1 failed": runs that reached the tolerance of all runs.
 std::string count_text(const Cell& cell, std::size_t tolerance);
-bool is_complete(const Cell& cell, std::size_t tolerance);
-// The median of what the yardstick counts, ✗, "n/a", "missing", or nothing where nothing was
-// planned.
+bool is_complete(const Cell& cell, std::size_t tolerance);  // all did, so that it says nothing
+// The median of what the yardstick counts, ✗, "n/a", "missing", or nothing where none was planned.
 std::string matrix_text(const Comparison& comparison, const Cell& cell, std::size_t tolerance);
 
 // The command that asks for the same cell again: all its options explicit, no table of rates.
@@ -129,8 +122,7 @@ std::string counted_settings(const Comparison& comparison, std::size_t count);  
 // The meaning of success by this measure, as a sentence; with a single criterion, for that only.
 std::string success_text(const Comparison& comparison);
 
-// Where the options of a method came from on a problem: tables whose figures depend on it say so
-// beside the name.
+// Where the options of a method came from on a problem.
 enum class Origin {
   defaults,   // no rate was set
   given,      // typed, or a suite's

@@ -59,16 +59,17 @@ struct Shown {
     study.sheets = std::move(sheets);
     section = amortized_section(compare_optimizers(study));
   }
-  Real number(std::size_t row, const std::string& column) const {
+  const TableCell& cell(std::size_t row, const std::string& column) const {
     const Table& table = section.tables.at(0);
     const auto at = std::ranges::find(table.columns, column) - table.columns.begin();
-    const auto& numbers = table.rows.at(row).at(static_cast<std::size_t>(at)).numbers;
-    return numbers.empty() ? NAN : numbers[0].second;
+    return table.rows.at(row).at(static_cast<std::size_t>(at));
   }
   std::string text(std::size_t row, const std::string& column) const {
-    const Table& table = section.tables.at(0);
-    const auto at = std::ranges::find(table.columns, column) - table.columns.begin();
-    return table.rows.at(row).at(static_cast<std::size_t>(at)).text;
+    return cell(row, column).text;
+  }
+  Real number(std::size_t row, const std::string& column) const {
+    const auto& numbers = cell(row, column).numbers;
+    return numbers.empty() ? NAN : numbers[0].second;
   }
 };
 

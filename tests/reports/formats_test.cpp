@@ -12,6 +12,7 @@
 #include "reports/report.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"
+#include "tests/reports/synthetic.h"
 
 namespace isoline::reports {
 namespace {
@@ -141,7 +142,9 @@ TEST(Csv, EveryRowHasAllFields) {
 // than a terminal.
 TEST(Terminal, ALargeStudyIsSummedUp) {
   const ResultFolder folder;
-  write_sample_study(folder.path(), {.problems = 20, .optimizers = 33, .seeds = 2, .points = 20});
+  write_synthetic_study(
+      folder.path(),
+      {.problems = 20, .optimizers = 33, .seeds = 2, .points = 20, .is_sample = true});
   const Study study = read_study({folder.path()});
   const auto lines = lines_of(terminal_table(document_of(compare_optimizers(study))));
   EXPECT_LE(lines.size(), 90U);
@@ -186,7 +189,9 @@ TEST(Formats, APartialStudySaysSoInAll) {
 
 TEST(Json, ConformsToItsSchema) {
   const ResultFolder folder;
-  write_sample_study(folder.path(), {.problems = 5, .optimizers = 33, .seeds = 2, .points = 20});
+  write_synthetic_study(
+      folder.path(),
+      {.problems = 5, .optimizers = 33, .seeds = 2, .points = 20, .is_sample = true});
   const Json schema =
       read_json(std::filesystem::path(ISOLINE_SOURCE_DIR) / "benchmarks/schemas/report.json");
   for (const Study& study : {read_study({folder.path()}), hostile_study(), Study{}}) {
@@ -228,7 +233,9 @@ TEST(Formats, EverySectionIsInEachOfThem) {
 
 TEST(Formats, TheSameStudyGivesTheSameBytes) {
   const ResultFolder folder;
-  write_sample_study(folder.path(), {.problems = 3, .optimizers = 12, .seeds = 2, .points = 20});
+  write_synthetic_study(
+      folder.path(),
+      {.problems = 3, .optimizers = 12, .seeds = 2, .points = 20, .is_sample = true});
   const Study first = read_study({folder.path()}), second = read_study({folder.path()});
   EXPECT_EQ(html_report(document_of(compare_optimizers(first))),
             html_report(document_of(compare_optimizers(second))));

@@ -21,10 +21,6 @@ using Edits = std::map<std::uint64_t, Edit>;  // by seed
 
 inline void as_it_was(Record&) {}
 
-inline bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 inline Edit loss_times(Real factor) {
   return [factor](Record& record) { end_at(record, record.summary.loss * factor); };
 }

@@ -11,6 +11,7 @@
 #include "reports/report.h"
 #include "reports/sections/sections.h"
 #include "tests/reports/fixture.h"
+#include "tests/reports/synthetic.h"
 
 namespace isoline::reports {
 namespace {
@@ -90,7 +91,8 @@ TEST(Plots, RuntimesRestartUntilTheTargetIsMet) {
 
 TEST(Plots, AreFiguresForEveryReader) {
   const ResultFolder folder;
-  write_sample_study(folder.path(), {.problems = 8, .optimizers = 9, .seeds = 3, .points = 30});
+  write_synthetic_study(
+      folder.path(), {.problems = 8, .optimizers = 9, .seeds = 3, .points = 30, .is_sample = true});
   const Study study = read_study({folder.path()});
   const Document document = document_of(compare_optimizers(study));
   const Comparison& c = document.comparison;

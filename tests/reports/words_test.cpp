@@ -30,8 +30,8 @@ TEST(Words, FollowCountsAndFormats) {
   EXPECT_EQ(words("remarks.unreadable", 1), "Unreadable: 1 file, listed under failures.");
   EXPECT_EQ(words("remarks.unreadable", 2), "Unreadable: 2 files, listed under failures.");
   EXPECT_EQ(words("ranking.test", 0.0123), "; paired permutation test, p = 0.012");
-  EXPECT_EQ(worded_table("apart-table", "3 problems", "n problems").columns,
-            (std::vector<std::string>{"optimizer", "n problems", "solved"}));
+  EXPECT_EQ(worded_table("calls", "1e-6", "").columns,
+            (std::vector<std::string>{"optimizer", "runs to 1e-6"}));
 }
 
 TEST(Words, WithoutSuchAKeyOrForOtherValuesAreErrors) {
