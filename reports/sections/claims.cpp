@@ -49,7 +49,7 @@ std::vector<Reading> readings_of(const Judgement& judgement) {
   return all;
 }
 
-// Of one piece of evidence of a claim, which IDs and titles name.
+// A table of the evidence of a claim, which IDs and titles name.
 Table evidence_table(const char* key, const Evidence& evidence, const std::string& id) {
   Table table = worded_table(key, column_words(evidence.column));
   table.id += "-" + id;

@@ -68,7 +68,7 @@ enum class Way {
   // The comparisons that must refute a claim, besides permuted names of optimizers.
   untrained,  // nothing was learned: each figure is that of iteration 0
   twins,      // one method under several names: all terms of a problem are the same run
-  // What its verdict must not hang on: a time is that of a machine, and the published runs of the
+  // The verdict must not hang on these: a time is that of a machine, and the published runs of the
   // sine had a time, in which SIP made a third of the iterations of others.
   equal_work,
   third_of_sip

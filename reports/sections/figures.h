@@ -1,4 +1,4 @@
-// What is drawn of runs: curves, paths and fields as the page shows them, and the figures of the
+// Drawings of runs: curves, paths and fields as the page shows them, and the figures of the
 // papers, each panel that a problem's sheet asks for.
 #pragma once
 

@@ -91,7 +91,7 @@ std::vector<std::size_t> instances_of(const Comparison& c, std::size_t learned) 
   return found;
 }
 
-// Of an example; not-a-number where it was not measured.
+// Seconds of an example; not-a-number where it was not measured.
 Real inference_seconds(const ProblemAxis& problem) {
   const Sheet* sheet = problem.sheet;
   if (sheet == nullptr || sheet->spec != problem.spec || !sheet->prices) return kUnknown;

@@ -83,7 +83,7 @@ Plots profile_plot(const Comparison& comparison);
 Plots data_profile_plot(const Comparison& comparison);
 Plots runtime_plot(const Comparison& comparison);
 
-// What their tables share.
+// The common parts of their tables.
 inline constexpr std::size_t kMostTableRows = 40;  // the best optimizers
 inline constexpr std::size_t kMostLines = 8;       // of a plot, the best optimizers
 // Adds a row of the optimizer, which it names in its first cell and by topic.

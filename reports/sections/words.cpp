@@ -37,7 +37,7 @@ std::vector<std::string> trimmed_parts(const std::string& text, char between) {
   throw std::logic_error(fmt::format("reports/words: {}: {}", key, why));
 }
 
-// What follows the name in a placeholder: "", ":.2f" or "|one|many".
+// The form after the name in a placeholder: "", ":.2f" or "|one|many".
 std::string written(const Value& value, const std::string& form) {
   if (form.starts_with('|')) {
     const std::size_t middle = form.find('|', 1);

@@ -158,7 +158,7 @@ TEST(Evidence, PrintedFiguresStandBesideThoseReached) {
   EXPECT_EQ(judgement.evidence.printed[1].reached, (std::vector<Real>{3.5, 4.625}));
   EXPECT_EQ(judgement.measured->value, 0.125);
   const std::string text = terminal_claim(claim_section(judgement));
-  EXPECT_NE(text.find("3.500000, 4.625000  0.125"), std::string::npos) << text;
+  EXPECT_TRUE(has(text, "3.500000, 4.625000  0.125")) << text;
 }
 
 TEST(ClaimSection, TellsAllOfItInEveryFormat) {
@@ -170,7 +170,7 @@ TEST(ClaimSection, TellsAllOfItInEveryFormat) {
          {"Adam ends twice as far.", "consistent, n = 3", "Someone (2022), Figure 1",
           "±5 % from text", "1.9 to 2.1", "range of 3", "Drawn by hand.", "6 runs of 50 iterations",
           "isoline claims twice --out results/twice", "sip2-b0.json"})
-      EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+      EXPECT_TRUE(has(text, part)) << part << " in " << text;
 }
 
 TEST(ClaimSection, NamesTheLengthsThatAreMissing) {
@@ -187,7 +187,7 @@ TEST(ClaimSection, NamesTheLengthsThatAreMissing) {
   EXPECT_FALSE(judgement.sets[0].is_deciding);
   EXPECT_TRUE(judgement.sets[1].is_deciding);
   const std::string text = terminal_claim(claim_section(judgement));
-  EXPECT_NE(text.find("5 runs of 5000 iterations, of which 4 are here"), std::string::npos) << text;
+  EXPECT_TRUE(has(text, "5 runs of 5000 iterations, of which 4 are here")) << text;
 }
 
 TEST(ClaimSection, IsRepeatedWithLongRunsWhereTheseDecideIt) {
@@ -202,7 +202,7 @@ TEST(ClaimSection, WithoutRunsSaysSoAndDrawsNothing) {
   const Section section = claim_section(judged(twice(), {}));
   EXPECT_TRUE(section.plots.empty());
   EXPECT_TRUE(section.tables.empty());
-  EXPECT_NE(terminal_claim(section).find("no runs of square × adam"), std::string::npos);
+  EXPECT_TRUE(has(terminal_claim(section), "no runs of square × adam"));
 }
 
 TEST(ClaimsOfThePage, AreLedToByTheirRows) {
@@ -268,7 +268,7 @@ TEST(TextPlot, DrawsLinesInLettersAndWhatWasPublished) {
   EXPECT_EQ(lines[15].substr(lines[15].find("│"), 4), "│a") << text;
   EXPECT_LT(row_of("━━"), 15) << text;
   EXPECT_GT(row_of("━━"), row_of("░"));
-  EXPECT_NE(text.find("a sip"), std::string::npos);
+  EXPECT_TRUE(has(text, "a sip"));
 }
 
 }  // namespace

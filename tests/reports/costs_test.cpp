@@ -86,7 +86,7 @@ TEST(Costs, WithoutMeasuredPricesAreTheDeclaredWork) {
   EXPECT_EQ(Prices(nullptr).cost(counted()), Real(counted().summary.work));
   const Compared c({counted()});
   EXPECT_EQ(c.cell(0, 0).taken[Measure::cost][kTightest].median, 60);
-  EXPECT_NE(cost_unit(c).find("nominal"), std::string::npos);
+  EXPECT_TRUE(has(cost_unit(c), "nominal"));
   EXPECT_TRUE(prices_table(c).rows.empty());
 }
 
@@ -102,9 +102,8 @@ TEST(Costs, StandBesideTheRawCounts) {
   const Compared c(Study{.runs = {counted()}, .sheets = {priced("square", 2.5)}});
   const Table table = calls_table(c);
   EXPECT_EQ(at(table, "gd", "pullback"), "30");
-  EXPECT_NE(table.reading.find("60 forward solves at nominal cost, 105 in"), std::string::npos)
-      << table.reading;
-  EXPECT_NE(prices_table(c).rows[0].back().text.find("1 : 2.5 [2.5–2.5]"), std::string::npos);
+  EXPECT_TRUE(has(table.reading, "60 forward solves at nominal cost, 105 in")) << table.reading;
+  EXPECT_TRUE(has(prices_table(c).rows[0].back().text, "1 : 2.5 [2.5–2.5]"));
   const Json cell = parse_json(json_report(document_of(c)), "report.json").at("cells")[0];
   EXPECT_EQ(cell.at("costs").at("1e-6").at("median"), 105);
   EXPECT_EQ(cell.at("calls").at("pullback"), Json::array({30}));

@@ -75,8 +75,8 @@ TEST(Figures, CurveTakesOnlyTheProblemsThatItsPanelWants) {
   const auto all = drawn(records, {.title = "5b", .kind = "curve", .where = {{"xi", 1}}});
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].lines.size(), 2U);
-  EXPECT_NE(all[0].reading.find("sip has 2"), std::string::npos) << all[0].reading;
-  EXPECT_NE(all[0].reading.find("adam 6 (3×)"), std::string::npos) << all[0].reading;
+  EXPECT_TRUE(has(all[0].reading, "sip has 2")) << all[0].reading;
+  EXPECT_TRUE(has(all[0].reading, "adam 6 (3×)")) << all[0].reading;
 }
 
 TEST(Figures, ScatterAndDecadesReadTheSamples) {
@@ -88,7 +88,7 @@ TEST(Figures, ScatterAndDecadesReadTheSamples) {
   const auto scatter = drawn({record}, {.title = "2", .kind = "scatter"});
   ASSERT_EQ(scatter.size(), 1U);
   EXPECT_EQ(scatter[0].lines[0].x.size(), 6U);
-  EXPECT_NE(scatter[0].reading.find("sip 0.5"), std::string::npos) << scatter[0].reading;
+  EXPECT_TRUE(has(scatter[0].reading, "sip 0.5")) << scatter[0].reading;
   const auto decades = drawn({record}, {.title = "2", .kind = "decades"});
   ASSERT_GE(decades.size(), 1U);
 }
@@ -122,8 +122,8 @@ TEST(Figures, LearnedTablesNameWhereLossAndErrorRankDifferently) {
   const Compared comparison(records);
   const std::vector<Table> all = learned_section(comparison).tables;
   ASSERT_EQ(all.size(), 2U);
-  EXPECT_NE(all[0].reading.find("sip has both the least error"), std::string::npos);
-  EXPECT_NE(all[1].reading.find("rank methods differently"), std::string::npos);
+  EXPECT_TRUE(has(all[0].reading, "sip has both the least error"));
+  EXPECT_TRUE(has(all[1].reading, "rank methods differently"));
   EXPECT_NE(markdown_report(document_of(comparison)).find(all[1].reading.substr(0, 40)),
             std::string::npos);
 }

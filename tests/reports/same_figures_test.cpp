@@ -172,7 +172,7 @@ TEST_F(SameFigures, AreTheNumbersThatTheirTextsRound) {
           if (std::string(name) == "count" && named.contains("share")) continue;
           const Real value = (std::string(name) == "share" ? 100 : 1) * real_of(named[name]);
           if (!std::isfinite(value)) {
-            EXPECT_NE(text.find("✗"), std::string::npos) << table["id"] << ": " << text;
+            EXPECT_TRUE(has(text, "✗")) << table["id"] << ": " << text;
             continue;
           }
           EXPECT_NEAR(std::abs(value), std::stod(printed[0]), rounding_of(printed[0]))

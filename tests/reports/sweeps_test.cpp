@@ -60,7 +60,7 @@ TEST(Sweeps, DrawTheMediansOverSeedsOfAllThatDiffersInTwoOptions) {
   EXPECT_EQ(map.reading,
             "The least median, 1.5, is at kappa = 0.5 and rate = 1; 6 of 6 settings lie within "
             "a factor of two of it.");
-  EXPECT_NE(map.caption.find("median over 3 seeds, 100 iterations each"), std::string::npos);
+  EXPECT_TRUE(has(map.caption, "median over 3 seeds, 100 iterations each"));
 }
 
 TEST(Sweeps, CountWhatDivergedAsInfinite) {
@@ -91,7 +91,7 @@ TEST(Sweeps, OfBatchesCompareEqualNumbersOfSamples) {
   const Section section = sweeps_section(Compared(records));
   ASSERT_EQ(section.tables.size(), 1U);
   EXPECT_EQ(section.tables[0].columns[0], "batch / rate");
-  EXPECT_NE(section.tables[0].caption.find("1024 samples each"), std::string::npos);
+  EXPECT_TRUE(has(section.tables[0].caption, "1024 samples each"));
 }
 
 TEST(Sweeps, SeeOptionsOfWhatStandsInside) {
@@ -117,7 +117,7 @@ TEST(Sweeps, SpectraShowWhatTheStartSeesAndWhatStepsMakeOfIt) {
   EXPECT_EQ(section.plots[1].reading, "From 1e8 at the start to 10 where gd ended.");
   for (const Plot& plot : section.plots) {
     EXPECT_TRUE(plot.is_log_x && plot.is_log_y) << plot.id;
-    EXPECT_NE(plot.caption.find("norm"), std::string::npos) << plot.id << " names none";
+    EXPECT_TRUE(has(plot.caption, "norm")) << plot.id << " names none";
   }
 }
 

@@ -250,15 +250,12 @@ bool has_path(const SyntheticSize& size, std::size_t problem) {
   return size.is_sample && problem < 2;
 }
 
-Landscape landscape_of(std::size_t problem) {
+Landscape bowl() {
   constexpr Index kGrid = 97;
   Landscape bowl{{-0.5, 3.5, -0.5, 3.5}, Grid(kGrid, kGrid)};
+  const auto at = [](Index i) { return -0.5 + 4.0 * Real(i) / (kGrid - 1); };
   for (Index j = 0; j < kGrid; ++j)
-    for (Index i = 0; i < kGrid; ++i) {
-      const Real a = -0.5 + 4.0 * Real(i) / (kGrid - 1), b = -0.5 + 4.0 * Real(j) / (kGrid - 1);
-      bowl.loss(i, j) =
-          problem == 0 ? a * a + b * b * b * b : std::pow(std::sin(a) + 0.4 * b, 2) + 2 * b * b;
-    }
+    for (Index i = 0; i < kGrid; ++i) bowl.loss(i, j) = std::pow(at(i), 2) + std::pow(at(j), 4);
   return bowl;
 }
 
@@ -285,7 +282,7 @@ void write_sheets(const fs::path& folder, const SyntheticSize& size) {
         "problem", synthetic_record(size, p * size.optimizers * size.seeds).request.problem);
     if (size.is_sample) sheet.prices = prices_of(p);
     if (has_path(size, p)) {
-      sheet.landscape_x = sheet.landscape_y = landscape_of(p);
+      sheet.landscape_x = sheet.landscape_y = bowl();
       sheet.truth = sheet.target = {0, 0};
     }
     write(sheet);

@@ -107,14 +107,13 @@ TEST(LossWithoutX, IsCountedByMethodWithTheConditionNumberBeside) {
   EXPECT_EQ(at(table, "newton", "loss, not x"), "1");
   EXPECT_EQ(at(table, "newton", "nor near"), "0");
   EXPECT_EQ(at(table, "newton", "loss, not x, on"), "q (singular)");
-  EXPECT_NE(table.reading.find("3 reach the loss to 1e-6 and 1 find x"), std::string::npos)
-      << table.reading;
+  EXPECT_TRUE(has(table.reading, "3 reach the loss to 1e-6 and 1 find x")) << table.reading;
 }
 
 TEST(LossWithoutX, SaysWhereNeitherCanBeTold) {
   const Table table = loss_without_x_table(Compared({record_of({})}));  // no solution is known
   EXPECT_TRUE(table.rows.empty());
-  EXPECT_NE(table.reading.find("No result has both"), std::string::npos);
+  EXPECT_TRUE(has(table.reading, "No result has both"));
 }
 
 }  // namespace

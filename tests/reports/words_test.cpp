@@ -16,12 +16,9 @@ namespace {
 
 TEST(Words, FillTheNamesThatTheirKeysDeclare) {
   for (const auto& [key, sentence] : all_sentences()) {
-    const std::vector<Value> ones(sentence.names.size(), Value(std::int64_t{1}));
     const bool has_format = sentence.text.find(':', sentence.text.find('{')) != std::string::npos;
-    if (has_format)  // of a Real
-      EXPECT_NO_THROW(filled(key, std::vector<Value>(ones.size(), Value(Real{1})))) << key;
-    else
-      EXPECT_NO_THROW(filled(key, ones)) << key;
+    const Value one = has_format ? Value(Real{1}) : Value(std::int64_t{1});
+    EXPECT_NO_THROW(filled(key, std::vector<Value>(sentence.names.size(), one))) << key;
     EXPECT_EQ(sentence.text.find("  "), std::string::npos) << key;
   }
 }
