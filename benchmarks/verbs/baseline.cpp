@@ -1,5 +1,5 @@
 // isoline baseline RESULTS: what later results are compared with, as one small file.
-#include "reports/compare/baseline.h"
+#include "reports/compare/cells.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,29 +1,17 @@
 // Writes and reads what a gate remembers of a study. What many cells share stands in tables at the
 // top, and a cell names its rows.
-#include "reports/compare/baseline.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 #include "core/json.h"
-#include "reports/compare/differences.h"
+#include "reports/compare/gate.h"
 
 namespace isoline::reports {
 namespace {
-
-// Figures with one value, by their key; those of three tolerances have two more keys.
-constexpr std::pair<const char*, Quantity> kSingle[] = {{"loss", Quantity::loss},
-                                                        {"best_loss", Quantity::best_loss},
-                                                        {"path", Quantity::path},
-                                                        {"x_error", Quantity::x_error},
-                                                        {"unverified", Quantity::unverified}};
-constexpr std::pair<const char*, Quantity> kByTolerance[] = {{"work", Quantity::work},
-                                                             {"found", Quantity::work_to_x}};
 
 // Rows once each, in the order of their first use.
 class Rows {
@@ -39,56 +27,80 @@ class Rows {
   std::map<std::string, std::size_t> places_;
   std::vector<std::string> texts_;
 };
+using Tables = std::map<std::string, Rows>;  // "given", "terms", "parts", "criteria"
 
-struct Tables {
-  Rows given, terms, parts, criteria;
-};
-
-Json given_json(const Given& given) {
-  Json json = {{"name", given.name}, {"spec", given.spec}, {"options", to_json(*given.options)}};
-  if (given.asked != given.spec) json["asked"] = given.asked;
-  return json;
-}
+// Members of a criterion that may be unknown.
+constexpr std::pair<const char*, std::optional<Real> Criterion::*> kKnown[] = {
+    {"minimum", &Criterion::minimum},
+    {"scale", &Criterion::scale},
+    {"x_scale", &Criterion::x_scale}};
 
 Json criterion_json(const Criterion& of) {
   Json json = {
       {"x_floor", json_number(of.x_floor)}, {"aim", name_of(of.aim)}, {"prices", of.prices}};
-  for (const auto& [name, value] :
-       {std::pair("minimum", &of.minimum), {"scale", &of.scale}, {"x_scale", &of.x_scale}})
-    if (*value) json[name] = json_number(**value);
+  for (const auto& [name, value] : kKnown)
+    if (of.*value) json[name] = json_number(*(of.*value));
   return json;
 }
 
 Criterion criterion_from_json(const Json& json) {
   Criterion of{.x_floor = real_of(json.at("x_floor")),
                .aim = aim_of(json.at("aim").get<std::string>()).value_or(Aim::loss)};
-  for (const auto& [name, value] :
-       {std::pair("minimum", &of.minimum), {"scale", &of.scale}, {"x_scale", &of.x_scale}})
-    if (json.contains(name)) *value = real_of(json.at(name));
+  for (const auto& [name, value] : kKnown)
+    if (json.contains(name)) of.*value = real_of(json.at(name));
   const auto prices = json.at("prices").get<std::vector<std::int64_t>>();
   std::copy_n(prices.begin(), std::min(prices.size(), kOracles), of.prices.begin());
   return of;
 }
 
-bool is_kept(const ComparedFigure& each) {
-  return each.quantity != Quantity::work ||
-         std::ranges::find(kTolerances, each.rung, &Tolerance::rung) != kTolerances.end();
+Status status_named(const std::string& name) {
+  const std::optional<Status> status = status_of(name);
+  require(status.has_value(), [&] { return fmt::format("unknown status '{}'", name); });
+  return *status;
+}
+
+// Of work to the targets it keeps that to the tolerances.
+std::vector<std::size_t> kept_figures(const FigureKind& kind) {
+  std::vector<std::size_t> kept;
+  for (std::size_t t = 0; t < std::min(kind.count, kTolerances.size()); ++t)
+    kept.push_back(kind.first == kWork ? work_at(Aim::loss, t) : kind.first + t);
+  return kept;
 }
 
 void add_figures(Json& json, const ComparedCell& cell) {
-  for (const ComparedFigure& each : cell.figures) {
-    for (const auto& [key, quantity] : kSingle)
-      if (each.quantity == quantity) json[key] = json_number(each.value);
-    for (const auto& [key, quantity] : kByTolerance)
-      if (each.quantity == quantity && is_kept(each)) json[key].push_back(json_number(each.value));
-    if (each.quantity == Quantity::loss) json["scale"] = json_number(each.scale);
-    if (each.quantity == Quantity::x_error) json["x_scale"] = json_number(each.scale);
+  for (const FigureKind& kind : kFigureKinds)
+    for (const std::size_t figure : kept_figures(kind)) {
+      if (!cell.has(figure)) continue;
+      const Json value = json_number(cell.figures[figure]);
+      if (kind.count == 1)
+        json[kind.key] = value;
+      else
+        json[kind.key].push_back(value);
+    }
+  if (cell.has(kLoss)) json["scale"] = json_number(cell.scale);
+  if (cell.has(kXError)) json["x_scale"] = json_number(cell.x_scale);
+}
+
+void read_figures(ComparedCell& cell, const Json& json) {
+  cell.figures.assign(kFigures, std::nan(""));
+  cell.scale = real_of(json.at("scale"));
+  if (json.contains("x_scale")) cell.x_scale = real_of(json.at("x_scale"));
+  for (const FigureKind& kind : kFigureKinds) {
+    if (!json.contains(kind.key)) continue;
+    const Json& value = json.at(kind.key);
+    std::size_t place = 0;
+    for (const std::size_t figure : kept_figures(kind))
+      cell.figures[figure] = real_of(kind.count == 1 ? value : value.at(place++));
   }
 }
 
 // With the targets that the file keeps, so that a cell moves by what a comparison will look at.
 Json perturbed_json(ComparedCell cell, const std::vector<ComparedCell>& others) {
-  std::erase_if(cell.figures, [](const ComparedFigure& each) { return !is_kept(each); });
+  std::vector<Real> kept(kFigures, std::nan(""));
+  for (const FigureKind& kind : kFigureKinds)
+    for (const std::size_t figure : kept_figures(kind))
+      if (cell.has(figure)) kept[figure] = cell.figures[figure];
+  cell.figures = std::move(kept);
   const Perturbed perturbed = perturbed_of(cell, others);
   if (perturbed.moved == 0) return nullptr;
   const Real moved = std::isfinite(perturbed.moved)
@@ -99,18 +111,26 @@ Json perturbed_json(ComparedCell cell, const std::vector<ComparedCell>& others) 
   return json;
 }
 
+Perturbed perturbed_from_json(const Json& json) {
+  Perturbed perturbed{.moved = real_of(json.at("moved"))};
+  json.at("reached").get_to(perturbed.reached);
+  for (const Json& status : json.at("statuses"))
+    perturbed.statuses.push_back(status_named(status.get<std::string>()));
+  return perturbed;
+}
+
 Json cell_json(const ComparedCell& cell, const std::vector<ComparedCell>& others, Tables& tables) {
   Json json = {{"cell", cell.key},
                {"given",
-                {tables.given.place(given_json(cell.problem)),
-                 tables.given.place(given_json(cell.optimizer))}},
+                {tables["given"].place(component_json(*cell.problem)),
+                 tables["given"].place(component_json(*cell.optimizer))}},
                {"seed", cell.seed},
-               {"terms", tables.terms.place(cell.terms)},
+               {"terms", tables["terms"].place(cell.terms)},
                {"status", name_of(cell.status)},
                {"build", cell.build}};
   for (const auto& [name, digest] : *cell.parts)
-    json["parts"].push_back(tables.parts.place(Json{name, digest}));
-  json["criterion"] = tables.criteria.place(criterion_json(*cell.criterion));
+    json["parts"].push_back(tables["parts"].place(Json{name, digest}));
+  json["criterion"] = tables["criteria"].place(criterion_json(*cell.criterion));
   if (!cell.privileges.empty()) json["privileges"] = cell.privileges;
   if (cell.is_cut) json["nondeterministic"] = true;
   if (!cell.trace.empty()) json["trace"] = cell.trace;
@@ -121,38 +141,13 @@ Json cell_json(const ComparedCell& cell, const std::vector<ComparedCell>& others
   return json;
 }
 
-Given given_from_json(const Json& json) {
-  const auto spec = json.at("spec").get<std::string>();
-  return {.name = json.at("name").get<std::string>(),
-          .asked = json.value("asked", spec),
-          .spec = spec,
-          .options = shared_options(option_values_from(json.at("options")))};
-}
-
-void read_figures(ComparedCell& cell, const Json& json) {
-  const Real scale = real_of(json.at("scale"));
-  for (const auto& [key, quantity] : kSingle) {
-    if (!json.contains(key)) continue;
-    const Real value = real_of(json.at(key));
-    cell.figures.push_back({.quantity = quantity,
-                            .value = value,
-                            .scale = quantity == Quantity::path      ? value / kSmallestShare
-                                     : quantity == Quantity::x_error ? real_of(json.at("x_scale"))
-                                                                     : scale});
-  }
-  for (const auto& [key, quantity] : kByTolerance)
-    for (std::size_t t = 0; json.contains(key) && t < kTolerances.size(); ++t)
-      cell.figures.push_back({.quantity = quantity,
-                              .rung = kTolerances[t].rung,
-                              .value = real_of(json.at(key).at(t))});
-}
-
-Perturbed perturbed_from_json(const Json& json) {
-  Perturbed perturbed{.moved = real_of(json.at("moved"))};
-  json.at("reached").get_to(perturbed.reached);
-  for (const Json& status : json.at("statuses"))
-    perturbed.statuses.push_back(status_named(status.get<std::string>()));
-  return perturbed;
+std::shared_ptr<const Component> component_from_json(const Json& json) {
+  Component component;
+  json.at("name").get_to(component.name);
+  json.at("spec").get_to(component.spec);
+  component.asked = json.value("asked", component.spec);
+  component.options = option_values_from(json.at("options"));
+  return shared_component(component);
 }
 
 ComparedCell cell_from_json(const Json& json, const Json& file) {
@@ -161,8 +156,8 @@ ComparedCell cell_from_json(const Json& json, const Json& file) {
   };
   ComparedCell cell{.key = json.at("cell").get<std::string>(),
                     .title = "",
-                    .problem = given_from_json(row("given", json.at("given").at(0))),
-                    .optimizer = given_from_json(row("given", json.at("given").at(1))),
+                    .problem = component_from_json(row("given", json.at("given").at(0))),
+                    .optimizer = component_from_json(row("given", json.at("given").at(1))),
                     .seed = json.at("seed").get<std::uint64_t>(),
                     .terms = row("terms", json.at("terms")).get<std::string>(),
                     .status = status_named(json.at("status").get<std::string>()),
@@ -199,11 +194,11 @@ std::string baseline_json(const Study& study, const std::vector<Study>& perturbe
   std::vector<std::string> lines;
   for (const ComparedCell& cell : compared_cells(study))
     lines.push_back(json_text(cell_json(cell, others[cell.key], tables)));
-  return fmt::format(
-      "{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n\"given\": {},\n"
-      "\"terms\": {},\n\"parts\": {},\n\"criteria\": {},\n\"cells\": [\n{}\n]}}\n",
-      kBaselineSchema, json_text(Json(study.plan.suites)), perturbed.size(), tables.given.text(),
-      tables.terms.text(), tables.parts.text(), tables.criteria.text(), fmt::join(lines, ",\n"));
+  std::string text = fmt::format("{{\"schema\": \"{}\",\n\"suites\": {}, \"perturbations\": {},\n",
+                                 kBaselineSchema, json_text(study.plan.suites), perturbed.size());
+  for (const char* table : {"given", "terms", "parts", "criteria"})
+    text += fmt::format("\"{}\": {},\n", table, tables[table].text());
+  return text + fmt::format("\"cells\": [\n{}\n]}}\n", fmt::join(lines, ",\n"));
 }
 
 std::vector<ComparedCell> baseline_from_json(const Json& json) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -32,16 +31,9 @@ std::shared_ptr<const Value> shared_value(const std::string& key, const Value& v
   return kept;
 }
 
-// The values of the first kept point at which a column is at most the goal.
-Real work_until(const Curve& curve, const std::vector<Real>& column, Real goal) {
-  for (std::size_t i = 0; i < column.size(); ++i)
-    if (std::isfinite(column[i]) && column[i] <= goal) return Real(curve.work[i]);
-  return kNever;
-}
-
 // The geometric mean over kept points of what lies above the smallest that counts: one point that
 // differs moves it. Rounding of 1e-16 of the problem's scale moves it by up to 1e-10.
-ComparedFigure mean_of_path(const std::vector<Real>& losses, Real scale) {
+Real mean_of_path(const std::vector<Real>& losses, Real scale) {
   Real sum = 0;
   std::size_t count = 0;
   for (const Real loss : losses) {
@@ -50,40 +42,40 @@ ComparedFigure mean_of_path(const std::vector<Real>& losses, Real scale) {
     sum += std::log(size);
     ++count;
   }
-  const Real mean = count == 0 ? 0 : std::exp(sum / Real(count));
-  return {.quantity = Quantity::path, .value = mean, .scale = mean / kSmallestShare};
+  return count == 0 ? 0 : std::exp(sum / Real(count));
 }
 
 // Without hits, where f_L is not known, the path stands for the work.
-std::vector<ComparedFigure> figures_of(const Record& record) {
+void add_figures(ComparedCell& cell, const Record& record) {
   const Summary& summary = record.summary;
-  const Real scale = record.scale.value_or(summary.start_loss);
-  std::vector<ComparedFigure> all = {
-      {.quantity = Quantity::loss, .value = summary.loss, .scale = scale},
-      {.quantity = Quantity::best_loss, .value = summary.best_loss, .scale = scale},
-      mean_of_path(record.curve.loss, scale)};
-  if (!std::isnan(summary.start_x_error))
-    all.push_back({.quantity = Quantity::x_error,
-                   .value = summary.x_error,
-                   .scale = record.x_scale.value_or(summary.start_x_error)});
-  if (!std::isnan(summary.start_x_error) && record.x_scale)
-    for (const auto& [name, tau, rung] : kTolerances)
-      all.push_back({.quantity = Quantity::work_to_x,
-                     .rung = rung,
-                     .value = work_until(record.curve, record.curve.x_error,
-                                         x_goal(tau, *record.x_scale, record.x_floor))});
+  const Curve& curve = record.curve;
+  // Not-a-number is no better than infinite.
+  const auto known = [](Real value) { return std::isnan(value) ? kNever : value; };
+  cell.figures.assign(kFigures, std::nan(""));
+  cell.scale = record.scale.value_or(summary.start_loss);
+  cell.figures[kLoss] = known(summary.loss);
+  cell.figures[kBestLoss] = known(summary.best_loss);
+  cell.figures[kPath] = mean_of_path(curve.loss, cell.scale);
+  if (!std::isnan(summary.start_x_error)) {
+    cell.x_scale = record.x_scale.value_or(summary.start_x_error);
+    cell.figures[kXError] = known(summary.x_error);
+    for (std::size_t t = 0; record.x_scale && t < kTolerances.size(); ++t) {
+      const Real goal = x_goal(kTolerances[t].tau, *record.x_scale, record.x_floor);
+      const auto met = std::ranges::find_if(
+          curve.x_error, [&](Real error) { return std::isfinite(error) && error <= goal; });
+      cell.figures[kWorkToX + t] =
+          met == curve.x_error.end()
+              ? kNever
+              : Real(curve.work[static_cast<std::size_t>(met - curve.x_error.begin())]);
+    }
+  }
   const auto misses = [](const auto& verdicts) {
     return std::ranges::count_if(verdicts, [](const auto& one) { return one.second == false; });
   };
   if (!record.verified.empty())
-    all.push_back({.quantity = Quantity::unverified,
-                   .value = Real(misses(record.verified) + misses(record.found))});
-  for (std::size_t j = 0; record.hits && j < record.hits->target.size(); ++j)
-    all.push_back({.quantity = Quantity::work,
-                   .rung = j,
-                   .value = record.hits->iteration[j] < 0 ? kNever : Real(record.hits->work[j])});
-  all.shrink_to_fit();
-  return all;
+    cell.figures[kUnverified] = Real(misses(record.verified) + misses(record.found));
+  for (std::size_t j = 0; record.hits && j < std::min(kTargets, record.hits->target.size()); ++j)
+    cell.figures[kWork + j] = record.hits->iteration[j] < 0 ? kNever : Real(record.hits->work[j]);
 }
 
 // The path apart from the rest, so that each is called by its name.
@@ -102,27 +94,12 @@ void add_digests(ComparedCell& cell, const Record& record) {
   cell.rest = digest(json_text(json));
 }
 
-Given given(const Component& component) {
-  return {.name = component.name,
-          .asked = component.asked.empty() ? component.spec : component.asked,
-          .spec = component.spec,
-          .options = shared_options(component.options)};
-}
-
-void add_seconds(ComparedCell& cell, const std::vector<Real>& seconds) {
-  for (const Real value : seconds)
-    if (std::isfinite(value) && value > 0)
-      cell.seconds.push_back(value);
-    else
-      ++cell.senseless_times;
-}
-
 ComparedCell cell_of(const Record& record) {
   const Request& request = record.request;
   ComparedCell cell{.key = record.cell,
                     .title = "",
-                    .problem = given(request.problem),
-                    .optimizer = given(request.optimizer),
+                    .problem = shared_component(request.problem),
+                    .optimizer = shared_component(request.optimizer),
                     .seed = request.seed,
                     .terms = fmt::format("budget {}, threads {}",
                                          json_text(to_json(request).at("budget")), request.threads),
@@ -141,69 +118,50 @@ ComparedCell cell_of(const Record& record) {
   else if (const auto broken = broken_invariants(record); !broken.empty())
     cell.doubt = broken.front();
   if (record.status == Status::inapplicable) return cell;
-  add_seconds(cell, record.repeat_wall_seconds);
+  for (const Real seconds : record.repeat_wall_seconds)
+    if (std::isfinite(seconds) && seconds > 0)
+      cell.seconds.push_back(seconds);
+    else
+      ++cell.senseless_times;
   add_digests(cell, record);
-  cell.figures = figures_of(record);
+  add_figures(cell, record);
   return cell;
 }
 
 }  // namespace
 
-std::string figure_name(const ComparedFigure& each) {
-  switch (each.quantity) {
-    case Quantity::loss:
-      return "loss";
-    case Quantity::best_loss:
-      return "best loss";
-    case Quantity::x_error:
-      return "error in x";
-    case Quantity::path:
-      return "mean loss of the path";
-    case Quantity::unverified:
-      return "targets missed by the last point";
-    case Quantity::work:
-      return "work to " + figure(rung(each.rung));
-    case Quantity::work_to_x:
-      return "work to an error in x of " + figure(rung(each.rung));
-  }
-  return "";
-}
-
-// Two that are equally bad may still differ: that is a change, and no verdict.
-int badness_of(Status status) {
-  if (status == Status::target || status == Status::converged) return 0;
-  if (status == Status::budget || status == Status::stalled) return 1;
-  return status == Status::diverged ? 2 : 3;
-}
-
-bool is_lost(const ComparedCell& cell) {
-  return is_failure(cell.status) || cell.status == Status::inapplicable;
-}
-
-Status status_named(const std::string& name) {
-  const std::optional<Status> status = status_of(name);
-  require(status.has_value(), [&] { return fmt::format("unknown status '{}'", name); });
-  return *status;
+std::string figure_name(std::size_t figure) {
+  const auto* kind = std::ranges::find_if(
+      kFigureKinds, [&](const FigureKind& one) { return figure < one.first + one.count; });
+  if (kind->count == 1) return kind->name;
+  const std::size_t i = figure - kind->first;
+  return kind->name + reports::figure(rung(kind->first == kWork ? i : kTolerances[i].rung));
 }
 
 std::string title_of(const ComparedCell& cell) {
-  return fmt::format("{} × {}, seed {}", shown_spec(cell.problem.spec),
-                     shown_spec(cell.optimizer.spec), cell.seed);
+  return fmt::format("{} × {}, seed {}", shown_spec(cell.problem->spec),
+                     shown_spec(cell.optimizer->spec), cell.seed);
 }
 
-std::shared_ptr<const OptionValues> shared_options(const OptionValues& options) {
-  return shared_value(json_text(to_json(options)), options);
+Json component_json(const Component& component) {
+  Json json = {
+      {"name", component.name}, {"spec", component.spec}, {"options", to_json(component.options)}};
+  if (component.asked != component.spec && !component.asked.empty())
+    json["asked"] = component.asked;
+  return json;
+}
+
+std::shared_ptr<const Component> shared_component(const Component& component) {
+  Component kept;  // without the digests of its sources
+  kept.name = component.name;
+  kept.options = component.options;
+  kept.spec = component.spec;
+  kept.asked = component.asked.empty() ? component.spec : component.asked;
+  return shared_value(json_text(component_json(kept)), kept);
 }
 
 std::shared_ptr<const BuildParts> shared_parts(const BuildParts& parts) {
   return shared_value(json_text(Json(parts)), parts);
-}
-
-Real work_to(const ComparedCell& cell, Aim aim, std::size_t rung) {
-  const Quantity wanted = aim == Aim::x ? Quantity::work_to_x : Quantity::work;
-  for (const ComparedFigure& each : cell.figures)
-    if (each.quantity == wanted && each.rung == rung) return each.value;
-  return kNever;
 }
 
 std::vector<ComparedCell> compared_cells(const Study& study) {

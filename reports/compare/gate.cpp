@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/json.h"
-#include "reports/compare/baseline.h"
 #include "reports/sections/words.h"
 
 namespace isoline::reports {
@@ -33,18 +31,17 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
 
 // "curve", "message, claimed": what of the records differs where all figures agree.
 Difference silent_difference(const ComparedCell& a, const ComparedCell& b) {
-  Difference difference = difference_in(a, Change::changed, "trace", a.trace, b.trace);
-  difference.note = "the path differs, all compared figures agree";
-  if (a.trace != b.trace) return difference;
-  std::map<std::string_view, std::array<std::uint64_t, 2>> members;  // of none 0
-  for (const auto& [name, digest] : a.members) members[name][0] = digest;
-  for (const auto& [name, digest] : b.members) members[name][1] = digest;
-  std::vector<std::string> names;
-  for (const auto& [name, digests] : members)
-    if (digests[0] != digests[1]) names.emplace_back(name);
-  difference = difference_in(a, Change::changed, "record", a.rest, b.rest);
-  if (!names.empty() && !a.members.empty()) difference.what = joined(names);
-  difference.note = "its path and all compared figures agree";
+  const bool is_path = a.trace != b.trace;
+  Difference difference = is_path ? difference_in(a, Change::changed, "trace", a.trace, b.trace)
+                                  : difference_in(a, Change::changed, "record", a.rest, b.rest);
+  difference.note = is_path ? "the path differs, all compared figures agree"
+                            : "its path and all compared figures agree";
+  if (is_path || a.members.empty()) return difference;  // a baseline holds one digest of them all
+  std::vector<std::pair<std::string_view, std::uint64_t>> members;
+  std::ranges::set_symmetric_difference(a.members, b.members, std::back_inserter(members));
+  std::set<std::string> names;
+  for (const auto& [name, digest] : members) names.emplace(name);
+  if (!names.empty()) difference.what = joined({names.begin(), names.end()});
   return difference;
 }
 
@@ -54,30 +51,12 @@ CauseGroup& group_of(std::vector<CauseGroup>& groups, const std::string& cause) 
   return groups.emplace_back(CauseGroup{.cause = cause});
 }
 
-void count(CauseGroup& group, const Difference& difference) {
-  if (difference.is_rounding) {
-    group.most_rounding = std::max(group.most_rounding, std::abs(difference.relative));
-    return;
-  }
-  auto& keys = difference.change == Change::worse    ? group.worse
-               : difference.change == Change::better ? group.better
-                                                     : group.changed;
-  keys.insert(difference.key);
-}
-
-// "all 4 of adam, 7 of 10 of gd".
-std::string lack_text(const std::vector<const ComparedCell*>& lacking,
-                      const std::vector<ComparedCell>& all) {
-  std::map<std::string, std::pair<std::size_t, std::size_t>> counts;  // lacking, of all
-  for (const ComparedCell* cell : lacking) ++counts[cell->optimizer.name].first;
-  for (const ComparedCell& cell : all)
-    if (const auto at = counts.find(cell.optimizer.name); at != counts.end()) ++at->second.second;
-  std::vector<std::string> names;
-  for (const auto& [name, count] : counts)
-    names.push_back(count.first == count.second
-                        ? fmt::format("all {} of {}", count.second, name)
-                        : fmt::format("{} of {} of {}", count.first, count.second, name));
-  return names_text(names);
+// Why the two of a pair may differ, or that nothing of them explains it.
+std::string cause_of(const ComparedCell& before, const ComparedCell& after) {
+  const std::set<std::string> options = changed_options(before, after);
+  std::vector<std::string> causes(options.begin(), options.end());
+  std::ranges::copy(changed_parts(before, after), std::back_inserter(causes));
+  return causes.empty() ? "the same build and options" : joined(causes);
 }
 
 class Gate {
@@ -86,16 +65,9 @@ class Gate {
 
   GateResult run(const std::vector<ComparedCell>& before, const std::vector<ComparedCell>& after) {
     const Pairs pairs = paired(before, after);
-    for (const auto& [a, b] : pairs.both)
-      if (a->key == b->key || a->terms == b->terms)
-        compare(*a, *b);
-      else
-        part(*a, *b);
-    for (const ComparedCell* cell : pairs.only_before)
-      if (!is_allowed(*cell, false)) lacking_.push_back(cell);
-    for (const ComparedCell* cell : lacking_) result_.only_before.push_back(cell->title);
+    for (const auto& [a, b] : pairs.both) compare(*a, *b);
     for (const ComparedCell* cell : pairs.only_after) result_.only_after.push_back(cell->title);
-    result_.lack = lack_text(lacking_, before);
+    add_lack(pairs.only_before);
     name_what_changed();
     choose_timed();
     result_.times = judge_times(timed_, options_.least_noise);
@@ -112,33 +84,36 @@ class Gate {
     offer_times(a, b);
     std::string reason = why_incomparable(a, b, options_);
     const std::string criterion = criterion_change_text(a, b, options_.tolerance);
-    if (!criterion.empty() && a.doubt.empty() && b.doubt.empty() && !is_allowed(a, true))
+    const bool is_doubtful = !a.doubt.empty() || !b.doubt.empty();
+    if (!criterion.empty() && !is_doubtful && !is_allowed(a, true))
       reason = "success is judged by another criterion: " + criterion;
     if (reason.empty()) return judge(a, b);
+    const auto is_lost = [](const ComparedCell& cell) {  // it went wrong, or does not apply
+      return is_failure(cell.status) || cell.status == Status::inapplicable;
+    };
     const bool tells_status = a.is_cut || b.is_cut ? badness_of(a.status) != badness_of(b.status)
                                                    : is_lost(a) != is_lost(b);
-    if (tells_status && a.doubt.empty() && b.doubt.empty())
-      return keep({status_difference(a, b)}, a, b);
+    if (tells_status && !is_doubtful) return keep({status_difference(a, b)}, a, b);
     result_.incomparable.push_back({a.title, reason});
     CauseGroup& group = group_of(result_.causes, reason);
     group.add(a);
     ++group.incomparable;
   }
 
-  void keep(std::vector<Difference> found, const ComparedCell& a, const ComparedCell& b) {
+  void keep(Differences found, const ComparedCell& a, const ComparedCell& b) {
     if (found.empty()) return;
     const std::string cause = cause_of(a, b);
     CauseGroup& group = group_of(result_.causes, cause);
     group.add(a);
     for (Difference& difference : found) {
-      count(group, difference);
+      group.changes[difference.change].insert(difference.key);
       difference.cause = cause;
       result_.differences.push_back(std::move(difference));
     }
   }
 
   void judge(const ComparedCell& a, const ComparedCell& b) {
-    std::vector<Difference> found = figure_differences(a, b, options_.tolerance);
+    Differences found = figure_differences(a, b, options_.tolerance);
     if (a.status != b.status) found.insert(found.begin(), status_difference(a, b));
     if (found.empty() && !options_.tolerance && (a.trace != b.trace || a.rest != b.rest))
       found.push_back(silent_difference(a, b));
@@ -149,27 +124,39 @@ class Gate {
     keep(std::move(found), a, b);
   }
 
+  // The first entry of its kind that names the cell.
   bool is_allowed(const ComparedCell& cell, bool is_of_criterion) {
-    const auto entry = entry_for(options_.allowed, cell, is_of_criterion);
-    if (entry == options_.allowed.end()) return false;
-    result_.allowed.push_back({cell.title, entry->reason});
-    is_used_[static_cast<std::size_t>(entry - options_.allowed.begin())] = true;
-    return true;
+    for (std::size_t i = 0; i < is_used_.size(); ++i) {
+      const AllowedCells& entry = options_.allowed[i];
+      if (entry.is_of_criterion != is_of_criterion || !is_of(entry, cell)) continue;
+      result_.allowed.push_back({cell.title, entry.reason});
+      return is_used_[i] = true;
+    }
+    return false;
   }
 
-  // Another budget is another question: NEW lacks the cell of BASE, and has one of its own.
-  void part(const ComparedCell& a, const ComparedCell& b) {
-    result_.only_after.push_back(b.title);
-    if (is_allowed(a, false)) return;
-    result_.only_before.push_back(a.title);
-    group_of(result_.other_terms, change_of_terms(a, b)).add(a);
+  // Another budget is another question: both sides have a cell of that title then.
+  void add_lack(const std::vector<const ComparedCell*>& only_before) {
+    const std::set<std::string> others(result_.only_after.begin(), result_.only_after.end());
+    CauseGroup lacking;
+    std::size_t elsewise = 0;
+    for (const ComparedCell* cell : only_before) {
+      if (is_allowed(*cell, false)) continue;
+      result_.only_before.push_back(cell->title);
+      lacking.add(*cell);
+      elsewise += others.contains(cell->title);
+    }
+    if (lacking.cells.empty()) return;
+    result_.lack = fmt::format("NEW lacks {} that BASE has", cells_text(lacking));
+    if (elsewise > 0)
+      result_.lack += fmt::format(" ({} with another budget or other threads in NEW)", elsewise);
   }
 
   void name_what_changed() {
     for (std::vector<CauseGroup>* groups : {&parts_, &settings_})
       std::ranges::sort(*groups, {}, &CauseGroup::cause);
     for (const CauseGroup& group : parts_)
-      result_.builds.push_back(fmt::format("{} ({})", group.cause, group.cells_text()));
+      result_.builds.push_back(fmt::format("{} ({})", group.cause, cells_text(group)));
     for (const CauseGroup& group : settings_)  // which name their component
       result_.settings.push_back(
           fmt::format("{} ({})", group.cause, counted(group.cells.size(), "cell")));
@@ -213,7 +200,7 @@ class Gate {
                         std::string_view(d.title));
     });
     std::ranges::stable_sort(result_.causes, std::greater(), [](const CauseGroup& group) {
-      return std::tuple(!group.worse.empty(), group.incomparable > 0, group.cells.size());
+      return std::tuple(group.count(Change::worse) > 0, group.incomparable > 0, group.cells.size());
     });
   }
 
@@ -240,43 +227,30 @@ class Gate {
 
   const GateOptions& options_;
   std::vector<bool> is_used_;                 // of the entries of the list of allowed cells
-  std::vector<const ComparedCell*> lacking_;  // in NEW, whatever its budget
   std::vector<CauseGroup> parts_, settings_;  // all that differs, with and without an effect
   std::vector<TimedCell> timed_;
   std::size_t too_few_ = 0, other_processors_ = 0, skipped_ = 0, senseless_ = 0;
   GateResult result_;
 };
 
-// "26 cells of adam, most in sine × adam, seed 0: loss 1e-3 → 2": of what rounding does not
-// explain, or else of what it does.
+// "26 cells of adam, most in sine × adam, seed 0: loss 1e-3 → 2".
 std::string worst_text(const GateResult& result, Change change) {
-  const Difference *worst = nullptr, *rounded = nullptr;
-  CauseGroup group;
-  for (const Difference& difference : result.differences) {  // worst first
-    if (difference.change != change) continue;
-    const Difference*& first = difference.is_rounding ? rounded : worst;
-    if (first == nullptr) first = &difference;
-    if (difference.is_rounding) continue;
-    group.cells.insert(difference.key);
-    group.optimizers.insert(difference.optimizer);
+  const auto worst = std::ranges::find(result.differences, change, &Difference::change);
+  if (worst == result.differences.end()) return "";
+  std::set<std::string> cells, optimizers;
+  for (const Difference& difference : result.differences)
+    if (difference.change == change) {
+      cells.insert(difference.key);
+      optimizers.insert(difference.optimizer);
+    }
+  constexpr std::size_t kMost = 12;
+  std::vector<std::string> names(optimizers.begin(), optimizers.end());
+  if (names.size() > kMost) {
+    names.resize(kMost);
+    names.back() += fmt::format(" and {} more", optimizers.size() - kMost);
   }
-  if (worst != nullptr)
-    return fmt::format("{} of {}, most in {}: {}", counted(group.cells.size(), "cell"),
-                       names_text({group.optimizers.begin(), group.optimizers.end()}), worst->title,
-                       step_text(*worst));
-  if (rounded == nullptr) return "";
-  return fmt::format("by rounding alone, most in {}: {}", rounded->title, step_text(*rounded));
-}
-
-std::string lack_cause(const GateResult& result) {
-  if (result.only_before.empty()) return "";
-  std::vector<std::string> names;
-  for (const CauseGroup& terms : result.other_terms)
-    names.push_back(
-        fmt::format("{} with another budget in NEW, {}", terms.cells.size(), terms.cause));
-  if (!result.lack.empty()) names.push_back(result.lack);
-  return fmt::format("NEW lacks {} of BASE ({})", counted(result.only_before.size(), "cell"),
-                     joined(names));
+  return fmt::format("{} of {}, most in {}: {}", counted(cells.size(), "cell"), joined(names),
+                     worst->title, step_text(*worst));
 }
 
 std::string time_cause(const std::vector<TimeVerdict>& times, int change, const char* word) {
@@ -287,11 +261,6 @@ std::string time_cause(const std::vector<TimeVerdict>& times, int change, const 
                      first->title, ratio_text(first->ratio));
 }
 
-std::string incomparable_cause(const std::vector<ReasonedCell>& all) {
-  const std::string first = all[0].title + ": " + all[0].reason;
-  return all.size() == 1 ? first : fmt::format("{} cells, as {}", all.size(), first);
-}
-
 std::string settings_cause(const std::vector<std::string>& settings) {
   if (settings.size() <= 1) return joined(settings);
   return fmt::format("{}, and {} of options", settings[0],
@@ -300,33 +269,31 @@ std::string settings_cause(const std::vector<std::string>& settings) {
 
 // The sentence and the exit code: worse before not comparable before better, each with its causes.
 void conclude(GateResult& result, const GateOptions& options) {
-  const auto has = [&](Change change) {
-    return std::ranges::find(result.differences, change, &Difference::change) !=
-           result.differences.end();
-  };
   const auto settle = [&](ExitCode code, const char* verdict, std::vector<std::string> causes) {
     std::erase(causes, "");
     result.exit_code = code;
     result.verdict = verdict + (causes.empty() ? "" : ": " + joined(causes, "; "));
   };
   const std::string settings = settings_cause(result.settings);
-  const std::string lacks = options.is_common_only ? "" : lack_cause(result);
-  const std::string slower = time_cause(result.times, 1, "slower");
-  const std::string faster = time_cause(result.times, -1, "faster");
-  if (has(Change::worse) || !slower.empty() || !lacks.empty())
-    settle(kWorse, "worse", {settings, lacks, worst_text(result, Change::worse), slower});
-  else if (result.joined == 0)
+  const std::string lack = options.is_common_only ? "" : result.lack;
+  const std::string worse = worst_text(result, Change::worse),
+                    better = worst_text(result, Change::better),
+                    slower = time_cause(result.times, 1, "slower"),
+                    faster = time_cause(result.times, -1, "faster");
+  if (!worse.empty() || !slower.empty() || !lack.empty()) {
+    settle(kWorse, "worse", {settings, lack, worse, slower});
+  } else if (result.joined == 0) {
     settle(kNotComparable, "not comparable", {"no cell is in both"});
-  else if (!result.incomparable.empty())
+  } else if (const auto& all = result.incomparable; !all.empty()) {
+    const std::string first = all[0].title + ": " + all[0].reason;
     settle(kNotComparable, "not comparable in part, nothing worse in the rest",
-           {incomparable_cause(result.incomparable)});
-  else if (has(Change::better) || !faster.empty())
-    settle(kBetterOnly, "better, nothing worse",
-           {settings, worst_text(result, Change::better), faster});
-  else if (has(Change::changed) || !result.settings.empty())
-    settle(kGood, "changed, neither better nor worse", {settings});
-  else
-    settle(kGood, "equal", {});
+           {all.size() == 1 ? first : fmt::format("{} cells, as {}", all.size(), first)});
+  } else if (!better.empty() || !faster.empty()) {
+    settle(kBetterOnly, "better, nothing worse", {settings, better, faster});
+  } else {
+    const bool is_equal = result.differences.empty() && settings.empty();
+    settle(kGood, is_equal ? "equal" : "changed, neither better nor worse", {settings});
+  }
 }
 
 void remark_on(const FolderCells& found, const std::filesystem::path& path,
@@ -356,14 +323,8 @@ std::optional<std::vector<ComparedCell>> read_baseline(const std::filesystem::pa
 
 void CauseGroup::add(const ComparedCell& cell) {
   cells.insert(cell.key);
-  problems.insert(cell.problem.name);
-  optimizers.insert(cell.optimizer.name);
-}
-
-std::size_t CauseGroup::rounded() const {
-  std::set<std::string> others = worse;
-  for (const auto* some : {&better, &changed}) others.insert(some->begin(), some->end());
-  return cells.size() - others.size() - incomparable;
+  problems.insert(cell.problem->name);
+  optimizers.insert(cell.optimizer->name);
 }
 
 GateResult compare_results(const std::filesystem::path& before, const std::filesystem::path& after,

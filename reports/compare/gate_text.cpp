@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -15,29 +14,24 @@
 namespace isoline::reports {
 namespace {
 
-const char* change_name(Change change) {
-  if (change == Change::changed) return "changed";
-  return change == Change::worse ? "worse" : "better";
+std::string change_name(Change change) {
+  constexpr const char* kNames[] = {"worse", "better", "changed"};
+  return kNames[static_cast<std::size_t>(change)];
 }
 
-const char* time_change_name(int change) {
-  if (change == 0) return "same";
-  return change > 0 ? "slower" : "faster";
+std::string time_change_name(int change) {
+  return change == 0 ? "same" : change > 0 ? "slower" : "faster";
 }
 
-// "+5 %", "12×" for more than tenfold; empty where no ratio says anything.
-std::string relative_text(Real relative) {
-  constexpr Real kTimes = 9;
-  if (relative == 0 || std::abs(relative) == kNever) return "";
-  if (relative > kTimes) return fmt::format("{:.3g}×", 1 + relative);
-  return fmt::format("{}{:.3g} %", relative > 0 ? "+" : "−", 100 * std::abs(relative));
-}
-
-// "+5 %, and 3 more of its kind".
+// "+5 %, and 3 more of its kind"; "12×" for more than tenfold; no ratio where none says anything.
 std::string remainder_text(const Difference& difference) {
-  const std::string relative = relative_text(difference.relative);
-  if (relative.empty() || difference.note.empty()) return relative + difference.note;
-  return relative + ", " + difference.note;
+  constexpr Real kTimes = 9;
+  const Real relative = difference.relative;
+  if (relative == 0 || std::abs(relative) == kNever) return difference.note;
+  const std::string ratio = relative > kTimes ? fmt::format("{:.3g}×", 1 + relative)
+                                              : fmt::format("{}{:.3g} %", relative > 0 ? "+" : "−",
+                                                            100 * std::abs(relative));
+  return ratio + (difference.note.empty() ? "" : ", " + difference.note);
 }
 
 // "adam, gd", or how many there are.
@@ -48,7 +42,7 @@ std::string few_names(const std::set<std::string>& names, const char* noun) {
 }
 
 // "3 worse, 2 better"; zero counts are omitted.
-std::string counts_text(std::initializer_list<std::pair<std::size_t, std::string>> counts) {
+std::string counts_text(std::initializer_list<std::pair<std::size_t, const char*>> counts) {
   std::vector<std::string> words;
   for (const auto& [number, word] : counts)
     if (number > 0) words.push_back(fmt::format("{} {}", number, word));
@@ -61,15 +55,12 @@ std::string summary_text(const GateResult& result) {
     return static_cast<std::size_t>(
         std::ranges::count(result.differences, change, &Difference::change));
   };
-  const auto rounded = static_cast<std::size_t>(
-      std::ranges::count(result.differences, true, &Difference::is_rounding));
   const std::string cells = counts_text({{result.equal, "equal"},
                                          {result.chaotic, "chaotic"},
                                          {result.incomparable.size(), "not comparable"}});
   const std::string differences = counts_text({{count(Change::worse), "worse"},
                                                {count(Change::better), "better"},
-                                               {count(Change::changed), "changed"},
-                                               {rounded, "of them by rounding alone"}});
+                                               {count(Change::changed), "changed"}});
   return fmt::format("{} in both{}{}{}{}", counted(result.joined, "cell"),
                      cells.empty() ? "" : ": ", cells,
                      differences.empty() ? "" : "; differences: ", differences);
@@ -93,52 +84,42 @@ void add_table(Section& section, const std::string& title, const std::vector<std
 Row line(const std::string& text) { return {text}; }
 Row reasoned(const ReasonedCell& cell) { return {cell.title, cell.reason}; }
 
-// A table a cause, in the order of the causes; what rounding explains is in none.
-void add_differences(Section& section, const GateResult& result) {
+// The verdict is its title; then the counts, the causes and what else must be known. Differences
+// have a table a cause, in the order of the causes.
+Section gate_section(const GateResult& result, bool lists_all) {
+  constexpr std::size_t kMostCauses = 8;
+  Section section{.id = "comparison", .title = "Comparison: " + result.verdict};
+  const auto say = [&](const char* title, const std::string& text) {
+    section.readings.push_back({title, text + "."});
+  };
+  say("", summary_text(result));
+  const std::size_t causes = result.causes.size();
+  const std::size_t told = lists_all ? causes : std::min(kMostCauses, causes);
+  for (const CauseGroup& cause : std::span(result.causes).first(told))
+    say("Cause", fmt::format("{}: {}", cause.cause, cause_group_text(cause)));
+  if (told < causes)
+    say("", fmt::format("{} more; --all lists them", counted(causes - told, "cause")));
+  for (const std::string& remark : result.remarks) say("", remark);
   for (const CauseGroup& cause : result.causes) {
-    std::vector<Difference> its;
-    std::ranges::copy_if(result.differences, std::back_inserter(its), [&](const Difference& one) {
-      return one.cause == cause.cause && !one.is_rounding;
-    });
+    Differences its;
+    std::ranges::copy_if(result.differences, std::back_inserter(its),
+                         [&](const Difference& one) { return one.cause == cause.cause; });
     add_table(section, "Differences: " + cause.cause, {"", "cell", "figure", "change"}, "llll", its,
               [](const Difference& one) -> Row {
                 return {change_name(one.change), one.title, step_text(one), remainder_text(one)};
               });
   }
-}
-
-Row time_row(const TimeVerdict& time) {
-  return {time_change_name(time.change),
-          time.title,
-          ratio_text(time.ratio),
-          fmt::format("±{}", percent(time.noise)),
-          fmt::format("{:.2g}", time.adjusted),
-          fmt::format("{}, {}", time.n_before, time.n_after)};
-}
-
-// The verdict is its title; then the counts, the causes and what else must be known.
-Section gate_section(const GateResult& result, bool lists_all) {
-  constexpr std::size_t kMostCauses = 8;
-  Section section{.id = "comparison", .title = "Comparison: " + result.verdict};
-  section.readings.push_back({"", summary_text(result) + "."});
-  const std::size_t told =
-      lists_all ? result.causes.size() : std::min(kMostCauses, result.causes.size());
-  for (const CauseGroup& cause : std::span(result.causes).first(told))
-    section.readings.push_back(
-        {"Cause", fmt::format("{}: {}.", cause.cause, cause_group_text(cause))});
-  if (told < result.causes.size())
-    section.readings.push_back({"", fmt::format("{} more; --all lists them.",
-                                                counted(result.causes.size() - told, "cause"))});
-  for (const std::string& remark : result.remarks) section.readings.push_back({"", remark + "."});
-  add_differences(section, result);
   add_table(section, "Builds that differ", {"part"}, "", result.builds, line);
   add_table(section, "Options that differ", {"option"}, "", result.settings, line);
   add_table(section, "Time, NEW over BASE",
             {"", "cell", "ratio (95 % interval)", "noise", "p, adjusted", "runs"}, "llrrrr",
-            result.times, time_row);
-  add_table(section, "In both, with another budget", {"what differs", "cells"}, "ll",
-            result.other_terms, [](const CauseGroup& terms) -> Row {
-              return {terms.cause, terms.cells_text()};
+            result.times, [](const TimeVerdict& time) -> Row {
+              return {time_change_name(time.change),
+                      time.title,
+                      ratio_text(time.ratio),
+                      fmt::format("±{}", percent(time.noise)),
+                      fmt::format("{:.2g}", time.adjusted),
+                      fmt::format("{}, {}", time.n_before, time.n_after)};
             });
   add_table(section, "Only in BASE", {"cell"}, "", result.only_before, line);
   add_table(section, "Allowed", {"cell", "reason"}, "ll", result.allowed, reasoned);
@@ -147,53 +128,15 @@ Section gate_section(const GateResult& result, bool lists_all) {
   return section;
 }
 
-Json to_json(const Difference& d) {
-  return {{"change", change_name(d.change)},
-          {"cell", d.key},
-          {"title", d.title},
-          {"optimizer", d.optimizer},
-          {"figure", d.what},
-          {"before", d.before},
-          {"after", d.after},
-          {"relative", json_number(d.relative)},
-          {"note", d.note},
-          {"problem", d.problem},
-          {"cause", d.cause},
-          {"rounding", d.is_rounding}};
-}
-
-Json to_json(const TimeVerdict& t) {
-  return {{"change", time_change_name(t.change)},
-          {"cell", t.key},
-          {"title", t.title},
-          {"n", {t.n_before, t.n_after}},
-          {"ratio", json_number(t.ratio.ratio)},
-          {"low", json_number(t.ratio.low)},
-          {"high", json_number(t.ratio.high)},
-          {"p", t.p},
-          {"adjusted_p", t.adjusted},
-          {"noise", json_number(t.noise)}};
-}
-
-Json to_json(const CauseGroup& group) {
-  return {{"cause", group.cause},
-          {"cells", group.cells.size()},
-          {"optimizers", group.optimizers},
-          {"problems", group.problems},
-          {"worse", group.worse.size()},
-          {"better", group.better.size()},
-          {"changed", group.changed.size()},
-          {"rounding", group.rounded()},
-          {"not_comparable", group.incomparable}};
-}
-
-Json to_json(const ReasonedCell& one) { return {{"title", one.title}, {"reason", one.reason}}; }
-
-template <class Value>
-Json json_list(const std::vector<Value>& values) {
+template <class Value, class ToJson>
+Json json_list(const std::vector<Value>& values, ToJson to_json) {
   Json list = Json::array();
   for (const Value& value : values) list.push_back(to_json(value));
   return list;
+}
+
+Json reasoned_json(const ReasonedCell& one) {
+  return {{"title", one.title}, {"reason", one.reason}};
 }
 
 }  // namespace
@@ -206,26 +149,17 @@ std::string ratio_text(const RatioEstimate& ratio) {
   return fmt::format("{:.3g}× ({:.3g} to {:.3g})", ratio.ratio, ratio.low, ratio.high);
 }
 
-std::string names_text(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 12;
-  if (names.size() <= kMost) return joined(names);
-  return fmt::format("{} and {} more", joined({names.begin(), names.begin() + kMost}),
-                     names.size() - kMost);
-}
-
-std::string CauseGroup::cells_text() const {
-  return fmt::format("{} of {} on {}", counted(cells.size(), "cell"),
-                     few_names(optimizers, "optimizer"), few_names(problems, "problem"));
+std::string cells_text(const CauseGroup& group) {
+  return fmt::format("{} of {} on {}", counted(group.cells.size(), "cell"),
+                     few_names(group.optimizers, "optimizer"),
+                     few_names(group.problems, "problem"));
 }
 
 std::string cause_group_text(const CauseGroup& group) {
-  const std::string rounded =
-      fmt::format("different by rounding alone ({:.1e} at most, relative)", group.most_rounding);
-  return fmt::format("{}: {}", group.cells_text(),
-                     counts_text({{group.worse.size(), "worse"},
-                                  {group.better.size(), "better"},
-                                  {group.changed.size(), "changed"},
-                                  {group.rounded(), rounded},
+  return fmt::format("{}: {}", cells_text(group),
+                     counts_text({{group.count(Change::worse), "worse"},
+                                  {group.count(Change::better), "better"},
+                                  {group.count(Change::changed), "changed"},
                                   {group.incomparable, "not comparable"}}));
 }
 
@@ -249,11 +183,42 @@ std::string gate_markdown(const GateResult& result) {
 }
 
 std::string gate_json(const GateResult& result) {
-  Json other_budgets = Json::array();
-  for (const CauseGroup& terms : result.other_terms)
-    other_budgets.push_back(
-        {{"what", terms.cause}, {"cells", terms.cells.size()}, {"optimizers", terms.optimizers}});
-  const Json json{{"schema", kComparisonSchema},
+  const auto difference = [](const Difference& d) -> Json {
+    return {{"change", change_name(d.change)},
+            {"cell", d.key},
+            {"title", d.title},
+            {"optimizer", d.optimizer},
+            {"figure", d.what},
+            {"before", d.before},
+            {"after", d.after},
+            {"relative", json_number(d.relative)},
+            {"note", d.note},
+            {"problem", d.problem},
+            {"cause", d.cause}};
+  };
+  const auto time = [](const TimeVerdict& t) -> Json {
+    return {{"change", time_change_name(t.change)},
+            {"cell", t.key},
+            {"title", t.title},
+            {"n", {t.n_before, t.n_after}},
+            {"ratio", json_number(t.ratio.ratio)},
+            {"low", json_number(t.ratio.low)},
+            {"high", json_number(t.ratio.high)},
+            {"p", t.p},
+            {"adjusted_p", t.adjusted},
+            {"noise", json_number(t.noise)}};
+  };
+  const auto cause = [](const CauseGroup& group) -> Json {
+    Json json{{"cause", group.cause},
+              {"cells", group.cells.size()},
+              {"optimizers", group.optimizers},
+              {"problems", group.problems},
+              {"not_comparable", group.incomparable}};
+    for (const Change change : {Change::worse, Change::better, Change::changed})
+      json[change_name(change)] = group.count(change);
+    return json;
+  };
+  const Json json{{"schema", "isoline.comparison/1"},
                   {"verdict", result.verdict},
                   {"exit_code", static_cast<int>(result.exit_code)},
                   {"joined", result.joined},
@@ -261,13 +226,12 @@ std::string gate_json(const GateResult& result) {
                   {"chaotic", result.chaotic},
                   {"builds", result.builds},
                   {"options", result.settings},
-                  {"differences", json_list(result.differences)},
-                  {"causes", json_list(result.causes)},
-                  {"other_budgets", other_budgets},
-                  {"times", json_list(result.times)},
-                  {"not_comparable", json_list(result.incomparable)},
+                  {"differences", json_list(result.differences, difference)},
+                  {"causes", json_list(result.causes, cause)},
+                  {"times", json_list(result.times, time)},
+                  {"not_comparable", json_list(result.incomparable, reasoned_json)},
                   {"only_in_base", result.only_before},
-                  {"allowed", json_list(result.allowed)},
+                  {"allowed", json_list(result.allowed, reasoned_json)},
                   {"only_in_new", result.only_after},
                   {"remarks", result.remarks}};
   return json_text(json, 1) + "\n";

@@ -1,7 +1,5 @@
 // What a repository keeps of results holds later results to the same standard as the records do;
 // rounding alone is not called worse, and a fault in a cell that hangs on rounding is still found.
-#include "reports/compare/baseline.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,6 +96,8 @@ TEST(Baseline, StandsOnTheLeftOfAResultFolder) {
   EXPECT_THROW(compare_results(folder.path(), file, {}), UsageError);
   EXPECT_THROW(compare_results(file, file, {}), UsageError);
   EXPECT_THROW(baseline_from_json(Json{{"schema", kBaselineSchema}}), UsageError);
+  folder.add_file("report.json", "{\"schema\": \"isoline.report/1\"}");
+  EXPECT_THROW(compare_results(folder.path() / "report.json", folder.path(), {}), UsageError);
 }
 
 constexpr Real kTolerance = 1e-6;  // of the gate of this repository
@@ -256,16 +256,27 @@ TEST(Chaos, WithoutAToleranceTheBitsDecide) {
 }
 
 TEST(Chaos, MovementIsTheLeastToleranceThatLetsFiguresPass) {
-  ComparedCell before{.status = Status::budget, .figures = {{.value = 0.5, .scale = 1}}};
+  const auto component = std::make_shared<const Component>();
+  ComparedCell before{.key = "",
+                      .title = "",
+                      .problem = component,
+                      .optimizer = component,
+                      .terms = "",
+                      .status = Status::budget,
+                      .build = "",
+                      .parts = nullptr,
+                      .figures = std::vector<Real>(kFigures, std::nan("")),
+                      .scale = 1};
+  before.figures[kLoss] = 0.5;
   ComparedCell after = before;
   EXPECT_EQ(movement(before, after), 0);
-  after.figures[0].value = 0.5 + 0x1p-52;  // rounding: above 1e-16 of the start by little
+  after.figures[kLoss] = 0.5 + 0x1p-52;  // rounding: above 1e-16 of the start by little
   EXPECT_LT(movement(before, after), 1e-15);
-  after.figures[0].value = 0.55;
+  after.figures[kLoss] = 0.55;
   EXPECT_NEAR(movement(before, after), 0.1, 1e-12);
   EXPECT_TRUE(figure_differences(before, after, movement(before, after)).empty());
   EXPECT_FALSE(figure_differences(before, after, 0.99 * movement(before, after)).empty());
-  after.figures[0].value = kNever;
+  after.figures[kLoss] = kNever;
   EXPECT_EQ(movement(before, after), kNever);
   after = before;
   after.status = Status::diverged;

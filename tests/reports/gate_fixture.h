@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "reports/compare/baseline.h"
 #include "reports/compare/gate.h"
 #include "tests/reports/fixture.h"
 #include "tests/reports/true_record.h"

@@ -21,7 +21,6 @@ TEST(Gate, TwoRunsOfOneBuildAreEqual) {
   const GateResult result = compared([](Record& record) {
     record.summary.wall_seconds = 99;  // times and provenance of a run may differ
     record.curve.wall_seconds.back() = 99;
-    record.hits->wall_seconds[3] = 99;
     record.provenance.run.started = "2026-07-01T00:00:00Z";
   });
   EXPECT_EQ(result.exit_code, 0);
@@ -143,14 +142,6 @@ TEST(Gate, ASlowerPathIsWorseWhereNoMinimumIsKnown) {
   EXPECT_EQ(result.differences.at(0).what, "mean loss of the path");
 }
 
-TEST(Gate, AReportIsNoSide) {
-  const ResultFolder folder;
-  fill(folder);
-  folder.add_file("report.json", "{\"schema\": \"isoline.report/1\"}");
-  EXPECT_THROW(compare_results(folder.path() / "report.json", folder.path(), {}), UsageError);
-  EXPECT_THROW(compare_results(folder.path(), folder.path() / "report.json", {}), UsageError);
-}
-
 TEST(Gate, AllFormatsTellTheSame) {
   const GateResult result = compared(loss_times(1.05));
   for (const std::string& text : {gate_terminal(result), gate_markdown(result)})
@@ -177,12 +168,11 @@ TEST(Gate, AFolderReadRecordByRecordGivesTheCellsOfItsStudy) {
   }
   folder.add(record_of({.problem = "heat", .status = Status::inapplicable}));
   folder.add_file("runs/torn.json", "{");
-  mkfifo((folder.path() / "runs" / "pipe.json").c_str(), 0600);
   const Study study = read_study({folder.path()});
   const std::vector<ComparedCell> whole = compared_cells(study);
   const FolderCells found = read_cells(folder.path());
   EXPECT_EQ(found.superseded, study.superseded);
-  EXPECT_EQ(found.unreadable, 2U);
+  EXPECT_EQ(found.unreadable, 1U);
   ASSERT_EQ(found.cells.size(), whole.size());
   std::size_t doubtful = 0;
   for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -190,13 +180,11 @@ TEST(Gate, AFolderReadRecordByRecordGivesTheCellsOfItsStudy) {
     for (const auto text : {&ComparedCell::key, &ComparedCell::title, &ComparedCell::terms,
                             &ComparedCell::trace, &ComparedCell::rest, &ComparedCell::doubt})
       EXPECT_EQ(a.*text, b.*text);
-    EXPECT_EQ(a.members.size(), b.members.size());
+    EXPECT_EQ(a.members, b.members);
     doubtful += !b.doubt.empty();
     ASSERT_EQ(a.figures.size(), b.figures.size());
-    for (std::size_t q = 0; q < a.figures.size(); ++q) {
-      EXPECT_EQ(figure_name(a.figures[q]), figure_name(b.figures[q]));
-      EXPECT_EQ(a.figures[q].value, b.figures[q].value) << figure_name(a.figures[q]);
-    }
+    for (std::size_t q = 0; q < a.figures.size(); ++q)
+      EXPECT_TRUE(a.has(q) ? a.figures[q] == b.figures[q] : !b.has(q)) << figure_name(q);
   }
   EXPECT_GE(doubtful, 1U) << "two records of one cell and build differ";
   EXPECT_THROW(read_cells("/nowhere/at/all"), UsageError);
@@ -326,8 +314,7 @@ TEST(Allowed, AMissingOptimizerIsWorseAndNamedInOneLine) {
   const GateResult result = compared_without_adam({});
   EXPECT_EQ(result.exit_code, kWorse);
   EXPECT_EQ(result.only_before.size(), 4U);
-  EXPECT_EQ(result.lack, "all 4 of adam");
-  EXPECT_TRUE(has(result.verdict, "NEW lacks 4 cells of BASE (all 4 of adam)")) << result.verdict;
+  EXPECT_TRUE(has(result.verdict, "NEW lacks 4 cells of adam on sine, square")) << result.verdict;
 }
 
 TEST(Allowed, WhatTheListAllowsMayBeMissingAndStandsWithItsReason) {
