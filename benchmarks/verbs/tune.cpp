@@ -197,29 +197,8 @@ std::string tuning_summary(const TuningResult& result) {
                             duration_text(result.outcome.seconds));
 }
 
-// By what decides: the work where any value reaches the target, else what is left.
-reports::Plot tuning_plot(const TunedOption& tuned) {
-  const bool is_reached = std::ranges::any_of(
-      tuned.scores, [](const TuningScore& score) { return std::isfinite(score.work); });
-  reports::Plot plot{
-      .kind = reports::Plot::Kind::lines,
-      .x_label = tuned.option,
-      .y_label = is_reached ? "median work to the target" : "median of what is left at the end",
-      .is_log_x = true,
-      .is_log_y = true};
-  reports::PlotSeries line{.name = fmt::format("{} × {}", tuned.problem, tuned.optimizer)};
-  for (std::size_t i = 0; i < tuned.values.size(); ++i) {
-    const Real value = is_reached ? tuned.scores[i].work : tuned.scores[i].left;
-    line.x.push_back(tuned.values[i]);
-    line.y.push_back(std::isfinite(value) && value > 0 ? value : std::nan(""));
-  }
-  plot.series.push_back(std::move(line));
-  return plot;
-}
-
 // How many pairs were tuned, at which edges the best stand and what ties; one line per pair, twenty
-// at most unless all are wanted, with a plot of its scores in a few characters; for a single pair a
-// larger plot.
+// at most unless all are wanted, with a plot of its scores in a few characters.
 std::string tuning_text(const TuningResult& result, bool lists_all) {
   reports::Section section{
       .id = "tuning", .title = "Tuning", .otherwise = "No pair could be tuned."};
@@ -233,11 +212,7 @@ std::string tuning_text(const TuningResult& result, bool lists_all) {
       "to the target, ✗ not reached; left: median loss or error in x at the end.";
   for (const TunedOption& tuned : result.tuned) table.rows.push_back(tuning_row(tuned));
   if (!table.rows.empty()) section.tables.push_back(std::move(table));
-  std::string text =
-      reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows);
-  const bool is_one = result.tuned.size() == 1 && result.tuned[0].values.size() > 1;
-  if (is_one) text += "\n" + reports::text_plot(tuning_plot(result.tuned[0]));
-  return text;
+  return reports::terminal_section(section, lists_all ? reports::kAllRows : reports::kFewRows);
 }
 
 int run(const TuneArguments& given, Session& session) {

@@ -170,9 +170,6 @@ class Gate {
 
   void offer_times(const ComparedCell& a, const ComparedCell& b) {
     senseless_ += a.senseless_times + b.senseless_times;
-    const bool is_listed = std::ranges::any_of(
-        options_.timed, [&](const std::string& start) { return a.key.starts_with(start); });
-    if (!options_.timed.empty() && !is_listed) return;
     if (std::min(a.seconds.size(), b.seconds.size()) < kLeastRepetitions)
       too_few_ += !a.seconds.empty() && !b.seconds.empty();
     else if (a.processor != b.processor)
@@ -184,10 +181,6 @@ class Gate {
   // The slowest of BASE, which say most and whose choice knows nothing of what changed.
   void choose_timed() {
     if (timed_.size() <= kMostTimed) return;
-    require(options_.timed.empty(), [&] {
-      return fmt::format("time is judged on at most {} cells, {} are listed", kMostTimed,
-                         timed_.size());
-    });
     skipped_ = timed_.size() - kMostTimed;
     std::ranges::stable_sort(timed_, std::greater(),
                              [](const TimedCell& cell) { return median_of(cell.before); });
@@ -219,10 +212,9 @@ class Gate {
                        kLeastRepetitions, kLeastRepetitions));
     remark(senseless_, "timing", "left out: not positive and finite");
     remark(other_processors_, "cell", "timed on another processor: times are not comparable");
-    remark(skipped_, "cell",
-           fmt::format("more with enough repetitions; time is judged on the {} slowest "
-                       "(--time-cells lists others)",
-                       kMostTimed));
+    remark(
+        skipped_, "cell",
+        fmt::format("more with enough repetitions; time is judged on the {} slowest", kMostTimed));
   }
 
   const GateOptions& options_;

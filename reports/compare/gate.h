@@ -93,7 +93,6 @@ std::vector<std::string> changed_parts(const ComparedCell& before, const Compare
 struct GateOptions {
   std::optional<Real> tolerance;  // relative; without it figures must agree bit for bit
   Real least_noise = kLeastNoise;
-  std::vector<std::string> timed;  // beginnings of the keys of cells whose times are judged
   AllowedList allowed;
   bool is_common_only = false;  // NEW may lack any cell
   Listener listener;            // of the records read

@@ -7,7 +7,6 @@
 
 #include "core/json.h"
 #include "reports/compare/gate.h"
-#include "reports/formats/escape.h"
 #include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 

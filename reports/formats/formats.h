@@ -1,8 +1,10 @@
-// The formats of a report that are plain text, one file each: functions of a document.
+// The formats of a report that are plain text, one file each: functions of a document. Foreign text
+// is made safe for the place it goes to.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reports/sections/sections.h"
@@ -19,22 +21,21 @@ std::string terminal_table(const Document& document);  // standings, or every ce
 // Within a hundred columns: what it says, then its tables, so many rows of all of them.
 inline constexpr std::size_t kAllRows = static_cast<std::size_t>(-1), kFewRows = 20;
 std::string terminal_section(const Section& section, std::size_t most_rows = kAllRows);
-std::string terminal_claim(const Section& claim);  // one whole: readings, plots, tables
-std::string text_plot(const Plot& plot);           // lines in letters, for a terminal
-std::string markdown_claim(const Section& claim);
-inline constexpr std::size_t kSummaryRows = 60;  // of a table, so that a summary stays a summary
+std::string terminal_claim(const Section& claim);  // one whole: readings, tables
+inline constexpr std::size_t kSummaryRows = 60;    // of a table, so that a summary stays a summary
 std::string markdown_section(const Section& section, std::size_t most_rows = kSummaryRows);
 
-// Parts of report.json.
-nlohmann::json statistics_json(const Document& document);
-nlohmann::json claims_json(const std::vector<Judgement>& judgements);
+nlohmann::json claims_json(const std::vector<Judgement>& judgements);  // as in report.json
 
-inline constexpr const char* kReportSchema = "isoline.report/1";
-
-// Columns [first, last) beside the names that stand together where `most` have room.
-struct Part {
-  std::size_t first = 0, last = 0;
-};
+// Columns that stand together: those that name the rows, then as many others as have room, or as
+// the table asks for.
+using Part = std::vector<std::size_t>;
 std::vector<Part> table_parts(const Table& table, std::size_t most);
+
+std::string html_text(std::string_view text);
+std::string markdown_text(std::string_view text);
+std::string latex_text(std::string_view text);
+std::string csv_field(std::string_view text);
+std::string terminal_text(std::string_view text);  // no escape sequence passes
 
 }  // namespace isoline::reports

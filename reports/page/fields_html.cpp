@@ -6,8 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "reports/formats/escape.h"
-#include "reports/page/kinds.h"
+#include "reports/formats/formats.h"
 #include "reports/page/page.h"
 #include "reports/sections/words.h"
 

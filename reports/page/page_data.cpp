@@ -11,7 +11,6 @@
 
 #include "core/json.h"
 #include "core/threads.h"
-#include "reports/page/kinds.h"
 #include "reports/page/page.h"
 #include "reports/sections/claim_terms.h"
 #include "reports/sections/origins.h"
@@ -122,7 +121,8 @@ std::string problem_json(const Comparison& c, std::size_t p,
              "\"order\":{},\"lines\":{}",
              json_quoted(problem_name(problem)), json_quoted(problem.name), problem.group(),
              is_ordered(c, p), cells_json(c, p), indices(ranking(c, p)),
-             indices(first_lines(c, p))) +
+             list(shown_at_first(c, ranking(c, p)),
+                  [](std::size_t s) { return std::to_string(s); })) +
          origins_json(c, p) + learned_json(c, p) +
          (fields ? ",\"fields\":" + fields_json(*fields) : "") + "}";
 }

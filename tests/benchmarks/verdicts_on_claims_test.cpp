@@ -10,7 +10,7 @@
 #include "benchmarks/plan/claim_cells.h"
 #include "core/files.h"
 #include "core/random.h"
-#include "reports/formats/escape.h"
+#include "reports/formats/formats.h"
 #include "reports/report.h"
 #include "reports/sections/sections.h"
 #include "tests/benchmarks/builtin.h"

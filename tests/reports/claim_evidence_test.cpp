@@ -257,27 +257,5 @@ TEST(ClaimsOfTheJson, HoldTheEvidenceByTheSchema) {
   EXPECT_EQ(claim.at("command"), "./isoline claims twice --out results/twice");
 }
 
-// From (1, 1) to (100, 100) on logarithmic axes: from corner to corner, but for the air above and
-// below; and the bar at the right end stands over the letters there.
-TEST(TextPlot, DrawsLinesInLettersAndWhatWasPublished) {
-  Plot plot{.kind = Plot::Kind::lines, .y_label = "error", .is_log_x = true, .is_log_y = true};
-  plot.series = {{{}, "sip", {1, 10, 100}, {1, 10, 100}, {}, {}}};
-  plot.published = {{{}, "published", {100}, {3}, {2}, {5}}};
-  const std::string text = text_plot(plot);
-  std::vector<std::string> lines;
-  for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
-    lines.push_back(text.substr(at, end - at));
-  const auto row_of = [&](const std::string& part) {
-    return std::ranges::find_if(
-               lines, [&](const auto& line) { return line.find(part) != std::string::npos; }) -
-           lines.begin();
-  };
-  EXPECT_EQ(lines[1].back(), 'a') << text;  // the highest row, at the right
-  EXPECT_EQ(lines[15].substr(lines[15].find("│"), 4), "│a") << text;
-  EXPECT_LT(row_of("━━"), 15) << text;
-  EXPECT_GT(row_of("━━"), row_of("░"));
-  EXPECT_NE(text.find("a sip"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace isoline::reports

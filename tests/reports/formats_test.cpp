@@ -1,4 +1,6 @@
 // The formats: foreign text is harmless in each, and all print the same figure.
+#include "reports/formats/formats.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 
 #include "core/json.h"
 #include "core/records/schema.h"
-#include "reports/formats/escape.h"
 #include "reports/report.h"
 #include "reports/sections/words.h"
 #include "tests/reports/fixture.h"

@@ -8,7 +8,6 @@
 
 #include "core/results/labels.h"
 #include "core/results/ranking.h"
-#include "reports/page/kinds.h"
 #include "reports/report.h"
 #include "reports/sections/ranking.h"
 #include "tests/reports/fixture.h"

@@ -151,7 +151,7 @@ TEST(Page, ShowsEightLinesOfAProblemAtFirst) {
     study.sheets.push_back(std::move(sheet));
   }
   const Comparison c = compare_optimizers(study);
-  EXPECT_EQ(first_lines(c, 0).size(), 8U);
+  EXPECT_EQ(shown_at_first(c, ranking(c, 0)).size(), 8U);
   const std::string svg = curves_html(c, 0);
   std::size_t hidden = 0;
   for (std::size_t at = 0; (at = svg.find("class=off", at)) != std::string::npos; ++at) ++hidden;
