@@ -1,4 +1,4 @@
-// isoline export DIR... --format csv|coco|bencher --out PATH: results in the forms of others.
+// isoline export DIR... --format csv|coco --out PATH: results in the forms of others.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "core/files.h"
 #include "core/text.h"
-#include "reports/exports/exports.h"
+#include "reports/formats/formats.h"
 #include "reports/sections/words.h"
 
 namespace isoline::benchmarks {
@@ -24,10 +24,8 @@ struct ExportArguments {
 void declare(VerbArguments& verb, ExportArguments& given) {
   verb.texts("DIR", given.folders, kFolders).required();
   verb.text("--format", given.format,
-            "csv: one row per stored point; coco: data folders for its post-processing; bencher: "
-            "Bencher "
-            "Metric Format")
-      .one_of({reports::kExportNames.begin(), reports::kExportNames.end()})
+            "csv: one row per stored point; coco: data folders for its post-processing")
+      .one_of({"csv", "coco"})
       .shown();
   verb.text("--out", given.out, "Output: a file; for coco, a new folder").required();
 }
@@ -41,7 +39,7 @@ void write_folder(const fs::path& out, const reports::CocoExport& coco) {
   std::error_code unknown;
   require(!is_there(out) || (fs::is_directory(out, unknown) && names_in(out).empty()),
           [&] { return fmt::format("{} exists already: export into a new folder", out.string()); });
-  for (const reports::ExportedFile& file : coco.files) write_file(out / file.name, file.text);
+  for (const auto& [name, text] : coco.files) write_file(out / name, text);
   for (const std::string& sentence : coco.left_out)
     say(stderr, fmt::format("left out: {}\n", sentence));
 }
@@ -57,8 +55,7 @@ int run(const ExportArguments& given, Session&) {
   if (given.format == "coco")
     write_folder(given.out, reports::coco_export(comparison));
   else
-    write_file(given.out, given.format == "csv" ? reports::curves_csv(comparison)
-                                                : reports::bencher_json(comparison));
+    write_file(given.out, reports::curves_csv(comparison));
   say(stdout, fmt::format("{}: {} as {}\n", given.out, reports::counted(study.runs.size(), "run"),
                           given.format));
   return kGood;
@@ -70,17 +67,12 @@ void register_export(VerbRegistry& registry) {
   registry.add(verb_of(
       {.name = "export",
        .help_position = 120,
-       .summary = "Write curves as CSV, as COCO data, or as Bencher metrics",
+       .summary = "Write curves as CSV or as COCO data",
        .examples =
            "  isoline export results/quick --out curves.csv             one row per stored point\n"
            "  isoline export results/quick --format coco --out exdata   for COCO's "
-           "post-processing\n"
-           "  isoline export results.tar.gz --format bencher --out metrics.json",
-       .notes =
-           "Numbers survive the round trip exactly, including inf, -inf and nan. Bencher's format "
-           "has no\n"
-           "infinity: it omits values that half of the runs do not reach; reached-1e-6 counts "
-           "those that do."},
+           "post-processing",
+       .notes = "Numbers survive the round trip exactly, including inf, -inf and nan."},
       declare, run));
 }
 

@@ -299,15 +299,9 @@ Differences coarse_differences(const ComparedCell& a, const ComparedCell& b) {
 
 namespace {
 
-// "1e-4", "1e4", "0.9": the shorter of two ways.
-std::string short_text(const OptionValue& value) {
+std::string value_text(const OptionValue& value) {
   const Real* const number = std::get_if<Real>(&value);
-  std::string plain = option_text(value);
-  if (number == nullptr || !std::isfinite(*number) || *number == 0) return plain;
-  const int exponent = static_cast<int>(std::floor(std::log10(std::abs(*number))));
-  const std::string scientific = fmt::format(
-      "{}e{}", std::stod(fmt::format("{:.15g}", *number * std::pow(10, -exponent))), exponent);
-  return scientific.size() < plain.size() ? scientific : plain;
+  return number == nullptr ? option_text(value) : exact_figure(*number);
 }
 
 bool is_set_in(const std::string& spec, const std::string& option) {
@@ -327,13 +321,13 @@ void add_changes(const Component& a, const Component& b, std::set<std::string>& 
     if (old != nullptr && now != nullptr ? *old == *now : option_text(*(old ? old : now)).empty())
       continue;
     const std::string change =
-        old == nullptr ? fmt::format("new option {} {}", option, short_text(*now))
+        old == nullptr ? fmt::format("new option {} {}", option, value_text(*now))
         : now == nullptr
-            ? fmt::format("option {} was removed; it was {}", option, short_text(*old))
+            ? fmt::format("option {} was removed; it was {}", option, value_text(*old))
             : fmt::format(
                   "{} {} {} → {}",
                   is_set_in(a.spec, option) && is_set_in(b.spec, option) ? "tabled" : "default of",
-                  option, short_text(*old), short_text(*now));
+                  option, value_text(*old), value_text(*now));
     changes.insert(a.name + ": " + change);
   }
 }

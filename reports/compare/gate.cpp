@@ -225,24 +225,19 @@ class Gate {
   GateResult result_;
 };
 
-// "26 cells of adam, most in sine × adam, seed 0: loss 1e-3 → 2".
+// "26 cells of adam on sine, most in sine × adam, seed 0: loss 1e-3 → 2".
 std::string worst_text(const GateResult& result, Change change) {
-  const auto worst = std::ranges::find(result.differences, change, &Difference::change);
-  if (worst == result.differences.end()) return "";
-  std::set<std::string> cells, optimizers;
-  for (const Difference& difference : result.differences)
-    if (difference.change == change) {
-      cells.insert(difference.key);
-      optimizers.insert(difference.optimizer);
-    }
-  constexpr std::size_t kMost = 12;
-  std::vector<std::string> names(optimizers.begin(), optimizers.end());
-  if (names.size() > kMost) {
-    names.resize(kMost);
-    names.back() += fmt::format(" and {} more", optimizers.size() - kMost);
+  const Difference* worst = nullptr;
+  CauseGroup group;
+  for (const Difference& difference : result.differences) {  // worst first
+    if (difference.change != change) continue;
+    if (worst == nullptr) worst = &difference;
+    group.cells.insert(difference.key);
+    group.problems.insert(difference.problem);
+    group.optimizers.insert(difference.optimizer);
   }
-  return fmt::format("{} of {}, most in {}: {}", counted(cells.size(), "cell"), joined(names),
-                     worst->title, step_text(*worst));
+  if (worst == nullptr) return "";
+  return fmt::format("{}, most in {}: {}", cells_text(group), worst->title, step_text(*worst));
 }
 
 std::string time_cause(const std::vector<TimeVerdict>& times, int change, const char* word) {

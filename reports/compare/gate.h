@@ -146,7 +146,7 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
 // The summary, then so many lines of tables as a reader reads, or all.
 std::string gate_terminal(const GateResult& result, bool lists_all = false);
 std::string gate_markdown(const GateResult& result);
-std::string gate_json(const GateResult& result);  // schema isoline.comparison/1
+std::string gate_json(const GateResult& result);  // the same tables: isoline.comparison/2
 
 // Pieces of these texts.
 std::string step_text(const Difference& difference);  // "loss 1e-3 → 2e-3"

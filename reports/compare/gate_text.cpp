@@ -105,37 +105,31 @@ Section gate_section(const GateResult& result, bool lists_all) {
                          [&](const Difference& one) { return one.cause == cause.cause; });
     add_table(section, "Differences: " + cause.cause, {"", "cell", "figure", "change"}, "llll", its,
               [](const Difference& one) -> Row {
-                return {change_name(one.change), one.title, step_text(one), remainder_text(one)};
+                return {change_name(one.change),
+                        one.title,
+                        step_text(one),
+                        {remainder_text(one), {{"relative", one.relative}}}};
               });
   }
   add_table(section, "Builds that differ", {"part"}, "", result.builds, line);
   add_table(section, "Options that differ", {"option"}, "", result.settings, line);
-  add_table(section, "Time, NEW over BASE",
-            {"", "cell", "ratio (95 % interval)", "noise", "p, adjusted", "runs"}, "llrrrr",
-            result.times, [](const TimeVerdict& time) -> Row {
-              return {time_change_name(time.change),
-                      time.title,
-                      ratio_text(time.ratio),
-                      fmt::format("±{}", percent(time.noise)),
-                      fmt::format("{:.2g}", time.adjusted),
-                      fmt::format("{}, {}", time.n_before, time.n_after)};
-            });
+  add_table(
+      section, "Time, NEW over BASE",
+      {"", "cell", "ratio (95 % interval)", "noise", "p, adjusted", "runs"}, "llrrrr", result.times,
+      [](const TimeVerdict& time) -> Row {
+        return {time_change_name(time.change),
+                time.title,
+                {ratio_text(time.ratio),
+                 {{"ratio", time.ratio.ratio}, {"low", time.ratio.low}, {"high", time.ratio.high}}},
+                fmt::format("±{}", percent(time.noise)),
+                fmt::format("{:.2g}", time.adjusted),
+                fmt::format("{}, {}", time.n_before, time.n_after)};
+      });
   add_table(section, "Only in BASE", {"cell"}, "", result.only_before, line);
   add_table(section, "Allowed", {"cell", "reason"}, "ll", result.allowed, reasoned);
   add_table(section, "Not comparable", {"cell", "reason"}, "ll", result.incomparable, reasoned);
   add_table(section, "Only in NEW", {"cell"}, "", result.only_after, line);
   return section;
-}
-
-template <class Value, class ToJson>
-Json json_list(const std::vector<Value>& values, ToJson to_json) {
-  Json list = Json::array();
-  for (const Value& value : values) list.push_back(to_json(value));
-  return list;
-}
-
-Json reasoned_json(const ReasonedCell& one) {
-  return {{"title", one.title}, {"reason", one.reason}};
 }
 
 }  // namespace
@@ -182,57 +176,13 @@ std::string gate_markdown(const GateResult& result) {
 }
 
 std::string gate_json(const GateResult& result) {
-  const auto difference = [](const Difference& d) -> Json {
-    return {{"change", change_name(d.change)},
-            {"cell", d.key},
-            {"title", d.title},
-            {"optimizer", d.optimizer},
-            {"figure", d.what},
-            {"before", d.before},
-            {"after", d.after},
-            {"relative", json_number(d.relative)},
-            {"note", d.note},
-            {"problem", d.problem},
-            {"cause", d.cause}};
-  };
-  const auto time = [](const TimeVerdict& t) -> Json {
-    return {{"change", time_change_name(t.change)},
-            {"cell", t.key},
-            {"title", t.title},
-            {"n", {t.n_before, t.n_after}},
-            {"ratio", json_number(t.ratio.ratio)},
-            {"low", json_number(t.ratio.low)},
-            {"high", json_number(t.ratio.high)},
-            {"p", t.p},
-            {"adjusted_p", t.adjusted},
-            {"noise", json_number(t.noise)}};
-  };
-  const auto cause = [](const CauseGroup& group) -> Json {
-    Json json{{"cause", group.cause},
-              {"cells", group.cells.size()},
-              {"optimizers", group.optimizers},
-              {"problems", group.problems},
-              {"not_comparable", group.incomparable}};
-    for (const Change change : {Change::worse, Change::better, Change::changed})
-      json[change_name(change)] = group.count(change);
-    return json;
-  };
-  const Json json{{"schema", "isoline.comparison/1"},
-                  {"verdict", result.verdict},
-                  {"exit_code", static_cast<int>(result.exit_code)},
-                  {"joined", result.joined},
-                  {"equal", result.equal},
-                  {"chaotic", result.chaotic},
-                  {"builds", result.builds},
-                  {"options", result.settings},
-                  {"differences", json_list(result.differences, difference)},
-                  {"causes", json_list(result.causes, cause)},
-                  {"times", json_list(result.times, time)},
-                  {"not_comparable", json_list(result.incomparable, reasoned_json)},
-                  {"only_in_base", result.only_before},
-                  {"allowed", json_list(result.allowed, reasoned_json)},
-                  {"only_in_new", result.only_after},
-                  {"remarks", result.remarks}};
+  Json json = section_json(gate_section(result, true));
+  json.update({{"schema", "isoline.comparison/2"},
+               {"verdict", result.verdict},
+               {"exit_code", static_cast<int>(result.exit_code)},
+               {"joined", result.joined},
+               {"equal", result.equal},
+               {"chaotic", result.chaotic}});
   return json_text(json, 1) + "\n";
 }
 

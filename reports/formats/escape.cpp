@@ -73,14 +73,17 @@ std::string latex_text(std::string_view text) {
   return escaped(ascii, kLatex);
 }
 
-std::string csv_field(std::string_view text) {
-  std::string field = escaped(text, {});
-  const bool is_formula = !field.empty() && std::string_view("=+-@").find(field[0]) < 4;
-  if (is_formula) field.insert(0, 1, '\'');  // a spreadsheet would run it
-  if (field.find_first_of(",\"'") == std::string::npos) return field;
+std::string exact_csv_field(std::string_view text) {
+  if (text.find_first_of(",\"'\r\n") == std::string_view::npos) return std::string(text);
   std::string quoted = "\"";
-  for (const char letter : field) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
   return quoted + '"';
+}
+
+std::string csv_field(std::string_view text) {
+  const std::string field = escaped(text, {});
+  const bool is_formula = !field.empty() && std::string_view("=+-@").find(field[0]) < 4;
+  return exact_csv_field(is_formula ? "'" + field : field);
 }
 
 std::string terminal_text(std::string_view text) {

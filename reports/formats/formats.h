@@ -2,6 +2,7 @@
 // is made safe for the place it goes to.
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -17,6 +18,21 @@ std::string csv_report(const Document& document);       // one row a run
 std::string statistics_csv(const Document& document);   // table,row,column,value
 std::string json_report(const Document& document);      // schema isoline.report/1
 
+// Tidy CSV by RFC 4180, lines ended by CRLF: a row a kept point of each run, with what was asked
+// and how it ended in every row; a run that kept none has one row without figures. Numbers read
+// back as the same numbers; "inf", "-inf" and "nan" stand for themselves.
+std::string curves_csv(const Comparison& comparison);
+
+// Data folders of COCO, which its post-processing reads: for each method FOLDER/isoline_fN.info and
+// FOLDER/data_fN/isoline_fN_DIMn.dat and .tdat. Problems are its functions, numbered as
+// functions.csv says; seed s is its instance s + 1; an evaluation is one forward solve of declared
+// work, counted from 1, the start. Its values are f − f_L.
+struct CocoExport {
+  std::map<std::string, std::string> files;  // the text of each, by its name below the folder
+  std::vector<std::string> left_out;         // a sentence each
+};
+CocoExport coco_export(const Comparison& comparison);
+
 std::string terminal_table(const Document& document);  // standings, or every cell of a small study
 // Within a hundred columns: what it says, then its tables, so many rows of all of them.
 inline constexpr std::size_t kAllRows = static_cast<std::size_t>(-1), kFewRows = 20;
@@ -25,6 +41,7 @@ std::string terminal_claim(const Section& claim);  // one whole: readings, table
 inline constexpr std::size_t kSummaryRows = 60;    // of a table, so that a summary stays a summary
 std::string markdown_section(const Section& section, std::size_t most_rows = kSummaryRows);
 
+nlohmann::json section_json(const Section& section);                   // its sentences and tables
 nlohmann::json claims_json(const std::vector<Judgement>& judgements);  // as in report.json
 
 // Columns that stand together: those that name the rows, then as many others as have room, or as
@@ -35,7 +52,8 @@ std::vector<Part> table_parts(const Table& table, std::size_t most);
 std::string html_text(std::string_view text);
 std::string markdown_text(std::string_view text);
 std::string latex_text(std::string_view text);
-std::string csv_field(std::string_view text);
-std::string terminal_text(std::string_view text);  // no escape sequence passes
+std::string csv_field(std::string_view text);        // no spreadsheet runs it
+std::string exact_csv_field(std::string_view text);  // to the byte, for programs
+std::string terminal_text(std::string_view text);    // no escape sequence passes
 
 }  // namespace isoline::reports

@@ -312,6 +312,12 @@ Json claim_json(const Judgement& judgement) {
 
 }  // namespace
 
+Json section_json(const Section& section) {
+  return {{"title", section.title},
+          {"readings", list_of(section.readings, [](const Reading& one) { return one.text; })},
+          {"tables", list_of(section.tables, table_json)}};
+}
+
 Json claims_json(const std::vector<Judgement>& judgements) {
   return list_of(judgements, claim_json);
 }

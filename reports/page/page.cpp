@@ -46,26 +46,27 @@ std::string remarks_html(const Document& document) {
   return html.empty() ? "" : "<ul class=remarks>" + html + "</ul>";
 }
 
-std::string day_of(const Record& record) {
+// The suites, and the last day a run began.
+std::vector<std::string> origin_of(const Comparison& c) {
   constexpr std::size_t kDay = 10;
-  return record.provenance.run.started.substr(0, kDay);
+  std::vector<std::string> parts = c.study->plan.suites;
+  std::string day;
+  for (const Run& run : c.runs)
+    day = std::max(day, run.record->provenance.run.started.substr(0, kDay));
+  if (!day.empty()) parts.push_back(day);
+  return parts;
 }
 
-// "quick · 2026-11-22 · 1a2b3c4 · 38 optimizers on …": the suites, the last day a run began, the
-// commits of the programs that ran.
+// "quick · 2026-11-22 · 1a2b3c4 · 38 optimizers on …", with the commits of the programs that ran.
 std::string head_html(const Document& document) {
   const Comparison& c = document.comparison;
   constexpr std::size_t kShort = 7;
-  std::vector<std::string> parts = c.study->plan.suites;
-  std::string day;
+  std::vector<std::string> parts = origin_of(c);
   std::set<std::string> commits;
-  for (const Run& run : c.runs) {
-    const Provenance& from = run.record->provenance;
-    day = std::max(day, day_of(*run.record));
-    if (!run.record->imported && !from.build->commit.empty())
-      commits.insert(from.build->commit.substr(0, kShort));
-  }
-  if (!day.empty()) parts.push_back(day);
+  for (const Run& run : c.runs)
+    if (const auto& build = *run.record->provenance.build;
+        !run.record->imported && !build.commit.empty())
+      commits.insert(build.commit.substr(0, kShort));
   if (commits.size() == 1) parts.push_back(*commits.begin());
   if (commits.size() > 1) parts.push_back(counted(commits.size(), "commit"));
   parts.push_back(document.headline);
@@ -73,12 +74,8 @@ std::string head_html(const Document& document) {
 }
 
 // "quick, 2026-11-22": what tells two tabs of a browser apart.
-std::string title_of(const Document& document) {
-  const Comparison& c = document.comparison;
-  std::vector<std::string> parts = c.study->plan.suites;
-  std::string day;
-  for (const Run& run : c.runs) day = std::max(day, day_of(*run.record));
-  if (!day.empty()) parts.push_back(day);
+std::string title_of(const Comparison& c) {
+  const std::vector<std::string> parts = origin_of(c);
   return (parts.empty() ? "" : joined(parts) + " · ") + "Isoline";
 }
 
@@ -192,7 +189,7 @@ std::string marks_html(const OptimizerAxis& axis) {
 std::string html_report(const Document& document) {
   const Comparison& c = document.comparison;
   const AllFields fields = all_found_fields(c);
-  Parts parts{{"title", html_text(title_of(document))},
+  Parts parts{{"title", html_text(title_of(c))},
               {"style", std::string(embedded_page_css()) + kind_rules(c)},
               {"scripts", std::string(embedded_page_js())},
               {"tau", tau_name(c)},

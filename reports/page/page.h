@@ -62,6 +62,15 @@ std::string fields_json(const FoundFields& all);
 std::string page_data(const Document& document, const AllFields& fields);
 std::string runs_address(const Document& document);  // of the folder of records, from the page
 std::string json_quoted(const std::string& text);
+template <class Range, class Item>
+std::string json_list(Range&& range, Item item) {  // of whatever `item` writes
+  std::string text = "[";
+  for (const auto& one : range) {
+    if (text.size() > 1) text += ',';
+    text += item(one);
+  }
+  return text + "]";
+}
 // Those that the page can be switched to, in the order of its data.
 std::vector<Measure> measures_of(const Comparison& comparison);
 // Those of the 51 targets that the page holds medians to: all, but of a study too large for that

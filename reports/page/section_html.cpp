@@ -38,6 +38,7 @@ std::string cell_html(const Table& table, const TableCell& cell, std::size_t col
   tag += about(table.column_topics, column);
   if (!cell.note.empty()) tag += fmt::format(" title=\"{}\"", html_text(cell.note));
   std::string text = html_text(cell.text);
+  if (align == 'b' && !text.empty()) text = command_button(cell.text);
   if (align == 'c' && !text.empty()) text = "<code>" + text + "</code>";
   if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", html_text(cell.link), text);
   if (cell.is_best) text = "<b>" + text + "</b>";
@@ -187,68 +188,29 @@ std::string claims_html(const Document& document) {
   return html + "</div>";
 }
 
-// The table of all cells. Scripts sort and filter it; without scripts it is complete.
-
 namespace {
-
-std::string spread_cell(const Spread& spread, const char* kind = "") {
-  if (spread.n == 0) return "<td>";
-  const std::string range = range_figure(spread, reached_figure);
-  return fmt::format("<td{}>{}{}", kind, reached_figure(spread.median),
-                     range.empty() ? "" : "<small>" + range + "</small>");
-}
-
-std::string time_cell(const Spread& seconds, bool is_timed_alone) {
-  const std::string range = range_figure(seconds, milliseconds);
-  return fmt::format("<td>{}{}{}", milliseconds(seconds.median),
-                     is_timed_alone || !seconds.is_solved() ? "" : "≈",
-                     range.empty() ? "" : "<small>" + range + "</small>");
-}
 
 // The command that repeats a cell: all its seeds where these follow each other and were asked for
 // alike, else the first.
 std::string cell_command(const Comparison& c, const Cell& cell) {
   const Request& first = c.runs[cell.runs.front()].record->request;
+  std::string command = rerun_command(first);
   std::uint64_t next = first.seed;
   for (const std::size_t run : cell.runs) {
     const Request& request = c.runs[run].record->request;
-    const bool is_alike = request.optimizer.spec == first.optimizer.spec &&
-                          budget_options(request) == budget_options(first);
-    if (request.seed != next++ || !is_alike) return rerun_command(first);
+    if (request.seed != next++ || request.optimizer.spec != first.optimizer.spec ||
+        budget_options(request) != budget_options(first))
+      return command;
   }
   const std::string one = fmt::format("--seeds ={} ", first.seed);
-  std::string command = rerun_command(first);
-  if (next - 1 > first.seed)
-    command.replace(command.find(one), one.size(),
-                    fmt::format("--seeds {}..{} ", first.seed, next - 1));
-  return command;
-}
-
-std::string detail_row(const Comparison& c, std::size_t p, std::size_t s) {
-  const Cell& cell = c.cell(p, s);
-  std::string row = fmt::format(
-      "<tr data-p={} data-s={}><th>{}<th>{}{}", p, s, html_text(problem_name(c.problems[p])),
-      html_text(setting_text(c, p, s)), cell.privileges.empty() ? "" : "<sup>†</sup>");
-  if (!cell.is_measured()) {
-    row += cell.runs.empty() ? "<td>" : "<td>n/a";
-    for (int empty = 0; empty < 8; ++empty) row += "<td>";
-    return row + fmt::format("<td>{}<td>\n", cell.runs.empty()
-                                                 ? "missing"
-                                                 : "n/a: " + html_text(cell.inapplicable));
-  }
-  row += fmt::format("<td>{}", count_text(cell, kTightest));
-  const Measure by = c.yardstick.by == Measure::time ? Measure::work : c.yardstick.by;
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += spread_cell(cell.taken[by][t], cell.is_best[t] ? " class=best" : "");
-  for (std::size_t t = 0; t < kTolerances.size(); ++t)
-    row += time_cell(cell.taken[Measure::time][t], cell.is_timed_alone);
-  row += spread_cell(cell.loss) + spread_cell(cell.x_error);
-  return row + fmt::format("<td>{}<td>{}\n", status_text(cell.statuses),
-                           is_large(c) ? "" : command_button(cell_command(c, cell)));
+  if (cell.runs.size() == 1) return command;
+  return command.replace(command.find(one), one.size(),
+                         fmt::format("--seeds {}..{} ", first.seed, next - 1));
 }
 
 }  // namespace
 
+// The table of all cells. Scripts sort and filter it; without scripts it is complete.
 std::string details_html(const Comparison& c) {
   constexpr std::size_t kMost = 20'000;  // rows of some 200 bytes
   if (c.problems.size() * c.optimizers.size() > kMost)
@@ -256,23 +218,47 @@ std::string details_html(const Comparison& c) {
         "<p class=lead>Of more than {} cells there is no table here: all of them stand "
         "in report.csv.</p>",
         kMost);
-  std::string rows;
-  for (std::size_t p = 0; p < c.problems.size(); ++p)
-    for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-      if (c.cell(p, s).planned > 0) rows += detail_row(c, p, s);
-  std::string html = fmt::format(
-      "<table class=sortable id=detail-table><thead><tr><th scope=col>problem<th scope=col>"
-      "optimizer<th scope=col>runs<br>to {}",
-      tau_name(c));
-  const std::string_view counted =
-      c.yardstick.by == Measure::time ? "work" : name_of(c.yardstick.by);
-  for (const std::string_view what : {counted, std::string_view("time, ms,")})
+  const auto spread_cell = [](const Spread& spread, std::string (*text)(Real)) {
+    TableCell cell = spread.n == 0 ? "" : text(spread.median);
+    cell.remark = range_figure(spread, text);
+    return cell;
+  };
+  const Measure by = c.yardstick.by == Measure::time ? Measure::work : c.yardstick.by;
+  Table table{.columns = {"problem", "optimizer", "runs to " + tau_name(c)},
+              .align = "llrrrrrrrrrlb",
+              .names = 2};
+  for (const std::string_view what : {name_of(by), std::string_view("time, ms,")})
     for (const Tolerance& tolerance : c.yardstick.tolerances)
-      html += fmt::format("<th scope=col>{}<br>to {}", what, tolerance.name);
-  html +=
-      "<th scope=col>final loss<th scope=col>error in x<th scope=col>how the runs ended<th "
-      "scope=col>again<tbody>\n";
-  return html + rows + "</table>";
+      table.columns.push_back(fmt::format("{} to {}", what, tolerance.name));
+  for (const char* last : {"final loss", "error in x", "how the runs ended", "again"})
+    table.columns.emplace_back(last);
+  for (std::size_t p = 0; p < c.problems.size(); ++p)
+    for (std::size_t s = 0; s < c.optimizers.size(); ++s) {
+      const Cell& cell = c.cell(p, s);
+      if (cell.planned == 0) continue;
+      table.row_topics.push_back({.optimizer = s, .problem = p});
+      auto& row = table.rows.emplace_back();
+      row = {problem_name(c.problems[p]),
+             setting_text(c, p, s) + (cell.privileges.empty() ? "" : " †")};
+      if (!cell.is_measured()) {
+        row.push_back(cell.runs.empty() ? "missing" : "n/a: " + cell.inapplicable);
+        continue;
+      }
+      row.push_back(count_text(cell, kTightest));
+      for (std::size_t t = 0; t < kTolerances.size(); ++t) {
+        row.push_back(spread_cell(cell.taken[by][t], reached_figure));
+        row.back().is_best = cell.is_best[t];
+      }
+      for (const Spread& seconds : cell.taken[Measure::time]) {
+        row.push_back(spread_cell(seconds, milliseconds));
+        if (!cell.is_timed_alone && seconds.is_solved()) row.back().text += "≈";
+      }
+      row.push_back(spread_cell(cell.loss, reached_figure));
+      row.push_back(spread_cell(cell.x_error, reached_figure));
+      row.push_back(status_text(cell.statuses));
+      row.push_back(is_large(c) ? "" : cell_command(c, cell));
+    }
+  return "<table class=sortable id=detail-table>" + rows_html(table) + "</table>";
 }
 
 // The grid of measured properties, a row a method, from which its card opens.

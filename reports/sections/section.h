@@ -48,7 +48,7 @@ struct Table {
   Topic topic = {};
   std::vector<std::string> meanings = {};  // of the columns, for a new reader
   std::string align =
-      {};  // a letter a column: r figures, l words, p sentences, c commands; else lr…
+      {};  // a letter a column: r figures, l words, p sentences, c commands, b ones to copy
   bool is_folded = false;  // behind its reading, where a format can fold
   std::size_t names = 1;   // columns that name the row, repeated in each part of a wide table
   std::vector<std::size_t> parts = {};  // how many others stand together where room is narrow

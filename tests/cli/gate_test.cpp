@@ -78,13 +78,13 @@ TEST_F(PlantedFault, InADefaultFailsTheGate) {
     record.build = "fedcba9876543210";
   });
   expect_fault(kWorse,
-               "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam, most in ");
+               "worse: adam: default of epsilon 1e-8 → 0.01 (2 cells); 2 cells of adam on ");
   EXPECT_TRUE(contains(gate().out, "another source of the optimizer (2 cells of adam on "));
 }
 
 TEST_F(PlantedFault, InAFormulaFailsTheGate) {
   change_records("gd", [](Record& record) { end_at(record, record.summary.loss * (1 + 1e-5)); });
-  expect_fault(kWorse, "worse: 2 cells of gd, most in ");
+  expect_fault(kWorse, "worse: 2 cells of gd on ");
 }
 
 TEST_F(PlantedFault, AMissingOptimizerFailsTheGate) {

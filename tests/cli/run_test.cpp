@@ -210,7 +210,8 @@ TEST_F(Run, CompareAndMergeSeeOneChangedCell) {
   }
   const Finished worse = shell("./isoline compare again out --json");
   EXPECT_EQ(worse.exit_code, 2) << worse.out;
-  EXPECT_EQ(parse_json(worse.out, "comparison").at("differences").size(), 1U) << worse.out;
+  EXPECT_EQ(parse_json(worse.out, "comparison").at("tables").at(0).at("rows").size(), 1U)
+      << worse.out;
   const Finished conflict = shell("./isoline merge out again --out torn");
   EXPECT_EQ(conflict.exit_code, 2);
   EXPECT_TRUE(contains(conflict.err, "brown-dennis × gd")) << conflict.err;

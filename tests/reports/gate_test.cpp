@@ -150,7 +150,7 @@ TEST(Gate, AllFormatsTellTheSame) {
   const Json schema = read_json(kTree / "benchmarks/schemas/comparison.json");
   const Json json = parse_json(gate_json(result), "comparison");
   EXPECT_EQ(schema_violations(json, schema), std::vector<std::string>());
-  EXPECT_EQ(json["differences"][0]["figure"], "loss");
+  EXPECT_EQ(json["tables"][0]["rows"][0][1], "square × gd, seed 5");
 }
 
 // Declared and undeclared minima, a second build, a cell in dispute, and what is no record.

@@ -67,7 +67,7 @@ TEST(Page, RowsSectionsAndCellsNameWhatTheyAreAbout) {
   const std::string page = html_report(document_of(compare_optimizers(study)));
   for (const char* part : {"<article class=\"problem one\" id=problem-1 data-p=1>",
                            "<article class=\"optimizer one\" id=optimizer-1 data-s=1>",
-                           "<tr data-p=1 data-s=1><th>b", "<g data-s=1", "<tr data-s=1"})
+                           "<tr data-s=1 data-p=1><th scope=row>b", "<g data-s=1", "<tr data-s=1"})
     EXPECT_TRUE(has(page, part)) << part;
 }
 

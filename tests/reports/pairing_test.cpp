@@ -52,9 +52,9 @@ TEST(Pairing, AChangedDefaultIsComparedAndNamed) {
     EXPECT_EQ(result.exit_code, kWorse) << gate_terminal(result);
     ASSERT_EQ(result.settings.size(), 1U);
     EXPECT_TRUE(result.settings[0].starts_with(
-        "levenberg-marquardt: default of initial-damping 1e-4 → 1e4 (4 cells"))
+        "levenberg-marquardt: default of initial-damping 0.0001 → 10000 (4 cells"))
         << result.settings[0];
-    EXPECT_TRUE(has(result.verdict, "default of initial-damping 1e-4 → 1e4")) << result.verdict;
+    EXPECT_TRUE(has(result.verdict, "default of initial-damping 0.0001 → 10000")) << result.verdict;
     ASSERT_EQ(result.causes.size(), 1U);
     EXPECT_EQ(result.causes[0].cells.size(), 4U);
   }

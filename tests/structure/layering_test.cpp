@@ -36,8 +36,6 @@ const std::map<std::string, Set> kAllowed = {
     {"reports/read", {"core", "core/records", "core/results"}},
     {"reports/sections", {"core", "core/records", "reports/read", "core/results"}},
     {"reports/formats", {"core", "core/records", "core/results", "reports/sections"}},
-    {"reports/exports",
-     {"core", "core/records", "core/results", "reports/read", "reports/sections"}},
     {"reports/page",
      {"core", "core/records", "core/results", "reports/read", "reports/sections",
       "reports/formats"}},
