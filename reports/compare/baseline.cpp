@@ -59,7 +59,7 @@ Status status_named(const std::string& name) {
   return *status;
 }
 
-// Of work to the targets it keeps that to the tolerances.
+// Works to the tolerances stand for those to all targets.
 std::vector<std::size_t> kept_figures(const FigureKind& kind) {
   std::vector<std::size_t> kept;
   for (std::size_t t = 0; t < std::min(kind.count, kTolerances.size()); ++t)
@@ -130,7 +130,7 @@ Json cell_json(const ComparedCell& cell, const std::vector<ComparedCell>& others
                {"build", cell.build}};
   for (const auto& [name, digest] : *cell.parts)
     json["parts"].push_back(tables["parts"].place(Json{name, digest}));
-  json["criterion"] = tables["criteria"].place(criterion_json(*cell.criterion));
+  json["criterion"] = tables["criteria"].place(criterion_json(cell.criterion));
   if (!cell.privileges.empty()) json["privileges"] = cell.privileges;
   if (cell.is_cut) json["nondeterministic"] = true;
   if (!cell.trace.empty()) json["trace"] = cell.trace;
@@ -170,12 +170,8 @@ ComparedCell cell_from_json(const Json& json, const Json& file) {
     parts[part.at(0).get<std::string>()] = part.at(1).get<std::string>();
   }
   cell.parts = shared_parts(parts);
-  cell.aim = aim_of(json.value("aim", std::string("loss"))).value_or(Aim::loss);  // older files
-  if (json.contains("criterion")) {
-    cell.criterion = criterion_from_json(row("criteria", json.at("criterion")));
-    cell.aim = cell.criterion->aim;
-    cell.privileges = json.value("privileges", std::vector<std::string>());
-  }
+  cell.criterion = criterion_from_json(row("criteria", json.at("criterion")));
+  cell.privileges = json.value("privileges", std::vector<std::string>());
   cell.is_cut = json.value("nondeterministic", false);
   cell.trace = json.value("trace", std::string());
   cell.rest = json.value("rest", std::string());

@@ -106,7 +106,6 @@ ComparedCell cell_of(const Record& record) {
                     .status = record.status,
                     .build = record.build,
                     .parts = shared_parts(record.build_parts),
-                    .aim = record.aim,
                     .criterion = criterion_of(record),
                     .privileges = record.privileges};
   cell.title = title_of(cell);

@@ -25,7 +25,7 @@ using namespace results;
 // Share of a problem's scale below which values are as good as solved.
 inline constexpr Real kSmallestShare = 1e-6;
 
-// What is compared of a cell. Less is better.
+// The figures of a cell that are compared. Less is better.
 inline constexpr std::size_t kLoss = 0, kBestLoss = 1, kPath = 2, kXError = 3, kWork = 4,
                              kWorkToX = kWork + kTargets,
                              kUnverified = kWorkToX + kTolerances.size(),
@@ -65,12 +65,11 @@ struct ComparedCell {
   Status status = Status::running;
   std::string build;
   std::shared_ptr<const BuildParts> parts;  // digests of its build's parts; none: unknown
-  Aim aim = Aim::loss;
-  std::optional<Criterion> criterion;   // of success; an older baseline does not hold it
-  std::vector<std::string> privileges;  // known where the criterion is
-  std::vector<Real> figures;            // (kFigures); not-a-number: unknown. Empty: none
-  Real scale = 0, x_scale = 0;          // of its losses and of its error in x
-  std::string trace, rest;              // digests of its path and of what else is deterministic
+  Criterion criterion = {};                 // of success
+  std::vector<std::string> privileges;
+  std::vector<Real> figures;    // (kFigures); not-a-number: unknown. Empty: none
+  Real scale = 0, x_scale = 0;  // of its losses and of its error in x
+  std::string trace, rest;      // digests of its path and of what else is deterministic
   std::vector<std::pair<std::string_view, std::uint64_t>> members;  // digests of that, by name
   std::vector<Real> seconds;                                        // repetitions
   std::size_t senseless_times = 0;  // of them, left out: infinite, or not a number
@@ -102,7 +101,7 @@ inline constexpr const char* kBaselineSchema = "isoline.baseline/1";
 std::string baseline_json(const Study& study, const std::vector<Study>& perturbed = {});
 std::vector<ComparedCell> baseline_from_json(const Json& json);  // UsageError if it is not valid
 
-// What records and baselines share.
+// Pieces that records and baselines share.
 std::string title_of(const ComparedCell& cell);
 Json component_json(const Component& component);
 std::shared_ptr<const Component> shared_component(const Component& component);

@@ -159,11 +159,10 @@ bool has_both(const ComparedCell& a, const ComparedCell& b, std::size_t figure) 
 Differences differences_of_kind(const ComparedCell& a, const ComparedCell& b) {
   Differences found;
   for (const auto& [figure, what] :
-       {std::pair(kXError, "error in x"), {kWork, "work to the targets"}})
-    if (const std::size_t i = figure == kWork ? work_at(Aim::loss, 0) : figure;
-        a.has(i) && !b.has(i) && a.status == b.status)
+       {std::pair(kXError, "error in x"), {work_at(Aim::loss, 0), "work to the targets"}})
+    if (a.has(figure) && !b.has(figure) && a.status == b.status)
       found.push_back(difference_in(a, Change::worse, what, "known", "gone"));
-  if (!a.criterion || !b.criterion || a.privileges == b.privileges) return found;
+  if (a.privileges == b.privileges) return found;
   const auto text = [](const ComparedCell& cell) {
     return cell.privileges.empty() ? "none" : joined(cell.privileges);
   };
@@ -181,8 +180,7 @@ Difference status_difference(const ComparedCell& a, const ComparedCell& b) {
 
 std::string criterion_change_text(const ComparedCell& before, const ComparedCell& after,
                                   const std::optional<Real>& tolerance) {
-  if (!before.criterion || !after.criterion) return "";
-  const Criterion &a = *before.criterion, &b = *after.criterion;
+  const Criterion &a = before.criterion, &b = after.criterion;
   std::vector<std::string> changes;
   const auto add = [&](const char* name, const std::optional<Real>& old,
                        const std::optional<Real>& now, Real scale) {
@@ -272,7 +270,7 @@ Perturbed perturbed_of(const ComparedCell& unperturbed,
     found.moved = std::max(found.moved, movement(unperturbed, cell));
     found.statuses.push_back(cell.status);
     for (std::size_t t = 0; t < kTolerances.size(); ++t)
-      found.reached[t] += has_reached(cell, unperturbed.aim, t);
+      found.reached[t] += has_reached(cell, unperturbed.criterion.aim, t);
   }
   return found;
 }
@@ -285,8 +283,8 @@ Differences coarse_differences(const ComparedCell& a, const ComparedCell& b) {
   Differences all;
   add_coarse_status(a, b, all);
   for (std::size_t t = 0; t < kTolerances.size(); ++t) {
-    const bool is_reached = has_reached(b, a.aim, t);
-    const std::size_t reached = a.perturbed->reached[t] + has_reached(a, a.aim, t);
+    const bool is_reached = has_reached(b, a.criterion.aim, t);
+    const std::size_t reached = a.perturbed->reached[t] + has_reached(a, a.criterion.aim, t);
     if (is_reached ? reached > 0 : reached <= a.perturbed->statuses.size()) continue;
     all.push_back(difference_in(a, is_reached ? Change::better : Change::worse,
                                 fmt::format("target {}", kTolerances[t].name),

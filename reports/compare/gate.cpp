@@ -197,24 +197,23 @@ class Gate {
     });
   }
 
-  void remark(std::size_t number, const char* noun, const std::string& text) {
-    if (number > 0) result_.remarks.push_back(fmt::format("{} {}", counted(number, noun), text));
-  }
-
   void add_remarks() {
-    remark(result_.chaotic, "chaotic cell",
-           "judged by status and by which of the targets 1e-1, 1e-3, 1e-6 it reaches: the figures "
-           "moved by more than a tenth of the tolerance when the start was perturbed in the last "
-           "bit");
-    remark(too_few_, "cell",
-           fmt::format("with too few repetitions for a verdict on time: {} a side are needed (run "
-                       "--repeat {} --exclusive)",
-                       kLeastRepetitions, kLeastRepetitions));
-    remark(senseless_, "timing", "left out: not positive and finite");
-    remark(other_processors_, "cell", "timed on another processor: times are not comparable");
-    remark(
-        skipped_, "cell",
-        fmt::format("more with enough repetitions; time is judged on the {} slowest", kMostTimed));
+    const std::tuple<std::size_t, const char*, std::string> all[] = {
+        {result_.chaotic, "chaotic cell",
+         "judged by status and by which of the targets 1e-1, 1e-3, 1e-6 it reaches: the figures "
+         "moved by more than a tenth of the tolerance when the start was perturbed in the last "
+         "bit"},
+        {too_few_, "cell",
+         fmt::format("with too few repetitions for a verdict on time: {0} a side are needed (run "
+                     "--repeat {0} --exclusive)",
+                     kLeastRepetitions)},
+        {senseless_, "timing", "left out: not positive and finite"},
+        {other_processors_, "cell", "timed on another processor: times are not comparable"},
+        {skipped_, "cell",
+         fmt::format("more with enough repetitions; time is judged on the {} slowest",
+                     kMostTimed)}};
+    for (const auto& [number, noun, text] : all)
+      if (number > 0) result_.remarks.push_back(fmt::format("{} {}", counted(number, noun), text));
   }
 
   const GateOptions& options_;
@@ -248,12 +247,6 @@ std::string time_cause(const std::vector<TimeVerdict>& times, int change, const 
                      first->title, ratio_text(first->ratio));
 }
 
-std::string settings_cause(const std::vector<std::string>& settings) {
-  if (settings.size() <= 1) return joined(settings);
-  return fmt::format("{}, and {} of options", settings[0],
-                     counted(settings.size() - 1, "other change"));
-}
-
 // The sentence and the exit code: worse before not comparable before better, each with its causes.
 void conclude(GateResult& result, const GateOptions& options) {
   const auto settle = [&](ExitCode code, const char* verdict, std::vector<std::string> causes) {
@@ -261,7 +254,11 @@ void conclude(GateResult& result, const GateOptions& options) {
     result.exit_code = code;
     result.verdict = verdict + (causes.empty() ? "" : ": " + joined(causes, "; "));
   };
-  const std::string settings = settings_cause(result.settings);
+  const std::size_t others = result.settings.empty() ? 0 : result.settings.size() - 1;
+  const std::string settings = others == 0
+                                   ? joined(result.settings)
+                                   : fmt::format("{}, and {} of options", result.settings[0],
+                                                 counted(others, "other change"));
   const std::string lack = options.is_common_only ? "" : result.lack;
   const std::string worse = worst_text(result, Change::worse),
                     better = worst_text(result, Change::better),
@@ -281,16 +278,6 @@ void conclude(GateResult& result, const GateOptions& options) {
     const bool is_equal = result.differences.empty() && settings.empty();
     settle(kGood, is_equal ? "equal" : "changed, neither better nor worse", {settings});
   }
-}
-
-void remark_on(const FolderCells& found, const std::filesystem::path& path,
-               std::vector<std::string>& remarks) {
-  if (found.unreadable > 0)
-    remarks.push_back(fmt::format("{} of {} could not be read", counted(found.unreadable, "file"),
-                                  path.string()));
-  if (found.superseded > 0)
-    remarks.push_back(fmt::format("{} of {} left aside for newer builds of the same cells",
-                                  counted(found.superseded, "older record"), path.string()));
 }
 
 // The file where it is a baseline; nothing of a folder.
@@ -327,8 +314,15 @@ GateResult compare_results(const std::filesystem::path& before, const std::files
   GateResult result = Gate(options).run(old.cells, now.cells);
   conclude(result, options);
   if (baseline) result.remarks.push_back("a baseline holds no times: none is judged");
-  remark_on(old, before, result.remarks);
-  remark_on(now, after, result.remarks);
+  for (const auto& [found, path] : {std::pair(&std::as_const(old), before), {&now, after}}) {
+    if (found->unreadable > 0)
+      result.remarks.push_back(fmt::format("{} of {} could not be read",
+                                           counted(found->unreadable, "file"), path.string()));
+    if (found->superseded > 0)
+      result.remarks.push_back(fmt::format("{} of {} left aside for newer builds of the same cells",
+                                           counted(found->superseded, "older record"),
+                                           path.string()));
+  }
   return result;
 }
 

@@ -70,7 +70,7 @@ Differences figure_differences(const ComparedCell& before, const ComparedCell& a
 Real movement(const ComparedCell& before, const ComparedCell& after);
 
 // "f_L 0 → 1e-3, aim x → loss": what of the criteria differs, by more than the tolerance where
-// there is one; empty where nothing does, or where one side does not hold it.
+// there is one; empty where nothing does.
 std::string criterion_change_text(const ComparedCell& before, const ComparedCell& after,
                                   const std::optional<Real>& tolerance);
 

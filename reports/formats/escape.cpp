@@ -1,4 +1,4 @@
-// What formats share: foreign text escaped for each, and wide tables taken apart.
+// Shared pieces of formats: foreign text escaped for each, and wide tables taken apart.
 #include <algorithm>
 #include <span>
 

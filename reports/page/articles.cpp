@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/json.h"
 #include "core/oracle.h"
@@ -63,27 +64,22 @@ std::string deeds_html(const Comparison& c, std::size_t s) {
 
 // "0.01", or "0.001 to 14.7, 9 values" where a table of rates or a sweep chose by problem.
 std::string values_of(const Comparison& c, std::size_t s, const std::string& option) {
-  std::vector<OptionValue> values;
+  std::set<OptionValue> values;
   for (const auto& problem : c.cells)
-    for (const std::size_t run : problem[s].runs) {
-      const OptionValues& options = c.runs[run].record->request.optimizer.options;
-      if (const OptionValue* at = options.find(option)) values.push_back(*at);
-    }
-  std::ranges::sort(values);
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  const auto text = [](const OptionValue& value) {
-    if (const Real* number = std::get_if<Real>(&value)) return figure(*number);
-    if (const Index* number = std::get_if<Index>(&value)) return figure(Real(*number));
-    return option_text(value);
-  };
-  if (values.empty()) return "";
-  if (values.size() == 1) return text(values[0]);
-  if (values.front().index() < 2)  // numbers
-    return fmt::format("{} to {}, {} values", text(values.front()), text(values.back()),
-                       values.size());
-  std::vector<std::string> words;
-  for (const OptionValue& value : values) words.push_back(text(value));
-  return joined(words);
+    for (const std::size_t run : problem[s].runs)
+      if (const auto* at = c.runs[run].record->request.optimizer.options.find(option))
+        values.insert(*at);
+  std::vector<std::string> texts;
+  for (const OptionValue& value : values) {
+    const Real* const number = std::get_if<Real>(&value);
+    const Index* const count = std::get_if<Index>(&value);
+    texts.push_back(number != nullptr  ? figure(*number)
+                    : count != nullptr ? figure(Real(*count))
+                                       : option_text(value));
+  }
+  const bool are_numbers = !values.empty() && values.begin()->index() < 2;
+  if (texts.size() < 2 || !are_numbers) return joined(texts);
+  return fmt::format("{} to {}, {} values", texts.front(), texts.back(), texts.size());
 }
 
 std::string options_html(const Comparison& c, std::size_t s, const Sheet& sheet) {

@@ -97,9 +97,8 @@ std::string profile_html(const Comparison& c) {
   return html_text(profile_reading(c, kTightest));
 }
 
-// --- the first tab
-
-std::string alerts_html(const Document& document) {
+// The first tab: alerts; a sentence that decides, of which all that these runs say opens; facts.
+std::string overview_html(const Document& document) {
   const Comparison& c = document.comparison;
   std::string html;
   if (!document.incomplete.empty())
@@ -111,22 +110,14 @@ std::string alerts_html(const Document& document) {
         "<p class=alert><b>{} failed</b>{} — <a href=\"#failures\">which, and why</a></p>\n",
         counted(c.failures.size(), "run"),
         unread > 0 ? fmt::format(", {} unreadable", counted(unread, "file")) : "");
-  return html;
-}
-
-// A sentence decides; all that these runs say opens.
-std::string verdict_html(const Comparison& c) {
-  const std::vector<std::string> sentences = verdict(c);
-  if (sentences.empty()) return "";
-  std::string html = fmt::format("<p class=verdict>{}</p>\n", html_text(short_verdict(c)));
-  html += "<details><summary>All that these runs say</summary>";
-  for (const std::string& sentence : sentences)
-    html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence));
-  return html + "</details>\n";
-}
-
-std::string settled_html(const Comparison& c) {
-  std::string html = "<dl class=settled>";
+  if (const std::vector<std::string> sentences = verdict(c); !sentences.empty()) {
+    html += fmt::format("<p class=verdict>{}</p>\n", html_text(short_verdict(c)));
+    html += "<details><summary>All that these runs say</summary>";
+    for (const std::string& sentence : sentences)
+      html += fmt::format("<p class=lead>{}</p>\n", html_text(sentence));
+    html += "</details>\n";
+  }
+  html += "<dl class=settled>";
   for (const Reading& reading : ranking_facts(c))
     html += fmt::format("<dt>{}<dd>{}", html_text(reading.title), html_text(reading.text));
   return html + "</dl>\n";
@@ -197,7 +188,7 @@ std::string html_report(const Document& document) {
               {"counted", std::string(counted_name(c))},
               {"unit", std::string(unit_name(c))},
               {"setting", std::string(setting_noun(c))},
-              {"overview", alerts_html(document) + verdict_html(c) + settled_html(c)},
+              {"overview", overview_html(document)},
               {"endings", endings_html(c)},
               {"remarks", remarks_html(document)},
               {"order", section_html(document.section("standings"))},

@@ -89,23 +89,18 @@ TEST(Page, IsToldTheMethodOfEachOptimizer) {
   }
 }
 
-TEST(Page, ShowsFormulasAsTheyAreWritten) {
+TEST(Page, IsTitledByItsSuitesAndShowsFormulasAsTheyAreWritten) {
   Study study;
   study.runs = {record_of({})};
+  study.plan.suites = {"quick"};
   study.sheets = {{.kind = "problem",
                    .name = "square",
                    .spec = "square",
                    .formula = "P(x) = x₁² / ‖x̃‖, Λ^(−κ) < 1",
                    .options_text = "[]"}};
-  EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))),
-                  "<p class=formula>P(x) = x₁² / ‖x̃‖, Λ^(−κ) &lt; 1</p>"));
-}
-
-TEST(Page, IsTitledByItsSuites) {
-  Study study;
-  study.runs = {record_of({})};
-  study.plan.suites = {"quick"};
-  EXPECT_TRUE(has(html_report(document_of(compare_optimizers(study))), "<title>quick"));
+  const std::string page = html_report(document_of(compare_optimizers(study)));
+  EXPECT_TRUE(has(page, "<title>quick"));
+  EXPECT_TRUE(has(page, "<p class=formula>P(x) = x₁² / ‖x̃‖, Λ^(−κ) &lt; 1</p>"));
 }
 
 // A sheet names the least that a method can do with; the page names what its runs asked for.
