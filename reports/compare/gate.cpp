@@ -32,16 +32,16 @@ std::string why_incomparable(const ComparedCell& a, const ComparedCell& b,
 // "curve", "message, claimed": what of the records differs where all figures agree.
 Difference silent_difference(const ComparedCell& a, const ComparedCell& b) {
   const bool is_path = a.trace != b.trace;
-  Difference difference = is_path ? difference_in(a, Change::changed, "trace", a.trace, b.trace)
-                                  : difference_in(a, Change::changed, "record", a.rest, b.rest);
-  difference.note = is_path ? "the path differs, all compared figures agree"
-                            : "its path and all compared figures agree";
-  if (is_path || a.members.empty()) return difference;  // a baseline holds one digest of them all
   std::vector<std::pair<std::string_view, std::uint64_t>> members;
-  std::ranges::set_symmetric_difference(a.members, b.members, std::back_inserter(members));
+  if (!is_path && !a.members.empty())  // a baseline holds one digest of them all
+    std::ranges::set_symmetric_difference(a.members, b.members, std::back_inserter(members));
   std::set<std::string> names;
   for (const auto& [name, digest] : members) names.emplace(name);
-  if (!names.empty()) difference.what = joined({names.begin(), names.end()});
+  if (names.empty()) names.insert(is_path ? "trace" : "record");
+  Difference difference = difference_in(a, Change::changed, joined({names.begin(), names.end()}),
+                                        is_path ? a.trace : a.rest, is_path ? b.trace : b.rest);
+  difference.note = is_path ? "the path differs, all compared figures agree"
+                            : "its path and all compared figures agree";
   return difference;
 }
 

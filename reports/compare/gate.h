@@ -1,10 +1,4 @@
 // Differences between two sets of results: the gate of continuous integration.
-//
-//   cells        the two sides in one form: cells of a result folder or of a baseline
-//   baseline     what of results stands in a repository
-//   differences  which cell of NEW answers which of BASE; status, figures, options and builds
-//   gate         the verdict, and what explains it
-//   gate_text    the comparison in words
 #pragma once
 
 #include <filesystem>

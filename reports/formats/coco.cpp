@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -77,9 +78,7 @@ std::string block_of(const Points& points, Real minimum) {
 std::string plain_name(std::string_view label) {
   std::string name;
   for (const char letter : label) {
-    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-                          (letter >= '0' && letter <= '9');
-    if (is_plain)
+    if (std::isalnum(static_cast<unsigned char>(letter)) != 0)  // of the locale "C"
       name += letter;
     else if (!name.empty() && name.back() != '-')
       name += '-';

@@ -21,13 +21,6 @@ std::set<std::size_t> shown_at_first(const Comparison& c, const std::vector<std:
   return shown;
 }
 
-std::set<std::size_t> all_but(const Comparison& c, const std::set<std::size_t>& shown) {
-  std::set<std::size_t> others;
-  for (std::size_t s = 0; s < c.optimizers.size(); ++s)
-    if (!shown.contains(s)) others.insert(s);
-  return others;
-}
-
 namespace {
 
 // Points a line, so that all lines together stay within a few megabytes.
@@ -102,7 +95,7 @@ class Curves {
   Curves(const Comparison& c, std::size_t p) : c_(c), p_(p), ranking_(ranking(c, p)) {
     for (const std::size_t s : ranking_)
       curves_.push_back(median_curve(c, c.cell(p, s), points_per_curve(c)));
-    on_demand_ = all_but(c, shown_at_first(c, ranking_));
+    shown_ = shown_at_first(c, ranking_);
     for (const Cell& cell : c.cells[p])
       for (const std::size_t run : cell.runs)
         if (const auto& scale = c.runs[run].record->x_scale) scales_.push_back(*scale);
@@ -156,7 +149,7 @@ class Curves {
                  .is_log_y = true},
         .join = are_stairs ? Join::steps : Join::straight,
         .has_names = true,
-        .on_demand = on_demand_};
+        .shown = shown_};
     Real start = 0;  // the greatest
     for (std::size_t i = 0; i < ranking_.size(); ++i) {
       const std::size_t s = ranking_[i];
@@ -169,7 +162,7 @@ class Curves {
               : kept;
       line.optimizer = s;
       line.name = optimizer_name(c_.optimizers[s]);
-      if (are_stairs || on_demand_.contains(s)) line.low.clear(), line.high.clear();
+      if (are_stairs || !shown_.contains(s)) line.low.clear(), line.high.clear();
       out.plot.series.push_back(std::move(line));
     }
     if (is_of_error == is_x_sought() && !is_learned)
@@ -186,7 +179,7 @@ class Curves {
   std::size_t p_;
   std::vector<std::size_t> ranking_;
   std::vector<MedianCurve> curves_;
-  std::set<std::size_t> on_demand_;
+  std::set<std::size_t> shown_;
   std::vector<Real> scales_;
 };
 
@@ -250,22 +243,17 @@ Drawing figure_drawing(const Comparison& c, const Figure& figure) {
                        .is_log_y = figure.is_log_y},
               .join = figure.kind == "scatter" ? Join::none : Join::straight,
               .has_names = figure.kind != "scatter",
-              .on_demand = all_but(c, lines_of_paper(c, figure))};
+              .shown = lines_of_paper(c, figure)};
   for (const FigureLine& line : figure.lines)
     out.plot.series.push_back({line.optimizer, optimizer_name(c.optimizers[line.optimizer]), line.x,
                                line.y, line.low, line.high});
   for (const PublishedMark& mark : figure.published)
-    if (!out.on_demand.contains(mark.optimizer))
+    if (out.shown->contains(mark.optimizer))
       out.plot.published.push_back(
           {mark.optimizer, mark.name, {mark.x}, {mark.y}, {mark.low}, {mark.high}});
   out.window = figure_window(figure, out);
-  if (figure.has_diagonal)
-    out.ground.push_back({{},
-                          "",
-                          {out.window->x_low, out.window->x_high},
-                          {out.window->x_low, out.window->x_high},
-                          {},
-                          {}});
+  const std::vector<Real> ends = {out.window->x_low, out.window->x_high};
+  if (figure.has_diagonal) out.ground.push_back({{}, "", ends, ends, {}, {}});
   return out;
 }
 
@@ -286,14 +274,10 @@ std::string pictures_html(const std::vector<Picture>& pictures) {
   return "<div class=pictures>" + html + "</div>";
 }
 
-std::string problem_attribute(const Comparison& c, const Figure& figure) {
-  const auto at = std::ranges::find_if(c.problems, [&](const ProblemAxis& problem) {
-    return shown_spec(problem.spec) == shown_spec(figure.problem);
-  });
-  return at == c.problems.end() ? "" : fmt::format(" data-p={}", at - c.problems.begin());
-}
-
 std::string figure_html(const Comparison& c, const Figure& figure) {
+  Topic topic;
+  for (std::size_t p = c.problems.size(); p-- > 0;)  // the first
+    if (shown_spec(c.problems[p].spec) == shown_spec(figure.problem)) topic.problem = p;
   std::string drawn;
   if (!figure.pictures.empty()) {
     drawn = pictures_html(figure.pictures);
@@ -304,7 +288,7 @@ std::string figure_html(const Comparison& c, const Figure& figure) {
   return fmt::format(
       "<figure class=\"plot panel{}\"{}><figcaption><b>{}</b> <span class=formula>{}</span><p "
       "class=reading>{}</p></figcaption>{}</figure>\n",
-      figure.pictures.empty() ? "" : " wide", problem_attribute(c, figure), html_text(figure.title),
+      figure.pictures.empty() ? "" : " wide", topic_attributes(topic), html_text(figure.title),
       html_text(figure.problem), html_text(figure.reading), drawn);
 }
 

@@ -56,13 +56,12 @@ std::string quantity_name(const FoundFields& all) {
   return all.is_history() ? all.x.name + " → " + quantity_name(all.y) : quantity_name(all.x);
 }
 
-// The caption of the snapshots.
+// The captions of the snapshots.
 struct Labels {
-  std::string x, truth, rest;
+  std::string x = "x", truth = "x*", rest = "x − x*";
 };
 Labels labels_of(const FoundFields& all) {
-  return all.is_history() ? Labels{"x → y", "x* → y*", "x − x* → y − y*"}
-                          : Labels{"x", "x*", "x − x*"};
+  return all.is_history() ? Labels{"x → y", "x* → y*", "x − x* → y − y*"} : Labels{};
 }
 
 std::string short_figure(Real value) { return figure(std::stod(fmt::format("{:.3g}", value))); }

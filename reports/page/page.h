@@ -40,7 +40,6 @@ std::string figures_html(const Document& document);
 inline constexpr std::size_t kMostShown = 8;
 std::set<std::size_t> shown_at_first(const Comparison& comparison,
                                      const std::vector<std::size_t>& ranking);
-std::set<std::size_t> all_but(const Comparison& comparison, const std::set<std::size_t>& shown);
 
 // Isolines by marching squares (Lorensen, Cline 1987, in two dimensions): segments apart by NaN,
 // linear between grid points. A cell with a corner that is not finite is left out.
@@ -121,15 +120,15 @@ enum class Join { straight, steps, none };
 struct Drawing {
   Plot plot;
   Join join = Join::straight;
-  bool has_names = false;           // at the ends of the lines
-  bool has_points = false;          // marked, be they many
-  bool is_to_scale = false;         // a unit across is a unit up
-  std::set<std::size_t> on_demand;  // optimizers whose lines are hidden at first
-  std::optional<Window> window;     // else what the lines that are shown need
-  std::optional<Real> tolerance;    // a line at τ times this, at the τ of the report
-  std::vector<PlotSeries> ground;   // thin lines below all others
-  std::vector<PlotSeries> ends;     // a point each: the start, and the goal
-  std::string attributes;           // of the element
+  bool has_names = false;                           // at the ends of the lines
+  bool has_points = false;                          // marked, be they many
+  bool is_to_scale = false;                         // a unit across is a unit up
+  std::optional<std::set<std::size_t>> shown = {};  // optimizers whose lines are, at first; or all
+  std::optional<Window> window;                     // else what the lines that are shown need
+  std::optional<Real> tolerance;   // a line at τ times this, at the τ of the report
+  std::vector<PlotSeries> ground;  // thin lines below all others
+  std::vector<PlotSeries> ends;    // a point each: the start, and the goal
+  std::string attributes;          // of the element
 };
 std::string drawing_svg(const Drawing& drawing, Real tau = 1);
 // The lines that are not hidden at first; all where every one is.

@@ -14,9 +14,10 @@
 namespace isoline::reports {
 namespace {
 
-std::vector<Real> even_steps(Real low, Real high, int count, Real (*from)(Real)) {
+std::vector<Real> even_steps(Real low, Real high, Real (*from)(Real)) {
+  constexpr int kLevels = 13;
   std::vector<Real> levels;
-  for (int i = 1; i <= count; ++i) levels.push_back(from(low + (high - low) * i / (count + 1)));
+  for (int i = 1; i <= kLevels; ++i) levels.push_back(from(low + (high - low) * i / (kLevels + 1)));
   return levels;
 }
 
@@ -29,9 +30,8 @@ std::string levels_text(const Landscape& landscape) {
 }  // namespace
 
 std::vector<Real> contour_levels(const Landscape& landscape) {
-  constexpr int kLevels = 13;
   if (landscape.spacing == "powers of two")
-    return even_steps(-6, 8, kLevels, [](Real i) { return std::exp2(i); });
+    return even_steps(-6, 8, [](Real i) { return std::exp2(i); });
   Real low = INFINITY, high = 0;
   for (const Real loss : landscape.loss.values())
     if (std::isfinite(loss) && loss > 0) {
@@ -40,9 +40,9 @@ std::vector<Real> contour_levels(const Landscape& landscape) {
     }
   if (!(low < high)) return {};
   if (landscape.spacing == "fifth root")
-    return even_steps(0, std::pow(high, 0.2), kLevels, [](Real v) { return std::pow(v, 5); });
+    return even_steps(0, std::pow(high, 0.2), [](Real v) { return std::pow(v, 5); });
   constexpr Real kDecades = 1e-4;  // lower levels crowd around the minimum
-  return even_steps(std::log(std::max(low, high * kDecades)), std::log(high), kLevels,
+  return even_steps(std::log(std::max(low, high * kDecades)), std::log(high),
                     [](Real v) { return std::exp(v); });
 }
 
@@ -90,16 +90,6 @@ namespace {
 
 using Rows = std::vector<std::vector<Real>>;
 
-PlotSeries path_series(const Rows& rows, std::size_t most) {
-  PlotSeries line;
-  for (const std::size_t i : thinned(rows.size(), most)) {
-    const bool is_point = rows[i].size() == 2;
-    line.x.push_back(is_point ? rows[i][0] : NAN);
-    line.y.push_back(is_point ? rows[i][1] : NAN);
-  }
-  return line;
-}
-
 Drawing plane_drawing(const Comparison& c, std::size_t p, const Landscape& landscape,
                       const char* space, Rows Path::*rows, const std::vector<Real>& goal) {
   constexpr Real kMostStretch = 12;  // beyond it a valley would be a line
@@ -113,15 +103,19 @@ Drawing plane_drawing(const Comparison& c, std::size_t p, const Landscape& lands
                .x_label = space + std::string("₁"),
                .y_label = space + std::string("₂")},
       .is_to_scale = stretch <= kMostStretch,
-      .on_demand = all_but(c, shown_at_first(c, ranking(c, p))),
+      .shown = shown_at_first(c, ranking(c, p)),
       .window = Window{left, right, low, high}};
   for (const Real level : contour_levels(landscape))
     out.ground.push_back(isoline(landscape, level));
   for (const Path& path : all) {
-    PlotSeries line = path_series(path.*rows, points);
+    PlotSeries& line = out.plot.series.emplace_back();
     line.optimizer = path.index;
     line.name = optimizer_name(c.optimizers[path.index]);
-    out.plot.series.push_back(std::move(line));
+    for (const std::size_t i : thinned((path.*rows).size(), points)) {
+      const std::vector<Real>& point = (path.*rows)[i];
+      line.x.push_back(point.size() == 2 ? point[0] : NAN);
+      line.y.push_back(point.size() == 2 ? point[1] : NAN);
+    }
   }
   const PlotSeries& first = out.plot.series.front();
   out.ends.push_back({{}, "start", {first.x.at(0)}, {first.y.at(0)}, {}, {}});
@@ -147,12 +141,6 @@ std::string path_reading(const Comparison& c, std::size_t problem, Rows Path::*r
       shown_spec(winding.optimizer), multiple(length(winding)));
 }
 
-std::string plane_html(const Drawing& drawing, const char* title, const std::string& reading) {
-  return fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
-                     title, html_text(reading), html_text(drawing.plot.caption),
-                     drawing_svg(drawing));
-}
-
 }  // namespace
 
 // Paths as the paper draws them: short runs with a point a step, long ones as lines.
@@ -161,12 +149,16 @@ std::string planes_html(const Comparison& c, std::size_t p) {
   const bool has_planes = sheet != nullptr && (sheet->landscape_x || sheet->landscape_y);
   if (!has_planes || paths(c, p).empty()) return "";
   std::string html = "<div class=planes>";
-  if (sheet->landscape_x)
-    html += plane_html(plane_drawing(c, p, *sheet->landscape_x, "x", &Path::x, sheet->truth),
-                       "Paths in x, over the loss.", path_reading(c, p, &Path::x));
-  if (sheet->landscape_y)
-    html += plane_html(plane_drawing(c, p, *sheet->landscape_y, "y", &Path::y, sheet->target),
-                       "The same paths in y.", path_reading(c, p, &Path::y));
+  const auto add = [&](const std::optional<Landscape>& landscape, const char* space,
+                       Rows Path::*rows, const std::vector<Real>& goal, const char* title) {
+    if (!landscape) return;
+    const Drawing drawing = plane_drawing(c, p, *landscape, space, rows, goal);
+    html += fmt::format("<figure class=plane><figcaption><b>{}</b> {} {}</figcaption>{}</figure>",
+                        title, html_text(path_reading(c, p, rows)), html_text(drawing.plot.caption),
+                        drawing_svg(drawing));
+  };
+  add(sheet->landscape_x, "x", &Path::x, sheet->truth, "Paths in x, over the loss.");
+  add(sheet->landscape_y, "y", &Path::y, sheet->target, "The same paths in y.");
   return html + fmt::format(
                     "</div><p class=legend>Thin lines: equal loss, {}. Paths of the lowest seed; "
                     "points are steps, drawn for runs of few steps. ○ start, ● solution in x, "

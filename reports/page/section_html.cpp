@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -125,11 +126,9 @@ namespace {
 std::string address(const std::string& path) {
   std::string out;
   for (const char letter : path) {
-    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-                          (letter >= '0' && letter <= '9') ||
-                          std::string_view("-._~/").find(letter) != std::string_view::npos;
-    out += is_plain ? std::string(1, letter)
-                    : fmt::format("%{:02X}", static_cast<unsigned char>(letter));
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool is_plain = std::isalnum(byte) != 0 || std::string_view("-._~/").find(letter) < 5;
+    out += is_plain ? std::string(1, letter) : fmt::format("%{:02X}", byte);
   }
   return out;
 }

@@ -105,7 +105,7 @@ namespace {
 constexpr Real kLeft = 62, kTop = 26, kBelow = 40, kNameWidth = 164;
 
 bool is_hidden(const Drawing& drawing, const PlotSeries& line) {
-  return line.optimizer && drawing.on_demand.contains(*line.optimizer);
+  return line.optimizer && drawing.shown && !drawing.shown->contains(*line.optimizer);
 }
 
 // Narrow where names stand below, so that letters can be read on a telephone.
@@ -154,7 +154,7 @@ std::string path_of(const Frame& area, const std::vector<Real>& x, const std::ve
         path += fmt::format("M{} {}{}", at_x, at_y, join == Join::none ? "h0" : "");
       else if (join == Join::straight)
         path += fmt::format("l{}{}{}", across, up < 0 ? "" : " ", up);
-      else if (across != 0 || up != 0)
+      else
         path += (across != 0 ? fmt::format("h{}", across) : "") +
                 (up != 0 ? fmt::format("v{}", up) : "");
       last_x = at_x;
@@ -209,10 +209,8 @@ std::string series_svg(const Drawing& drawing, const Frame& area, std::size_t pl
     svg += band_of(area, line, drawing.join);
   std::string path = path_of(area, line.x, line.y, drawing.join);
   if (drawing.plot.kind == Plot::Kind::steps) path += fmt::format("H{:.0f}", kArea);
-  if (drawing.join == Join::none)
-    svg += fmt::format("<path class=\"line points\" d=\"{}\"", path);
-  else
-    svg += fmt::format("<path class=line d=\"{}\"", path);
+  svg += fmt::format("<path class={} d=\"{}\"",
+                     drawing.join == Join::none ? "\"line points\"" : "line", path);
   // What the scripts show later they mark and name.
   svg += is_off ? "/>" : fmt::format("><title>{}</title></path>", html_text(line.name));
   const bool are_few = drawing.join == Join::straight && line.x.size() <= kFewPoints;

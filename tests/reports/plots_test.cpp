@@ -75,13 +75,6 @@ TEST(Plots, RatiosAreSortedDoublings) {
   EXPECT_EQ(plot->rows[3].name, "s");
 }
 
-// Work 30, 30, 30 of a: nothing within 10 forward solves, three of four within 100.
-TEST(Plots, DataProfilesCountForwardSolves) {
-  const Plot plot = data_profile_plot(compare_optimizers(four_problems())).at(0);
-  EXPECT_EQ(height(plot.series[0], 10), 0);
-  EXPECT_EQ(height(plot.series[0], 100), 0.75);
-}
-
 // Of two seeds one meets target j at 2 j, the other the first ten of 51 alone, and stops after 20.
 TEST(Plots, RuntimesRestartUntilTheTargetIsMet) {
   Study study;
