@@ -12,7 +12,7 @@ namespace {
 struct CompareArguments {
   std::string before, after;
   double tolerance = -1, noise = -1;  // −1: bit for bit; the standard band
-  std::string allowed;  // a list of cells that NEW may lack, or may judge otherwise
+  std::string allowed;                // a list of cells that NEW may lack, or may judge otherwise
   bool is_common_only = false, as_markdown = false, as_json = false, lists_all = false;
 };
 

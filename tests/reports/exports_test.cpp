@@ -1,5 +1,5 @@
-// Results in the forms of others: CSV that reads back. tests/exchange/coco_test.py holds what COCO's
-// folders must be: it reads them by the format's rules.
+// Results in the forms of others: CSV that reads back. What COCO's folders must be is held by
+// tests/exchange/coco_test.py, which reads them by the rules of the format.
 #include <gtest/gtest.h>
 
 #include <cmath>
